@@ -18,14 +18,14 @@ def add_to(app: typer.Typer) -> None:
 
 def release(
     check: Annotated[
-        bool, typer.Option("--check", help="Change nothing, and fail if exercises/ is out of date.")
+        bool, typer.Option("--check", help="Change nothing, and exit with code 1 if exercises/ is out of date.")
     ] = False,
     to: Annotated[
         Optional[Path],  # noqa: UP045
         typer.Option(help="Write the repository for students, without solutions, to this new folder.", metavar="DIR"),
     ] = None,
 ) -> None:
-    """Make exercises/ from solutions/ (for authors)."""
+    """Create exercises/ from solutions/ (for authors)."""
     from grader.authoring.release import main as make_exercises
 
     if to:

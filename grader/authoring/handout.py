@@ -13,7 +13,7 @@ from grader.exercise.model import catalogue, course_folder
 _FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore", "COLCON_IGNORE")
 _NOT_FOR_STUDENTS = ("tests", "benchmarks", "__pycache__", "*.pyc")
 _IN_A_WHEEL = ("course", "exercises", "solutions", "repository")
-"""Folders that are inside the package in a wheel, but next to it in a checkout (see hatch_build.py)."""
+"""Folders that are inside the package in a wheel, but beside the package in a checkout (see hatch_build.py)."""
 
 
 def hand_out(to: Path) -> None:
@@ -25,10 +25,10 @@ def hand_out(to: Path) -> None:
     """
     root = course_folder().parent
     if to.exists() and (not to.is_dir() or any(to.iterdir())):
-        message = f"{to} is not an empty folder. Name a new one."
+        message = f"{to} is not an empty folder. Name a new folder."
         raise UsageError(message)
     if not (root / "solutions").is_dir():
-        message = f"The repository for students is made from solutions/, but {root} has none."
+        message = f"The repository for students needs solutions/, but {root} has no such folder."
         raise UsageError(message)
     package = Path(__file__).parent.parent
     files = package / "repository" if (package / "repository").is_dir() else root

@@ -39,7 +39,7 @@ UNITS = {
 }
 """Suffix of a parameter's name -> its unit. Longer suffixes come first."""
 STAGES = {
-    "source": ("Judged from the files", "These checks read the submission's files. Nothing is built or run for them."),
+    "source": ("Judged from the files", "These checks read the submission's files. They do not build or run it."),
     "build": ("Judged from the build", "These checks read what `colcon build` printed and installed."),
     "trial": ("Judged from the trial", "These checks read the recording of a trial: messages, trajectory, graph, log."),
 }
@@ -77,7 +77,7 @@ def _contents() -> str:
 
 
 def _examples() -> dict[str, tuple[str, CheckSpec]]:
-    """Map each kind to the first step and check of this kind in the course. Raises UsageError if one is not used."""
+    """Map each kind to the first step and check of this kind in the course. Raises UsageError for an unused kind."""
     found: dict[str, tuple[str, CheckSpec]] = {}
     for step, file in catalogue().items():
         exercise = load_exercise(file)
@@ -108,7 +108,7 @@ def _section(kind: Kind[Any], step: str, spec: CheckSpec) -> str:
 
 
 def _default(value: Param) -> str:
-    """Return a default value as text. If the default is an empty string, the parameter is just optional."""
+    """Return a default value as text, or the word `empty` for an empty string."""
     return f"`{_toml(value)}`" if str(value).strip() else "empty"
 
 
@@ -118,7 +118,7 @@ def unit_of(parameter: str) -> str:
 
 
 def _check(kind: Kind[Any], spec: CheckSpec) -> Iterable[str]:
-    """Yield the lines of the check as an author would write them, without the default values of its kind."""
+    """Yield the lines of the check as an author would write them. Default values of the kind are omitted."""
     yield "[[check]]"
     yield f"id = {_toml(spec.id)}"
     yield f"kind = {_toml(spec.kind)}"
@@ -159,7 +159,7 @@ def _file() -> Path:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command. Return 1 if --check finds that the page is out of date."""
+    """Run the command. Return 1 if --check finds an outdated page."""
     parser = argparse.ArgumentParser(prog="python -m grader.authoring.kinds_page", description="Write docs/kinds.md.")
     parser.add_argument("--check", action="store_true", help="change nothing, and fail if the page is out of date")
     options = parser.parse_args(arguments)

@@ -36,7 +36,7 @@ else:
 
 
 RECORDED = (".mcap", "/metadata.yaml")
-"""The ends of the files of a bag, which each student records."""
+"""The endings of the files of a bag, which each student records."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class ReleasedFile:
 def released(solution: Path) -> dict[str, ReleasedFile]:
     """Return the starting point as POSIX path -> file. `solution` is the folder of a step in solutions/.
 
-    Raises UsageError, with file and line, if markers are wrong or the result cannot be parsed.
+    Raises UsageError with file and line if markers are wrong or the result cannot be parsed.
     """
     files: dict[str, ReleasedFile] = {}
     found = _read(solution)
@@ -75,7 +75,7 @@ def release(solution: Path, to: Path) -> None:
 
 
 def refresh_notebook(solution: Path) -> None:
-    """Update the step's source notebook, if there is one, from its files and checks.
+    """Update the source notebook of a step, if it has one, from the step's files and checks.
 
     Raises:
         UsageError: the notebook or the exercise is invalid.
@@ -130,14 +130,15 @@ def release_file(data: bytes, path: str, name: str) -> bytes | None:
     if syntax is None:
         if MEANT.search(data.decode("utf-8", "replace")):
             message = (
-                f"{name}: a marker in an unknown type of file. grader/exercise/markers.py lists the known endings."
+                f"{name}: a file of an unknown type contains a marker. "
+                "The known types are in grader/exercise/markers.py."
             )
             raise UsageError(message)
         return data
     try:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
-        message = f"{name}: is not UTF-8 ({error.reason} at byte {error.start})."
+        message = f"{name}: not UTF-8 ({error.reason} at byte {error.start})."
         raise UsageError(message) from error
     result = stripped(text, syntax, name)
     if result == text:
@@ -156,9 +157,7 @@ def _must_parse(text: str, path: str, name: str) -> None:
     try:
         parse(text)
     except (SyntaxError, ET.ParseError, tomllib.TOMLDecodeError) as error:
-        message = (
-            f"{name}: the released file does not parse: {error}. Add a STARTER block below the region to correct it."
-        )
+        message = f"{name}: the released file cannot be parsed: {error}. Add a STARTER block below the region."
         raise UsageError(message) from error
 
 

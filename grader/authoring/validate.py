@@ -35,13 +35,13 @@ _CODE = re.compile(r"^```.*?^```|`[^`\n]*`", re.MULTILINE | re.DOTALL)
 def validate(
     names: list[str], tell: Callable[[str], None] = lambda _: None, *, course: Path | None = None
 ) -> list[str]:
-    """Return the problems of these exercises (all if `names` is empty), one sentence for each problem.
+    """Return the problems of these exercises (of all if `names` is empty), one sentence per problem.
 
-    `tell` reports the progress, because grading takes some time. `course` is the folder course/; it defaults to the
-    one of this checkout or installation.
+    `tell` is called with progress messages. `course` is the folder course/; the default is the
+    folder of this checkout or installation.
 
     Raises:
-        UsageError: there is no exercise with this name.
+        UsageError: no exercise has this name.
     """
     course = course or course_folder()
     files = catalogue(course)
@@ -62,7 +62,7 @@ def validate(
 
 
 class _Validation:
-    """Find the problems of one exercise. Its solution and starting point are graded in the background."""
+    """Finds the problems of an exercise. Its solution and starting point are graded in the background."""
 
     def __init__(self, name: str, file: Path, root: Path, pool: Executor, tell: Callable[[str], None]) -> None:
         self._name = name
@@ -79,17 +79,17 @@ class _Validation:
             self._starting_point = pool.submit(self._graded, "starting point", "exercises")
 
     def problems(self) -> Iterator[str]:
-        """Yield one sentence for each problem."""
+        """Yield one sentence per problem."""
         if self._unreadable:
             yield self._unreadable
             return
         if not self._exercise.hints:
-            yield f"{self._file}: there is no [[hint]]. Learners need hints."
+            yield f"{self._file}: the file has no [[hint]]. Learners need hints."
         elif all(hint.checks for hint in self._exercise.hints):
             helped = {check for hint in self._exercise.hints for check in hint.checks}
             for check in self._exercise.unsolved:
                 if check not in helped:
-                    yield f"{self._file}: the starting point fails {check}, and no [[hint]] names it in checks."
+                    yield f"{self._file}: the starting point fails {check}, but no [[hint]] lists this check."
         yield from _lesson(self._file.with_name("lesson.md"))
         yield from _judged(self._exercise, self._solution, _solution)
         yield from _judged(self._exercise, self._starting_point, _starting_point)
@@ -124,13 +124,13 @@ def _starting_point(exercise: Exercise, report: Report) -> Iterator[str]:
         yield f"exercises/{exercise.id} could not be judged: {_in_words(outcome)}"
     if not exercise.unsolved:
         yield (
-            f"course/{exercise.id}/exercise.toml does not say which checks the starting point fails. Now these do: "
+            f"course/{exercise.id}/exercise.toml does not list the checks that the starting point fails. It fails: "
             f"starting_point_fails = {list(failed)}"
         )
         return
     for name, outcome in failed.items():
         if name not in exercise.unsolved:
-            yield f"exercises/{exercise.id} fails for a reason that was not intended: {_in_words(outcome)}"
+            yield f"exercises/{exercise.id} fails for an unintended reason: {_in_words(outcome)}"
     for name in exercise.unsolved:
         if name not in failed:
             yield f"exercises/{exercise.id} should fail the check {name!r} but does not."

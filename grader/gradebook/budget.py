@@ -1,6 +1,6 @@
-"""Limit the messages from a kernel to nbgrader: they must be valid, and there must not be too many.
+"""Limit the messages from a kernel to nbgrader: their format, number and size.
 
-nbgrader keeps every message in memory: as text, as Python objects, and in the notebook that it writes. Therefore the
+nbgrader keeps every message in memory: as text, as Python objects, and in the notebook that it writes. Therefore, the
 budget limits the number of messages, their size in bytes, and the number of values in their JSON. For example,
 `[[],[],[]]` takes 30 times as much space in memory as it does as text.
 """
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 MIB = 1024 * 1024
 DELIMITER = b"<IDS|MSG>"
-"""The end of the identities in a message. See https://jupyter-client.readthedocs.io/en/stable/messaging.html."""
+"""The delimiter after the identities in a message: https://jupyter-client.readthedocs.io/en/stable/messaging.html"""
 MOST_IDENTITIES = 4
 MOST_DIGITS = 400
 _HEADER = {"msg_id": str, "msg_type": str}
@@ -29,22 +29,22 @@ _HEADER = {"msg_id": str, "msg_type": str}
 
 @dataclass(frozen=True)
 class Budget:
-    """The limits on what the kernel of one notebook may send."""
+    """The limits for the messages from the kernel of one notebook."""
 
     message: int = 4 * MIB
-    """The largest size of one message in bytes."""
+    """The maximum size of a message (bytes)."""
     total: int = 16 * MIB
-    """The largest total size of all messages in bytes."""
+    """The maximum total size of all messages (bytes)."""
     messages: int = 10_000
     values: int = 1_000_000
-    """The largest number of values (objects, lists, strings and numbers) in the JSON of all messages."""
+    """The maximum number of values (objects, lists, strings and numbers) in the JSON of all messages."""
     depth: int = 50
-    """How deeply objects and lists may be nested."""
+    """The maximum nesting depth of objects and lists."""
 
 
 @dataclass
 class Account:
-    """Count what a kernel has sent so far. `key` is the key with which it signs messages."""
+    """The total of the messages from a kernel so far. `key` is the key that signs its messages."""
 
     key: bytes
     budget: Budget = Budget()
@@ -53,10 +53,10 @@ class Account:
     _signatures: set[bytes] = field(default_factory=set)
 
     def take(self, parts: Sequence[bytes]) -> None:
-        """Count a message.
+        """Check a message and add it to the total.
 
         Raises:
-            FrameError: it is not a message of Jupyter's protocol, or it exceeds the budget.
+            FrameError: the data is not a message of Jupyter's protocol, or the budget is exceeded.
         """
         self._bytes += sum(map(len, parts))
         if self._bytes > self.budget.total:
@@ -75,7 +75,7 @@ class Account:
             _refuse()
 
     def _read(self, part: bytes) -> dict[str, Any]:
-        """Parse a part of a message, which must be a JSON object, and return it."""
+        """Parse a part of a message as a JSON object."""
         try:
             read = json.loads(
                 part.decode("utf-8", "replace"), parse_int=_integer, parse_float=_number, parse_constant=_refuse
@@ -93,13 +93,13 @@ class Account:
             if self._values > self.budget.values:
                 _refuse(f"more than {self.budget.values} values in all its messages")
             if depth > self.budget.depth:
-                _refuse(f"a message with more than {self.budget.depth} objects inside each other")
+                _refuse(f"a message with more than {self.budget.depth} nested objects")
             if isinstance(value, str) and not _writable(value):
                 _refuse()
 
 
 def walk(read: object) -> Iterator[tuple[object, int]]:
-    """Yield each value and each key in parsed JSON, and how deeply it is nested. `read` itself has the depth 1."""
+    """Yield each value and key in parsed JSON with its nesting depth. The depth of `read` is 1."""
     waiting = [(read, 1)]
     while waiting:
         value, depth = waiting.pop()
@@ -115,7 +115,7 @@ def _refuse(what: str = "data that is not a message of a kernel") -> NoReturn:
 
 
 def _writable(text: str) -> bool:
-    """Return whether the text can be encoded. One half of a surrogate pair, for example, cannot."""
+    """Return whether the text can be encoded. This is not possible for half of a surrogate pair."""
     try:
         text.encode()
     except UnicodeEncodeError:

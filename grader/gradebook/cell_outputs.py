@@ -1,4 +1,4 @@
-"""Check the outputs of an autograded notebook: they must be valid and not too long; graded cells must return points."""
+"""Check the outputs of an autograded notebook: their format, their length, and the points of graded cells."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 MOST_OUTPUT = 4_000_000
-"""The largest number of characters in all outputs together. A notebook that prints more is stopped."""
+"""The maximum number of characters of all outputs together. A notebook that prints more is stopped."""
 TOO_MUCH = f"The notebook printed more than {MOST_OUTPUT // 1_000_000} million characters."
 
 
 def mark(cell: NotebookNode, why: str) -> None:
-    """Replace the output of a cell with the reason why it did not run or does not count."""
+    """Replace the output of a cell with the reason why the cell did not run or does not count."""
     cell.outputs = [new_output("error", ename="NotRun", evalue=why, traceback=[why])]  # type: ignore[no-untyped-call]
 
 
 def honest(cell: NotebookNode) -> None:
-    """If a cell should return its points but the result is not a valid number, replace the result with an error.
+    """Replace the result of a graded cell with an error if the result is not a valid number.
 
     Without this, nbgrader would give full marks to a cell that has no output.
     """
@@ -36,18 +36,18 @@ def honest(cell: NotebookNode) -> None:
     except (KeyError, TypeError, ValueError):
         number = math.nan
     if not failed and not 0.0 <= number <= float(about["points"]):
-        mark(cell, "The cell did not give its points.")
+        mark(cell, "The cell did not return its points.")
 
 
 def put_right(nb: NotebookNode) -> None:
-    """Make sure that the notebook can be written: every output from the kernel must be valid for nbformat."""
+    """Replace outputs from the kernel that are not valid for nbformat, so that the notebook can be written."""
     left = MOST_OUTPUT
     for cell in nb.cells:
         if cell.cell_type != "code":
             continue
         if not isinstance(cell.get("execution_count"), int | None):
             cell.execution_count = None
-        # One message may change many outputs, so the total size is known only at the end.
+        # A single message may change many outputs, so check the total size at the end.
         for number, output in enumerate(cell.outputs):
             left -= _length(output)
             if left < 0:

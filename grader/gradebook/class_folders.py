@@ -1,4 +1,4 @@
-"""The folders of a class, as configured in the nbgrader_config.py of a course."""
+"""The folders of a class, as configured in nbgrader_config.py of the course."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ if TYPE_CHECKING:
 
 CONFIG = "nbgrader_config.py"
 CLASS = "class"
-"""The folder of a class, which git ignores: submitted/, autograded/, feedback/, reports/ and gradebook.db."""
+"""The folder of the class data, which git ignores: submitted/, autograded/, feedback/, reports/ and gradebook.db."""
 RESULTS = "results"
-"""The folder of the grader's own results, inside the folder of the class. See grader/classroom/results.py."""
+"""The folder of the grader's results, inside the folder of the class. See grader/classroom/results.py."""
 HANDED_IN = "handed-in"
-"""The folder of submissions completed with files from their notebooks, inside the folder of the class."""
+"""The folder of submissions with the files from their notebooks added, inside the folder of the class."""
 
 
 @dataclass(frozen=True)
 class ClassFolders:
-    """The folders of a class: nbgrader's course directory, and the grader's folders in the same place."""
+    """The folders of a class: nbgrader's course directory, and the grader's folders in it."""
 
     course: Any
     config: Any
 
     @property
     def results(self) -> Path:
-        """The folder of the grader's own results."""
+        """The folder of the grader's results."""
         return Path(self.course.root) / CLASS / RESULTS
 
     def submitted(self, student: str, step: str) -> Path:
@@ -42,7 +42,7 @@ class ClassFolders:
         return Path(self.course.format_path(self.course.submitted_directory, student, step))
 
     def handed_in(self, student: str, step: str) -> Path:
-        """Return the folder of the same submission, completed with the files that its notebook writes."""
+        """Return the folder of the same submission with the files from its notebook added."""
         return Path(self.course.root) / CLASS / HANDED_IN / student / step
 
     def autograded(self, student: str, step: str) -> Path:
@@ -63,7 +63,7 @@ def _is_folder(path: Path) -> bool:
     try:
         return path.is_dir()
     except OSError:
-        return True  # The folder is not readable. The error is reported when it is read.
+        return True  # the error is reported when the folder is read
 
 
 def remember(folder: Path) -> None:
@@ -79,7 +79,7 @@ def remember(folder: Path) -> None:
 
 
 def _is_known(course: Path) -> bool:
-    """Return whether the folder is the course of this grader, or was created by `grader class new`."""
+    """Return whether the folder is the grader's own course, or was created by `grader class new`."""
     try:
         made = _made().read_text("utf-8").splitlines()
     except (OSError, UnicodeDecodeError):
@@ -93,13 +93,13 @@ def _made() -> Path:
 
 
 def open_class(folder: Path | None) -> ClassFolders:
-    """Open the class whose nbgrader_config.py is in `folder` or its course/. None means the current folder.
+    """Open the class whose nbgrader_config.py is in `folder` or its course/. The default is the current folder.
 
-    nbgrader_config.py is a program, and this function runs it. The current folder may belong to a student, so it
+    nbgrader_config.py is a program that this function executes. The current folder may belong to a student, so it
     is used only if it is the folder of a class that this user created.
 
     Raises:
-        UsageError: there is no nbgrader_config.py, or this user did not make the class.
+        UsageError: nbgrader_config.py does not exist, or this user did not create the class.
         MachineError: nbgrader is not installed.
     """
     tried = [folder or Path(), (folder or Path()) / "course"]
@@ -107,13 +107,13 @@ def open_class(folder: Path | None) -> ClassFolders:
     if found is None:
         message = (
             f"There is no {CONFIG} in {folder or Path.cwd()}. Go to the course's folder, or name it with --course. "
-            "`grader class new DIR` makes one."
+            "`grader class new DIR` creates a class."
         )
         raise UsageError(message)
     if folder is None and not _is_known(found.resolve()):
         message = (
-            f"{found.resolve() / CONFIG} is a program, but `grader class new` has not made this folder for you. If it "
-            f"is yours, name it: --course {shlex.quote(str(found.resolve()))}"
+            f"{found.resolve() / CONFIG} is a program, but `grader class new` did not create this folder for you. If "
+            f"it is yours, name the folder: --course {shlex.quote(str(found.resolve()))}"
         )
         raise UsageError(message)
     try:

@@ -1,4 +1,4 @@
-"""The commands for a class with nbgrader: `grader gradebook`, `grader class` and `grader kernel`. No logic."""
+"""The commands `grader gradebook`, `grader class` and `grader kernel`. This module has no logic."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ def add_to(app: typer.Typer) -> None:
 
 
 def _group() -> None:
-    """Do nothing; typer needs it."""
+    """Do nothing. typer needs this callback."""
 
 
 Steps = Annotated[
     Optional[list[str]],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
-    typer.Argument(help="Steps. Default: all that were collected.", metavar="STEP"),
+    typer.Argument(help="Steps. Default: all collected steps.", metavar="STEP"),
 ]
 Course = Annotated[
     Optional[Path],  # noqa: UP045
     typer.Option(
-        help="Folder of the class or its course/. Default: the current folder, if `grader class new` made it.",
+        help="Folder of the class or its course/. Default: the current folder, if `grader class new` created it.",
         metavar="DIR",
     ),
 ]
@@ -49,7 +49,7 @@ def sync(
     jobs: Annotated[
         Optional[int],  # noqa: UP045
         typer.Option(
-            min=1, help="Number of submissions graded at once. Default: as many as processors and memory allow."
+            min=1, help="Number of submissions to grade in parallel. Default: as many as processors and memory allow."
         ),
     ] = None,
     checks: Annotated[
@@ -107,7 +107,7 @@ def new(
         typer.Option(help="CSV with the column id and optionally first_name, last_name and email.", metavar="FILE.csv"),
     ] = None,
 ) -> None:
-    """Make a course folder for a class, with lessons, solutions, notebooks and nbgrader's gradebook."""
+    """Create a course folder for a class, with lessons, solutions, notebooks and nbgrader's gradebook."""
     from grader.common.words import count
     from grader.gradebook.class_folders import remember
     from grader.gradebook.new_class import make_class
@@ -124,7 +124,7 @@ def install(
         typer.Option(help="Install for the Jupyter in this folder. Default: for the current user.", metavar="DIR"),
     ] = None,
 ) -> None:
-    """Install the Jupyter kernel "ROS 2 Jazzy (course)", which has ROS 2 without sourcing anything."""
+    """Install the Jupyter kernel "ROS 2 Jazzy (course)", which needs no sourced ROS 2."""
     from grader.exercise.model import course_folder
     from grader.notebook.kernel import DISPLAY_NAME
     from grader.notebook.kernel import install as install_kernel
@@ -133,7 +133,7 @@ def install(
     from grader.ros.installation import find_ros
 
     with progress() as tell:
-        # Build the interfaces now, so that Jupyter need not wait for them.
+        # Build the interfaces now, so that Jupyter does not have to wait for them.
         underlay.ensure(find_ros(), tell)
     typer.echo(f'The kernel "{DISPLAY_NAME}": {install_kernel(prefix)}')
     if prefix is None:

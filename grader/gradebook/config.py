@@ -1,4 +1,4 @@
-"""The settings for course/nbgrader_config.py: nbgrader uses the course's folders and some steps of the grader."""
+"""The settings for course/nbgrader_config.py, which use the course's folders and additional steps of the grader."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from grader.gradebook.class_folders import CLASS
 
 COURSE_ID = "ros2-topics"
 BUSY_S = 60
-"""How long nbgrader waits for a locked database (s)."""
+"""The maximum time that nbgrader waits for a locked database (s)."""
 
 
 def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Config, whose sections appear when named
@@ -79,7 +79,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
         steps.AssignLatePenalties,
         steps.CheckCellMetadata,
     ]
-    # Grade what students changed as it is, and do not replace missing files with those of the solution.
+    # Grade the students' files unchanged, and do not replace missing files with those of the solution.
     config.Autograde.exclude_overwriting = {
         step.name: [path for path in _files(step) if not path.endswith(".ipynb")]
         for step in sorted((root / "solutions").glob("*"))
@@ -95,7 +95,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
 
 
 def _see_own_commands() -> None:
-    """Add this Python's scripts to PATH, because nbgrader runs one of them (alembic) to create its database."""
+    """Add this Python's scripts to PATH, because nbgrader runs alembic to create its database."""
     path, ours = os.environ.get("PATH", os.defpath), str(Path(sys.prefix, "bin"))
     if ours not in path.split(os.pathsep):
         os.environ["PATH"] = f"{path}{os.pathsep}{ours}"

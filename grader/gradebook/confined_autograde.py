@@ -1,6 +1,6 @@
-"""Autograde's kernels. Each one runs in a cell (grader.sandbox), behind a relay with a budget (relay.py).
+"""The kernels of autograde. Each one runs in a cell (grader.sandbox), behind a relay with a budget (relay.py).
 
-The cells of a notebook are student code. A sandbox cell has only its own loopback network and its own disks, so the
+The cells of a notebook are student code. A sandbox cell has only a loopback network and separate disks, so the
 relay communicates with the kernel through pipes. Interrupts are sent as messages, because a signal would go to the
 relay.
 """
@@ -39,13 +39,13 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 CHECK_S = 300
-"""The time limit for an instructor's cell (s). Such a cell builds and runs a package, perhaps in wall time."""
+"""The time limit for an instructor's cell (s), which builds and runs a package, sometimes in wall time."""
 SHOWN = ("stream", "display_data", "execute_result", "error", "update_display_data")
-"""The types of messages that become outputs of a notebook cell."""
+"""The types of messages that add outputs to a notebook cell."""
 
 
 class ConfinedKernelManager(AsyncKernelManager):
-    """Start a kernel in a cell. The kernel gets a copy of the folder `submission`."""
+    """Starts a kernel in a cell. The kernel gets a copy of the folder `submission`."""
 
     submission = Unicode("")
     trusted = Bool(default_value=False)
@@ -56,7 +56,7 @@ class ConfinedKernelManager(AsyncKernelManager):
 
     @property
     def kernel_spec(self) -> KernelSpec:
-        """The course's own kernel, whatever kernel the notebook names."""
+        """The course's kernel, whatever kernel the notebook names."""
         argv = interpreter("-m", "grader.gradebook.relay", "{relay_folder}").argv
         return KernelSpec(argv=argv, display_name="", language="python", interrupt_mode="message")
 
@@ -75,7 +75,7 @@ class ConfinedKernelManager(AsyncKernelManager):
         _order(Path(self.submission), folder, self.connection_file, trusted=self.trusted).write(folder)
         argv = [word.replace("{relay_folder}", str(folder)) for word in kernel_cmd]
         kw.pop("cwd", None)
-        # The relay exits when this pipe is closed, however this process exits.
+        # The relay exits when this pipe is closed, which happens in every case when this process exits.
         ends, self._life = os.pipe()
         try:
             kw |= {"env": interpreter("-c", "").env, "cwd": "/", "stdin": ends, "stdout": subprocess.DEVNULL}
@@ -84,7 +84,7 @@ class ConfinedKernelManager(AsyncKernelManager):
             os.close(ends)
 
     def read_why(self) -> str:
-        """Return the reason why the relay stopped the kernel, or an empty string if it did not."""
+        """Return the reason why the relay stopped the kernel, or an empty string if the relay did not stop it."""
         if self._folder is not None and not self.why:
             with suppress(OSError):
                 self.why = (Path(self._folder.name) / WHY_FILE).read_text("utf-8")
@@ -103,14 +103,14 @@ class ConfinedKernelManager(AsyncKernelManager):
 
 
 class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
-    """Run a submitted notebook in a cell. If the kernel dies, the remaining cells of the notebook get an error."""
+    """Runs a submitted notebook in a cell. If the kernel dies, the remaining cells of the notebook get an error."""
 
     trust_submissions = Bool(
         default_value=False,
         help="Run submitted notebooks even without a sandbox, on a machine without important data.",
     ).tag(config=True)
 
-    cell_s = Integer(20, help="Time limit for a student's own cell, in seconds.").tag(config=True)
+    cell_s = Integer(20, help="Time limit for a student's cell, in seconds.").tag(config=True)
 
     notebook_s = Integer(1800, help="Time limit for all cells of a notebook together, in seconds.").tag(config=True)
 
@@ -145,15 +145,15 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
         return nb, resources
 
     def create_kernel_manager(self) -> Any:  # noqa: ANN401 - as the base class
-        """Create the manager of this submission's kernel, whatever kernel the notebook's metadata names."""
+        """Create the manager of this submission's kernel and ignore the kernel in the notebook's metadata."""
         self.km = ConfinedKernelManager(submission=self._submission, trusted=self.trust_submissions, config=self.config)
         self._manager = self.km
         return self.km
 
     def preprocess_cell(self, cell: NotebookNode, resources: Any, index: int) -> tuple[NotebookNode, Any]:  # noqa: ANN401
-        """Run one cell, if the kernel is still alive and there is time left."""
+        """Run one cell if the kernel is still alive and time is left."""
         if time.monotonic() >= self._until:
-            self._end(f"All cells of the notebook together took longer than {self.notebook_s} s.")
+            self._end(f"The cells of the notebook took longer than {self.notebook_s} s.")
         if self._ended:
             if cell.cell_type == "code":
                 mark(cell, self._ended)
@@ -167,7 +167,7 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
         return cell, resources
 
     def process_message(self, msg: dict[str, Any], cell: NotebookNode, cell_index: int) -> NotebookNode | None:
-        """Process a message from the kernel, unless the total size of its output is too large."""
+        """Process a message from the kernel unless the total size of the outputs is too large."""
         if msg["msg_type"] in SHOWN:
             self._printed += len(str(msg["content"]))
             if self._printed > MOST_OUTPUT:
@@ -182,7 +182,7 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
             return None
 
     def on_comm_open_jupyter_widget(self, msg: dict[str, Any]) -> None:
-        """Do not act as the front end of a widget, because the kernel could make the replies arbitrarily long."""
+        """Do nothing, because the kernel could make the replies of a widget's front end arbitrarily long."""
 
     def _get_timeout(self, cell: NotebookNode | None) -> int | None:
         locked = cell is not None and cell.get("metadata", {}).get("nbgrader", {}).get("locked")
@@ -190,12 +190,12 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
         return min(left_s, CHECK_S if locked or cell is None else self.cell_s)
 
     def _reason(self, error: Exception) -> str:
-        """Return the reason why no more cells can be run."""
+        """Return the reason why the remaining cells cannot be run."""
         why: str = self._manager.read_why()
         if why or isinstance(error, DeadKernelError):
             return why or "The kernel died."
         if isinstance(error, CellTimeoutError):
-            return "A cell did not end in time, and did not stop when it was interrupted."
+            return "A cell did not end in time and ignored the interrupt."
         if isinstance(error, RuntimeError | GraderError):
             return str(error).partition("\n")[0]
         self.log.debug("Could not process the kernel's messages", exc_info=error)
@@ -209,7 +209,7 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
 
 
 def _order(submission: Path, folder: Path, connection_file: str, *, trusted: bool) -> Order:
-    """Return the order that says what the relay must start. `folder` is the relay's own folder."""
+    """Return the order for the relay. `folder` is the relay's folder."""
     confined = bubblewrap.require(trusted=trusted)
     copy, home, workspace = folder / "submission", HOME, WORKSPACE
     copy_of(submission, copy, notebooks=False)

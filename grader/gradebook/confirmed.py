@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 NOT_SYNCED = "not confirmed by `grader gradebook sync`"
 NOT_JUDGED = "the grader could not judge it"
-NO_CHECK = "no check of the grader belongs to it"
+NO_CHECK = "the exercise has no check for this cell"
 
 Name = tuple[str, str]
 """A student and an exercise."""
@@ -106,7 +106,7 @@ def submissions_of(gradebook: Any, steps: Collection[str]) -> Iterator[tuple[str
 
 
 def provisional_grades(submission: Any) -> list[Any]:  # noqa: ANN401 - nbgrader's SubmittedAssignment
-    """Return the grades that autograde reads from a kernel's output: those of code cells that are not solutions.
+    """Return the grades that autograde reads from the output of a kernel: those of code cells without a solution.
 
     The grades of the exercise's own notebook come first.
     """
@@ -119,7 +119,7 @@ def provisional_grades(submission: Any) -> list[Any]:  # noqa: ANN401 - nbgrader
 
 
 def _doubt(grade: Any, report: Report | None) -> str:  # noqa: ANN401 - nbgrader's Grade
-    """Return the reason why a score is not confirmed, or an empty string if it is."""
+    """Return the reason why a score is not confirmed, or an empty string if it is confirmed."""
     if report is None:
         return NOT_SYNCED
     outcome = outcome_of(grade, report)

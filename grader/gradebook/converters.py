@@ -1,4 +1,4 @@
-"""nbgrader's converters and its collect step, on what the reader returns: its own follow links and have no limits."""
+"""Converters and the collect step for nbgrader that use only the files that the reader returns."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     Converted = tuple[Any, Resources]
 
 _USERS = ("nbgrader.converters", "nbgrader.apps.autogradeapp", "nbgrader.apps.api")
-"""The modules that use Autograde by its name. nbgrader has no setting for it."""
+"""The modules that import Autograde by name. nbgrader has no setting for the class."""
 
 
 def install() -> None:
-    """Let nbgrader use `BoundedAutograde`."""
+    """Replace Autograde with `BoundedAutograde` in nbgrader."""
     for name in _USERS:
         module = sys.modules.get(name)
         if module is not None:
@@ -39,7 +39,7 @@ def install() -> None:
 
 
 class _Copying(BaseConverter):  # type: ignore[misc, unused-ignore]
-    """Copies the files of a submission that are safe to copy."""
+    """Copies only the files of a submission that are safe to copy."""
 
     notebooks: list[str]
 
@@ -48,7 +48,7 @@ class _Copying(BaseConverter):  # type: ignore[misc, unused-ignore]
         source = Path(self._format_source(assignment_id, student_id))
         for each in copy_of(source, Path(self._format_dest(assignment_id, student_id)), notebooks=False):
             self.log.warning("Not copied from %s: %s", source, each)
-        # nbgrader writes the names of unknown notebooks to the terminal as they are.
+        # nbgrader would print the names of unknown notebooks to the terminal without escaping them.
         self.notebooks: list[str] = [notebook for notebook in self.notebooks if notebook.isprintable()]
 
 
@@ -56,25 +56,25 @@ class BoundedAutograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore
     """Autograde, with `_Copying` as the base class that copies."""
 
     def init_destination(self, assignment_id: str, student_id: str) -> bool:
-        """Do as Autograde, but fail only this submission if its time is invalid."""
+        """Initialize the destination as in Autograde. An invalid time makes only this submission fail."""
         read(readable.time_of, Path(self._format_source(assignment_id, student_id)))
         return bool(super().init_destination(assignment_id, student_id))
 
 
 class BoundedNotebook(NotebookExporter):
-    """Reads a notebook in the process for that. nbconvert then gets a small and valid one."""
+    """Reads a notebook in the reading process, so that nbconvert gets only small and valid notebooks."""
 
     def from_filename(self, filename: str, resources: Resources | None = None, **kw: Any) -> Converted:  # noqa: ANN401
-        """Do as the base class."""
+        """Convert a file as in the base class."""
         text, named = _read(filename, resources)
         return self.from_file(io.StringIO(text), resources=named, **kw)  # type: ignore[no-any-return, unused-ignore]
 
 
 class BoundedPage(HTMLExporter):
-    """Renders feedback in the process that reads, because Markdown of a student is parsed for it."""
+    """Renders feedback in the reading process, because rendering parses a student's Markdown."""
 
     def from_filename(self, filename: str, resources: Resources | None = None, **kw: Any) -> Converted:  # noqa: ANN401
-        """Do as the base class."""
+        """Convert a file as in the base class."""
         text, named = _read(filename, resources)
         notebook = nbformat.reads(text, as_version=4)  # type: ignore[no-untyped-call]
         page, extension = read(self._page, notebook, named, kw)
@@ -92,22 +92,22 @@ def _read(filename: str, resources: Resources | None) -> tuple[str, Resources]:
 
 
 class BoundedCollect(ExchangeCollect):  # type: ignore[misc, unused-ignore]
-    """Collects submissions from the exchange, where students can write anything into their folders."""
+    """Collects submissions from the exchange, in which students can write any files."""
 
     def _path_to_record(self, path: str) -> dict[str, Any]:
         try:
             return super()._path_to_record(path)  # type: ignore[no-any-return, unused-ignore]
         except Exception:
-            self.log.warning("Not collected, because its name has no valid time: %s", tree.shown(path))
+            self.log.warning("Not collected, because the name has no valid time: %s", tree.shown(path))
             return {"username": "", "filename": "", "timestamp": 0}
 
     def copy_files(self) -> None:
-        """Do as the base class, without the folders that nobody can have handed in with nbgrader."""
+        """Copy the files as in the base class, except folders that nbgrader cannot have created."""
         self.src_records: list[dict[str, Any]] = [record for record in self.src_records if record["username"]]
         super().copy_files()
 
     def do_copy(self, src: str, dest: str, log: Any = None) -> None:  # noqa: ANN401 - as the base class
-        """Copy one submission. If it cannot be copied, the others still are."""
+        """Copy one submission. If this fails, log a warning and continue with the others."""
         with tempfile.TemporaryDirectory(prefix="collect-") as folder:
             safe = Path(folder, "submission")
             try:

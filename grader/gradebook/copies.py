@@ -1,4 +1,4 @@
-"""Copy the files of a submission that are safe to copy, for nbgrader and for a kernel."""
+"""Copy the files of a submission that are safe to copy, for nbgrader or for a kernel."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 MOST_REPORTED = 20
-"""How many of the entries that were left out are reported."""
+"""The maximum number of omitted entries that are reported."""
 
 
 def copy_of(submission: Path, copy: Path, *, notebooks: bool = True) -> tuple[str, ...]:
-    """Copy the regular files of a submission to `copy`, which may exist. Return why other entries were left out."""
+    """Copy the regular files of a submission to `copy`, which may exist. Return why other entries were omitted."""
     found = read(tree.read_folder, submission)
     files = {path: data for path, data in found.files.items() if notebooks or not path.endswith(".ipynb")}
     for path in files if copy.exists() else ():

@@ -1,4 +1,4 @@
-"""`nbgrader export`: only confirmed scores are exported, and the others are reported."""
+"""`nbgrader export`: export only confirmed scores, and report the others."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from grader.gradebook.confirmed import withhold_unconfirmed
 
 
 class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]
-    """Export nbgrader's table, with 0 points for every provisional score."""
+    """Exports nbgrader's table with 0 points for every provisional score."""
 
     def export(self, gradebook: Any) -> None:  # noqa: ANN401 - as the base class
         """Withhold scores that are not confirmed, report them, and write the table."""
@@ -24,7 +24,7 @@ class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]
         if unconfirmed:
             names = [f"{each.student} ({each.step})" for each in unconfirmed]
             self.log.warning(
-                "%s not confirmed, 0 points here: %s. Run `grader gradebook sync`, then grade the rest by hand.",
+                "%s not confirmed, exported as 0 points: %s. Run `grader gradebook sync`, then grade the rest by hand.",
                 count(len(names), "submission"),
                 a_list(names),
             )

@@ -23,11 +23,11 @@ Resources = dict[str, Any]
 
 
 class HideHiddenTests(ClearHiddenTests):  # type: ignore[misc, unused-ignore]
-    """Remove hidden tests from the feedback: their lines, and all output of a kernel that has seen them.
+    """Removes hidden tests from the feedback: their lines, and all outputs of a kernel that has run them.
 
-    A kernel runs student code. This code can store the source of a hidden test and print it below any cell: below a
+    Student code in the kernel can store the source of a hidden test and print it below any cell: below a
     later cell, below an instructor's cell with a hook, below an earlier cell by updating its display, or in a widget.
-    So if a notebook has hidden tests, no output of its kernel is shown.
+    Therefore, the outputs of a notebook with hidden tests are not shown.
     """
 
     def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:
@@ -43,9 +43,9 @@ class HideHiddenTests(ClearHiddenTests):  # type: ignore[misc, unused-ignore]
     def preprocess_cell(
         self, cell: NotebookNode, resources: Resources, cell_index: int
     ) -> tuple[NotebookNode, Resources]:
-        """Remove hidden tests from one cell."""
+        """Remove hidden tests from a cell."""
         if not self._is_hidden(cell):
-            return cell, resources  # a student's own cell may contain anything
+            return cell, resources  # a student's cell may contain any text
         cell, resources = super().preprocess_cell(cell, resources, cell_index)
         if cell.cell_type == "code":
             cell.outputs = [_text(f"Hidden check: {_points(cell)}")]
@@ -66,7 +66,7 @@ def _points(cell: NotebookNode) -> str:
 
 
 class GraderReasons(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
-    """After sync, replace the kernel's output below the cells of checks with the grader's own reasons."""
+    """After a sync, replaces the kernel's output below the cells of checks with the grader's reasons."""
 
     def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:
         """Replace the outputs if the submission was synced."""

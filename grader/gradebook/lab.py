@@ -1,6 +1,6 @@
 """A Jupyter server extension that hides nbgrader's tools for instructors from learners.
 
-Jupyter finds it through jupyter_server.json, which the set-up copies to a folder in etc/jupyter.
+Jupyter finds the extension through jupyter_server.json, which the set-up copies to a folder in etc/jupyter.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ def _jupyter_server_extension_points() -> list[dict[str, str]]:
 
 
 def _load_jupyter_server_extension(app: Any) -> None:  # noqa: ANN401 - Jupyter's ServerApp, which has no types
-    """Hide the tools, unless JupyterLab was started in the folder of a class, which has nbgrader's configuration."""
+    """Hide the tools, unless JupyterLab was started in a folder with nbgrader's configuration."""
     if not Path(CONFIG).is_file():
         app.web_app.settings["page_config_hook"] = _hidden
 

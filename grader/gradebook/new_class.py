@@ -1,4 +1,4 @@
-"""Make a course folder in which nbgrader's commands work as in its manual: `grader class new DIR`."""
+"""`grader class new DIR`: create a course folder in which nbgrader's commands work as in its manual."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _LEFTOVERS = shutil.ignore_patterns("__pycache__", "*.pyc", ".ipynb_checkpoints"
 
 
 def make_class(folder: Path, roster: Path | None) -> int:
-    """Make the folder and add the students of the roster to its gradebook. Return the number of students.
+    """Create the folder and add the students of the roster to its gradebook. Return the number of students.
 
     Raises:
         UsageError: the folder is not empty, the roster is invalid, or this copy of the course has no solutions.
@@ -30,7 +30,7 @@ def make_class(folder: Path, roster: Path | None) -> int:
     students = read_students(roster) if roster else []
     root = course_folder().parent
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        message = f"{folder} is not an empty folder. Name a new one."
+        message = f"{folder} is not an empty folder. Name a new folder."
         raise UsageError(message)
     if not (root / "solutions").is_dir():
         message = "This copy of the course has no solutions. A class needs a complete checkout of the course."
@@ -58,7 +58,7 @@ def make_class(folder: Path, roster: Path | None) -> int:
 
 
 def read_students(file: Path) -> list[dict[str, str]]:
-    """Return the students of a roster, each as a dict of COLUMNS. Raises UsageError if the file is not a roster."""
+    """Return the students of a roster as dictionaries with the keys COLUMNS. Raises UsageError like `read_roster`."""
     rows = read_roster(file, COLUMNS[:1], COLUMNS[1:])
     for line, student in rows.items():
         # nbgrader uses ids as folder names, and puts + into names in the exchange.

@@ -1,8 +1,8 @@
 """Complete a submitted package with the files that only its notebook contains.
 
-A student may have written a node in a cell and never run it, or may have handed in only the notebook. The text of the
-cell then counts if the file next to the notebook is missing or is still the starting point. No cell is run for this,
-and files that a kernel wrote during autograde do not count.
+A student may write a node in a cell and never run the cell, or hand in only the notebook. In these cases, the text of
+the cell counts if the file next to the notebook is missing or is still the starting point. No cell is run,
+and files that a kernel wrote during autograde are ignored.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def graded_folder(exercise: Exercise, submitted: Path, together: Path) -> Path:
-    """Return the folder to grade: `submitted`, or `together` after writing the completed package to it.
+    """Return the folder to grade: `submitted`, or `together` with the completed package.
 
     Raises:
         UnreadableError: the submission cannot be read.
@@ -45,7 +45,7 @@ def graded_folder(exercise: Exercise, submitted: Path, together: Path) -> Path:
 
 def _together(exercise: Exercise, submitted: Path) -> Submission | None:
     """Return the submission completed by its notebook, or None if the notebook adds nothing."""
-    time_of(submitted)  # nbgrader stops at an invalid time, and this is where a submission is found to be unreadable
+    time_of(submitted)  # raises UnreadableError for an invalid time, at which nbgrader would stop
     found = tree.read_folder(submitted)
     notebook = found.files.get(f"{exercise.id}.ipynb")
     parts = _worked_on(exercise, notebook) if notebook else []

@@ -1,7 +1,7 @@
-"""What nbgrader's pages show of a student's notebook: text and pictures, and no script or style of the student.
+"""Limit nbgrader's pages to the text and pictures of a student's notebook, without scripts or styles.
 
-nbgrader shows feedback and the formgrader in the browser of an instructor, who is logged in to Jupyter there. Its
-templates put HTML from Markdown and from outputs into these pages as it is.
+nbgrader shows feedback and the formgrader in the browser of an instructor, who is logged in to Jupyter. Its
+templates insert HTML from Markdown and outputs into these pages without escaping it.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def safe_html(markdown: str) -> str:
 
 
 def configure_pages(config: Config) -> None:
-    """Let nbgrader's pages show only what is harmless."""
+    """Configure nbgrader's pages to show only harmless content."""
     config.HTMLExporter.sanitize_html = True
     config.HTMLExporter.filters = {"markdown2html": safe_html}
     config.NbConvertBase.display_data_priority = SHOWN

@@ -1,7 +1,7 @@
-"""What nbgrader may read of a submission. All of this runs in the process that reads (submission/reader.py).
+"""Read the parts of a submission that nbgrader needs, in the reading process (submission/reader.py).
 
-nbgrader follows links, copies files of any size, and parses any notebook in its own process. Our steps give it only
-what these functions return: a notebook of limited size and depth, and a valid time.
+nbgrader follows links, copies files of any size, and parses any notebook in its own process. Our steps pass it only
+the results of these functions: a notebook of limited size and depth, and a valid time.
 """
 
 from __future__ import annotations
@@ -19,23 +19,23 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 TIMESTAMP = "timestamp.txt"
-"""The file in which nbgrader writes when a submission was handed in."""
+"""The file in which nbgrader stores when a submission was handed in."""
 MOST_TIMESTAMP = 100
-"""The largest size of that file in bytes."""
+"""The maximum size of that file (bytes)."""
 MOST_BYTES = tree.MAX_FILE_BYTES
-"""The largest size of a notebook in bytes."""
+"""The maximum size of a notebook (bytes)."""
 MOST_VALUES = 500_000
-"""The largest number of values (objects, lists, strings and numbers) in the JSON of a notebook."""
+"""The maximum number of values (objects, lists, strings and numbers) in the JSON of a notebook."""
 MOST_DEPTH = 50
-"""How deeply the objects and lists of a notebook may be nested."""
+"""The maximum nesting depth of the objects and lists of a notebook."""
 MOST_CELLS = 1000
 
 
 def time_of(folder: Path) -> datetime | None:
-    """Return when the submission in this folder was handed in, in UTC, or None if it has no time.
+    """Return the time when the submission was handed in, in UTC, or None if the folder has no time.
 
     Raises:
-        UnreadableError: the file is not a regular file with a valid time in it.
+        UnreadableError: the file is not a regular file with a valid time.
     """
     from nbgrader.utils import parse_utc
 
@@ -45,7 +45,7 @@ def time_of(folder: Path) -> datetime | None:
     data = _content(path, MOST_TIMESTAMP)
     try:
         return parse_utc(data.decode().strip()) if data.strip() else None  # type: ignore[no-any-return, unused-ignore]
-    except Exception as error:  # dateutil raises more than ValueError
+    except Exception as error:  # dateutil raises other exceptions than ValueError, too
         message = f"{TIMESTAMP} does not contain a time"
         raise UnreadableError(message) from error
 
@@ -54,8 +54,8 @@ def notebook(path: Path) -> str:
     """Return the notebook as JSON in the newest format that nbgrader uses.
 
     Raises:
-        TooLargeError: it exceeds one of the limits above.
-        UnreadableError: it is not a regular file, or not a notebook.
+        TooLargeError: the notebook exceeds one of the limits above.
+        UnreadableError: the path is not a regular file, or not a notebook.
     """
     import nbformat
 
@@ -63,10 +63,10 @@ def notebook(path: Path) -> str:
     _require_small(nbformat.reader.parse_json(text))  # type: ignore[no-untyped-call]
     found = nbformat.reads(text, as_version=4)  # type: ignore[no-untyped-call]
     if len(found.cells) > MOST_CELLS:
-        message = f"{path.name} has {len(found.cells)} cells, more than the {MOST_CELLS} that are read"
+        message = f"{path.name} has {len(found.cells)} cells, but the maximum is {MOST_CELLS}"
         raise TooLargeError(message)
     written: str = nbformat.writes(found)  # type: ignore[no-untyped-call]
-    written.encode()  # one half of a surrogate pair cannot be written to a file
+    written.encode()  # raises an error for half of a surrogate pair, which cannot be written to a file
     _require_small(found)
     return written
 
@@ -74,15 +74,15 @@ def notebook(path: Path) -> str:
 def _require_small(read: object) -> None:
     for number, (_, depth) in enumerate(walk(read)):
         if number >= MOST_VALUES:
-            message = f"the notebook has more than the {MOST_VALUES} values that are read"
+            message = f"the notebook has more than {MOST_VALUES} values, the maximum"
             raise TooLargeError(message)
         if depth > MOST_DEPTH:
-            message = f"the notebook has more than {MOST_DEPTH} objects inside each other"
+            message = f"the notebook has more than {MOST_DEPTH} nested objects"
             raise TooLargeError(message)
 
 
 def _content(path: Path, most: int) -> bytes:
-    """Return the content of a regular file, and never wait for a pipe or follow a link."""
+    """Return the content of a regular file. Never wait for a pipe or follow a link."""
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError as error:
@@ -94,6 +94,6 @@ def _content(path: Path, most: int) -> bytes:
             raise UnreadableError(message)
         data = file.read(most + 1)
     if len(data) > most:
-        message = f"{path.name} has more than the {most} bytes that are read"
+        message = f"{path.name} has more than {most} bytes, the maximum"
         raise TooLargeError(message)
     return data

@@ -1,9 +1,9 @@
-"""Run a kernel in a cell and pass its messages to nbgrader, within a budget.
+"""Run a kernel in a cell and forward its messages to nbgrader, within a budget.
 
     python -m grader.gradebook.relay FOLDER
 
 FOLDER contains `order.json` (what to start) and nbgrader's connection file. The relay creates its sockets there. Only
-the caller has access to this folder. It is not visible in the cell: messages from the kernel come through a pipe
+the caller has access to this folder. It is not visible in the cell. Messages from the kernel arrive through a pipe
 (grader.notebook.bridge). If a budget or a limit is exceeded, the relay stops the cell, writes the reason to `why`, and
 exits. It also exits when its standard input is closed, which happens when nbgrader exits.
 """
@@ -37,16 +37,16 @@ if TYPE_CHECKING:
 
 ORDER_FILE, WHY_FILE = "order.json", "why"
 MOST_MEMORY = 1024 * MIB
-"""The limit on the address space of the relay (bytes)."""
+"""The limit for the address space of the relay (bytes)."""
 MOST_WAITING = MIB
-"""The relay reads nothing more from nbgrader while at least this many bytes are waiting for the kernel."""
+"""While this number of bytes is waiting for the kernel, the relay does not read from nbgrader."""
 LINGER_MS = 1000
 _IOPUB = CHANNELS.index("iopub")
 
 
 @dataclass(frozen=True)
 class Order:
-    """What to start: a bridge, which runs in a cell if `confined` is True."""
+    """The command that the relay starts: a bridge, which runs in a cell if `confined` is True."""
 
     argv: Sequence[str]
     env: Mapping[str, str]
@@ -86,14 +86,14 @@ class Relay:
 
     def _bind(self, name: str, address: str) -> zmq.Socket[bytes]:
         socket = self._context.socket(zmq.XPUB if name == "iopub" else zmq.ROUTER)
-        # A budget limits messages to nbgrader. Messages from nbgrader are read only as fast as the kernel reads them.
+        # A budget limits messages to nbgrader. Messages from nbgrader are read only at the speed of the kernel.
         socket.sndhwm, socket.rcvhwm = 0, 1
         socket.linger = LINGER_MS
         socket.bind(address)
         return socket
 
     def serve(self, over: Sequence[str]) -> None:
-        """Pass messages on until the cell or nbgrader exits, or `over` is no longer empty.
+        """Forward messages until the cell or nbgrader exits, or until `over` is not empty.
 
         Raises:
             FrameError: the kernel has exceeded its budget, or has sent data that is not a message.
@@ -115,11 +115,11 @@ class Relay:
             self._take_from_nbgrader(ready)
 
     def close(self) -> None:
-        """Deliver the remaining messages, then close nbgrader's sockets."""
+        """Deliver the remaining messages, and then close nbgrader's sockets."""
         self._context.destroy()
 
     def _hear(self) -> bool:
-        """Read what the kernel sends. Return False at the end of the stream."""
+        """Read messages from the kernel. Return False at the end of the stream."""
         data = os.read(self._out, CHUNK)
         for channel, parts in self._unpacker.feed(data):
             self._account.take(parts)
@@ -139,7 +139,7 @@ class Relay:
             if channel != _IOPUB:
                 self._to_kernel += packed(channel, parts)
             elif self._early is not None:
-                # Now there is a subscriber.
+                # nbgrader has subscribed.
                 early, self._early = self._early, None
                 for each in early:
                     socket.send_multipart(each)
@@ -149,7 +149,7 @@ class Relay:
             except BlockingIOError:
                 pass
             except BrokenPipeError:
-                self._to_kernel.clear()  # the kernel has exited, and `_hear` reports this
+                self._to_kernel.clear()  # the kernel has exited, which `_hear` reports
 
 
 def run(order: Order, info: Mapping[str, Any]) -> str:
@@ -168,7 +168,7 @@ def run(order: Order, info: Mapping[str, Any]) -> str:
             env=dict(order.env),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            # A student's output could otherwise control the instructor's terminal.
+            # Otherwise, a student's output could control the instructor's terminal.
             stderr=subprocess.DEVNULL,
             pass_fds=() if filter_fd is None else (filter_fd,),
         )
@@ -183,14 +183,14 @@ def run(order: Order, info: Mapping[str, Any]) -> str:
         except FrameError as error:
             return f"The kernel sent {error}."
         except MemoryError:
-            return "The kernel sent more than could be read."
+            return "The kernel sent more data than the relay could read."
         if group.out_of_memory():
             over.append("memory")
     return f"The notebook exceeded its limit on {over[0]}." if over else ""
 
 
 def main() -> None:
-    """Run the relay for the kernel that the order in the folder describes."""
+    """Run the relay with the order in the folder."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     folder = Path(sys.argv[1])
     order = Order.read(folder)

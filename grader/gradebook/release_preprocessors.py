@@ -26,17 +26,17 @@ class StripSolutions(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
     def preprocess_cell(
         self, cell: NotebookNode, resources: Resources, cell_index: int
     ) -> tuple[NotebookNode, Resources]:
-        """Strip one cell. Raises UsageError if its markers are wrong."""
+        """Strip a cell. Raises UsageError if its markers are wrong."""
         name = f"{resources['nbgrader']['notebook']}.ipynb, cell {cell_index + 1}"
         cell.source = solved_away(cell.source, cell.cell_type, solution=utils.is_solution(cell), name=name)
         return cell, resources
 
 
 class ReleaseFiles(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
-    """Strip the other files of the step, which nbgrader copied unchanged."""
+    """Strips the other files of the step, which nbgrader has copied unchanged."""
 
     def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:
-        """Create the same release folder as `grader release`. Afterwards nbgrader writes the notebook."""
+        """Create the same release folder as `grader release`. nbgrader writes the notebook afterwards."""
         course = self.parent.parent.coursedir
         step = resources["nbgrader"]["assignment"]
         source = Path(course.format_path(course.source_directory, ".", step)).resolve()

@@ -1,7 +1,7 @@
 """Restore the instructor's cells of a submitted notebook before it is graded.
 
-nbgrader trusts the metadata of a submission, and stops if it is invalid. Here, only the id of a cell is used. The
-gradebook determines its points and whether it is locked, and missing locked cells are added again.
+nbgrader trusts the metadata of a submission and stops if it is invalid. This step uses only the id of a cell. The
+gradebook determines the points and whether the cell is locked. Missing locked cells are added again.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class RestoreCells(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
-    """Restore the instructor's cells. This is the first step after the outputs are cleared."""
+    """Restores the instructor's cells. This step runs immediately after the outputs are cleared."""
 
     def preprocess(self, nb: NotebookNode, resources: dict[str, Any]) -> tuple[NotebookNode, dict[str, Any]]:
         """Restore the cells that generate_assignment stored in the gradebook."""

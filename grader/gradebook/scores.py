@@ -1,7 +1,7 @@
-"""`grader gradebook sync` and `compare`: the scores that count, and the scores of the kernel that differ from them.
+"""`grader gradebook sync` and `compare`: the scores that count, and differing scores from kernels.
 
-Scores from a kernel are provisional. The scores here result from grading the submitted package in the sandbox, and are
-written to nbgrader's gradebook through its API. A check that the grader cannot judge is worth 0 points and needs a
+Scores from a kernel are provisional. These functions grade the submitted package in the sandbox and write the scores
+to nbgrader's gradebook through its API. A check that the grader cannot judge is worth 0 points and needs a
 manual grade (confirmed.py). A manual grade is never changed.
 """
 
@@ -42,15 +42,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Synced:
-    """The result of sync: how many scores changed, how many submissions there are, and what was not judged."""
+    """The result of a sync: the number of changed scores and of submissions, and the work that was not judged."""
 
     submissions: int
     changed: int
     kept: int
-    """The number of manual grades, which were not changed."""
+    """The number of manual grades, which stay unchanged."""
     unjudged: tuple[str, ...]
     elsewhere: tuple[str, ...]
-    """Checks that have a result but no cell in the notebook, and are therefore not in the gradebook."""
+    """The checks with a result but without a cell in the notebook, which are not in the gradebook."""
     unconfirmed: tuple[Unconfirmed, ...]
     """The cells that are worth 0 points until a person grades them."""
 
@@ -59,7 +59,7 @@ class Synced:
 class Difference:
     """A check on which the kernel and the grader disagree.
 
-    `kernel` is None if the notebook gave no score for the check. `grader` is None if the grader has not confirmed a
+    `kernel` is None if the notebook has no score for the check. `grader` is None if the grader has not confirmed a
     score. The check is then worth 0 points, for the reason `why`.
     """
 
@@ -81,11 +81,11 @@ def sync(
     say: Callable[[str], None],
     tell: Callable[[str], None],
 ) -> Synced:
-    """Grade collected submissions that have no valid result, and write every score to the gradebook.
+    """Grade collected submissions without a valid result, and write all scores to the gradebook.
 
     Raises:
         UsageError: nothing was collected, a step is not in the gradebook, or another sync is running.
-        MachineError: nothing can be graded or written. Unconfirmed scores are then still worth 0 points.
+        MachineError: the machine cannot grade or write. Unconfirmed scores are worth 0 points in this case, too.
     """
     from nbgrader.api import Gradebook
     from sqlalchemy.exc import SQLAlchemyError
@@ -95,12 +95,12 @@ def sync(
     results = Results(folders.results)
     with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
         _require_assignments(gradebook, {step for _, step in submissions})
-        # Do this first, so that no provisional score remains if grading is interrupted.
+        # Withhold scores first, so that no provisional score remains if grading is interrupted.
         withhold_unconfirmed(gradebook, results, wanted)
     if not submissions:
         message = (
-            f"Nothing was collected into {folders.course.submitted_directory} yet. Run `nbgrader collect STEP`, or "
-            "copy submissions."
+            f"{folders.course.submitted_directory} has no submissions yet. Run `nbgrader collect STEP`, or "
+            "copy submissions to it."
         )
         raise UsageError(message)
     found, why = _put_together(folders, submissions)
@@ -128,7 +128,7 @@ def sync(
 
 
 def compare(folders: ClassFolders, steps: Sequence[str]) -> list[Difference]:
-    """Return the checks on which autograde's kernel and the grader disagree, and the scores that are not confirmed."""
+    """Return checks on which autograde's kernel and the grader disagree, and scores that are not confirmed."""
     from nbgrader.api import Gradebook
 
     kept = Results(folders.results)
@@ -154,7 +154,7 @@ def compare(folders: ClassFolders, steps: Sequence[str]) -> list[Difference]:
 def _put_together(
     folders: ClassFolders, submissions: Sequence[tuple[str, str]]
 ) -> tuple[tuple[Found, ...], dict[tuple[str, str], str]]:
-    """Return the submissions to grade, and for those that could not be read, the reason why."""
+    """Return the submissions to grade, and the reasons why others could not be read."""
     found: list[Found] = []
     why: dict[tuple[str, str], str] = {}
     for student, step in submissions:
@@ -172,7 +172,7 @@ def _put_together(
 
 
 def _of_the_machine(error: BaseException | None) -> bool:
-    """Return whether the disk caused the error, and not the student's files."""
+    """Return whether the disk caused the error, and not a student's files."""
     while error is not None:
         if isinstance(error, OSError) and error.errno in OF_THE_DISK:
             return True
@@ -181,7 +181,7 @@ def _of_the_machine(error: BaseException | None) -> bool:
 
 
 def _in_words(error: BaseException) -> str:
-    """Return the error on one line, with its cause if it was wrapped."""
+    """Return the error on one line, with its cause if it has one."""
     cause = error.__cause__ or error
     text = (cause.strerror if isinstance(cause, OSError) else str(cause)) or type(cause).__name__
     return shorten(text.rstrip("."), 120)
@@ -232,11 +232,11 @@ def _time_of(folder: Path) -> datetime | None:
     try:
         return read(time_of, folder)
     except UnreadableError:
-        return None  # `_put_together` has reported it
+        return None  # `_put_together` has reported the error
 
 
 def _late(folders: ClassFolders, student: str, step: str) -> None:
-    """Let nbgrader recalculate the penalty for a late submission from the new scores."""
+    """Make nbgrader recalculate the penalty for a late submission from the new scores."""
     from nbformat.v4 import new_notebook
     from nbgrader.preprocessors import AssignLatePenalties
 
@@ -245,7 +245,7 @@ def _late(folders: ClassFolders, student: str, step: str) -> None:
 
 
 def _kernel_scores(notebook: Path) -> dict[str, float | None] | None:
-    """Return the points of each graded cell according to its own output, or None if there is no autograded notebook."""
+    """Return the points of each graded cell in its output, or None if no autograded notebook exists."""
     try:
         return read(_scores_in, notebook)
     except UnreadableError:
@@ -266,5 +266,5 @@ def _kernel_score(cell: Any) -> float | None:  # noqa: ANN401 - nbformat's Noteb
     try:
         score: float | None = determine_grade(cell)[0]
     except (ValueError, AttributeError, KeyError, TypeError):
-        return None  # nbgrader cannot interpret this output of the kernel
+        return None  # an output that nbgrader cannot interpret
     return score

@@ -1,4 +1,4 @@
-"""A step of `nbgrader autograde` that replaces SaveAutoGrades, because scores from a kernel are worth no points."""
+"""A step of `nbgrader autograde` that replaces SaveAutoGrades and stores no scores from kernels."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class SaveUnconfirmed(SaveAutoGrades):  # type: ignore[misc, unused-ignore]
-    """Give the checks of the course's exercises 0 points and "needs manual grade" until `sync` confirms a score."""
+    """Sets the checks of the course's exercises to 0 points and "needs manual grade" until `sync` confirms a score."""
 
     def _add_score(self, cell: NotebookNode, resources: dict[str, Any]) -> None:
         if self.assignment_id not in catalogue() or cell.cell_type != "code" or is_solution(cell):

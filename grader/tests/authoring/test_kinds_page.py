@@ -1,4 +1,4 @@
-"""docs/kinds.md shows every kind of check as the code defines it, with examples that an author can copy."""
+"""docs/kinds.md shows every kind of check as defined in the code, with examples that an author can copy."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ WITHOUT_UNIT = {
     "at_most",
     "value",
 }
-"""Parameters that are numbers and have no unit, or have the unit of the parameter or field that they refer to."""
+"""Numeric parameters without a unit, or with the unit of the parameter or field that they refer to."""
 
 
 def sections() -> dict[str, str]:

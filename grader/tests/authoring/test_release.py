@@ -63,19 +63,19 @@ def test_a_file_that_becomes_empty_is_not_released(root: Path) -> None:
 )
 def test_released_files_must_parse(root: Path, path: str, text: str) -> None:
     (root / "solutions" / "01-x" / path).write_text(text)
-    with pytest.raises(UsageError, match=rf"01-x/{path}: the released file does not parse"):
+    with pytest.raises(UsageError, match=rf"01-x/{path}: the released file cannot be parsed"):
         released(root / "solutions" / "01-x")
 
 
 def test_a_marker_in_an_unknown_type_of_file_is_an_error(root: Path) -> None:
     (root / "solutions" / "01-x" / "a.cpp").write_text("// BEGIN SOLUTION\n")
-    with pytest.raises(UsageError, match=r"a\.cpp: a marker in an unknown type of file"):
+    with pytest.raises(UsageError, match=r"a\.cpp: a file of an unknown type contains a marker"):
         released(root / "solutions" / "01-x")
 
 
 def test_a_text_file_that_is_not_utf8_is_an_error(root: Path) -> None:
     (root / "solutions" / "01-x" / "a.py").write_bytes(b"# \xff\n")
-    with pytest.raises(UsageError, match=r"a\.py: is not UTF-8"):
+    with pytest.raises(UsageError, match=r"a\.py: not UTF-8"):
         released(root / "solutions" / "01-x")
 
 

@@ -1,4 +1,4 @@
-"""The course and the exercise in docs/authors.md are valid, and problems of an exercise are reported."""
+"""The course and the example in docs/authors.md are valid, and problems of an exercise are reported."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ TASK = """\
 
 @pytest.fixture
 def root(tmp_path: Path) -> Path:
-    """A course with only the exercise that docs/authors.md shows."""
+    """Create a course that contains only the exercise in docs/authors.md."""
     text = (ROOT / "docs/authors.md").read_text("utf-8")
     exercise = next(block.text for block in blocks(text) if block.language == "toml")
     (tmp_path / "course" / NEW).mkdir(parents=True)
@@ -68,7 +68,7 @@ def test_the_course_is_valid() -> None:
 
 
 def test_the_course_is_valid_apart_from_its_solutions(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each lesson shows the verdict on its solution, and test_lessons.py runs the command."""
+    """Skip the gradings of solutions: each lesson shows its verdict, and test_lessons.py runs that command."""
     graded = _Validation._graded
 
     def only_starting_points(self: _Validation, what: str, side: str) -> Any:  # noqa: ANN401 - a Report, or its part
@@ -103,9 +103,7 @@ def other_fault_at_the_start(root: Path) -> None:
 
 def test_a_check_that_the_starting_point_fails_needs_a_hint(root: Path) -> None:
     change(root / "course" / NEW / "exercise.toml", "[[hint]]", '[[hint]]\nchecks = ["start"]')
-    reported = (
-        f"{root}/course/{NEW}/exercise.toml: the starting point fails values, and no [[hint]] names it in checks."
-    )
+    reported = f"{root}/course/{NEW}/exercise.toml: the starting point fails values, but no [[hint]] lists this check."
     assert problems(root) == [reported]
 
 
@@ -114,7 +112,7 @@ def test_a_check_that_the_starting_point_fails_needs_a_hint(root: Path) -> None:
     [
         (wrong_solution, f"solutions/{NEW} does not pass: The turtle drives straight on at 0.5 m/s: failed."),
         (solved_starting_point, f"exercises/{NEW} should fail the check 'values' but does not."),
-        (other_fault_at_the_start, f"exercises/{NEW} fails for a reason that was not intended: "),
+        (other_fault_at_the_start, f"exercises/{NEW} fails for an unintended reason: "),
     ],
 )
 def test_unexpected_results_of_gradings_are_reported(root: Path, spoil: Callable[[Path], None], reported: str) -> None:
@@ -130,7 +128,7 @@ def test_all_missing_things_are_reported_together(root: Path) -> None:
     change(course / "exercise.toml", '[[trial]]\ntext = "Two', '# "Two')
     shutil.rmtree(root / "solutions" / NEW)
     reported = "\n".join(validate([], course=root / "course"))
-    for problem in ("there is no [[hint]]", "words (without code)", "links to nowhere.md", f"solutions/{NEW}"):
+    for problem in ("the file has no [[hint]]", "words (without code)", "links to nowhere.md", f"solutions/{NEW}"):
         assert problem in reported
 
 

@@ -1,6 +1,6 @@
-"""Run commands of nbgrader as forks of one process that has imported it, since the import takes two seconds.
+"""Run nbgrader commands as forks of a process that has imported nbgrader, since the import takes two seconds.
 
-python -m grader.tests.gradebook.nbgrader_command     reads orders from its standard input until it is closed
+python -m grader.tests.gradebook.nbgrader_command     reads orders from standard input until it is closed
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def nbgrader(*command: str, cwd: Path, **env: str) -> tuple[int, str]:
 
 @functools.cache
 def _server() -> subprocess.Popen[str]:
-    """It ends with this process, when its standard input is closed."""
+    """Return a server, which ends together with this process when its standard input is closed."""
     pipe = subprocess.PIPE
     argv = [sys.executable, "-W", "ignore", "-m", "grader.tests.gradebook.nbgrader_command"]
     return subprocess.Popen(argv, stdin=pipe, stdout=pipe, text=True)

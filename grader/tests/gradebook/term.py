@@ -1,4 +1,4 @@
-"""A class with the real nbgrader: an instructor's commands, and the submissions of students."""
+"""A class with the real nbgrader: the commands of an instructor, and the submissions of students."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Notebook = dict[str, Any]
 
 
 class Term:
-    """A class in a folder of its own, with an exchange of its own."""
+    """A class in a separate folder, with a separate exchange."""
 
     def __init__(self, folder: Path) -> None:
         self.root = folder / "course-of-2027"
@@ -44,7 +44,7 @@ class Term:
             )
 
     def run(self, *command: str, fails: bool = False, cwd: Path | None = None) -> str:
-        """Run a command of nbgrader, or of the grader if the first word is "grader". Return both output streams."""
+        """Run a command of nbgrader, or of the grader if the first word is "grader". Return its output and errors."""
         path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
         if command[0] == "grader":
             argv = [sys.executable, "-m", "grader.cli", *command[1:], "--course", str(self.course)]
@@ -59,19 +59,19 @@ class Term:
         return said
 
     def generate(self) -> None:
-        """Make the assignment and release it into the exchange."""
+        """Generate the assignment and release it to the exchange."""
         self.run("generate_assignment", STEP)
         self.run("release_assignment", STEP)
 
     def hand_in(self, student: str, change: Callable[[Path], None], at: str = FIRST) -> None:
-        """Put a submission into the exchange like `nbgrader submit`: the released folder after `change`."""
+        """Put a submission, the released folder after `change`, into the exchange as `nbgrader submit` does."""
         folder = self.exchange / "ros2-topics" / "inbound" / f"{student}+{STEP}+{at}"
         shutil.copytree(self.root / "exercises" / STEP, folder)
         change(folder)
         (folder / "timestamp.txt").write_text(at)
 
     def grade(self) -> str:
-        """Collect, autograde, sync and make feedback. Return the output of sync."""
+        """Collect, autograde, sync and generate feedback. Return the output of sync."""
         self.run("collect", STEP, "--update")
         self.run("autograde", STEP)
         said = self.run("grader", "gradebook", "sync", STEP)
@@ -79,7 +79,7 @@ class Term:
         return said
 
     def exported(self) -> dict[str, tuple[float, float, float]]:
-        """Return student -> (raw score, penalty, score), as `nbgrader export` writes them."""
+        """Return student -> (raw score, penalty, score) from `nbgrader export`."""
         file = self.root / "grades.csv"
         self.run("export", "--to", str(file))
         with file.open(newline="") as opened:
@@ -89,7 +89,7 @@ class Term:
             }
 
     def gradebook(self) -> Any:  # noqa: ANN401 - nbgrader's, which has no types
-        """nbgrader's own gradebook; a context manager."""
+        """Return nbgrader's gradebook, which is a context manager."""
         from nbgrader.api import Gradebook
 
         return Gradebook(f"sqlite:///{self.root}/class/gradebook.db", "ros2-topics")
@@ -100,18 +100,18 @@ class Term:
 
 
 def solve(folder: Path) -> None:
-    """Write our node into the package."""
+    """Copy the node of the solution into the package."""
     (folder / NODE).write_bytes((SOLUTION / NODE).read_bytes())
 
 
 def too_slow(folder: Path) -> None:
-    """Write our node with half the speed: 55 of 100 points."""
+    """Copy the node of the solution with half the speed, for 55 of 100 points."""
     text = (SOLUTION / NODE).read_text().replace("linear.x = 2.0", "linear.x = 1.0")
     (folder / NODE).write_text(text)
 
 
 def unchanged(_: Path) -> None:
-    """Hand in the starting point: 15 of 100 points."""
+    """Hand in the starting point, for 15 of 100 points."""
 
 
 def edit(folder: Path, change: Callable[[list[Notebook]], list[Notebook]]) -> None:
@@ -123,7 +123,7 @@ def edit(folder: Path, change: Callable[[list[Notebook]], list[Notebook]]) -> No
 
 
 def with_cell(folder: Path, source: str) -> None:
-    """Insert a cell after the one that loads everything."""
+    """Insert a cell after the cell that loads everything."""
     cell: Notebook = {
         "cell_type": "code",
         "id": "mine",

@@ -1,4 +1,4 @@
-"""Which messages of a kernel may reach nbgrader, tested message by message."""
+"""The messages of a kernel that nbgrader may receive, tested one by one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HEADER = {"msg_id": "1", "msg_type": "stream"}
 
 
 def message(content: Any, *buffers: bytes, key: bytes = KEY, header: Any = HEADER) -> list[bytes]:  # noqa: ANN401
-    """Return a message as a kernel sends it. `content` is sent unchanged if it is bytes."""
+    """Return a message as a kernel sends it. `content` is sent unchanged if it is of the type bytes."""
     read: tuple[Any, ...] = (header, {}, {}, content)
     parts = [part if isinstance(part, bytes) else json.dumps(part).encode() for part in read]
     signature = hmac.new(key, b"".join(parts), hashlib.sha256).hexdigest().encode()
@@ -25,7 +25,7 @@ def message(content: Any, *buffers: bytes, key: bytes = KEY, header: Any = HEADE
 
 
 def refused(*messages: list[bytes], budget: Budget = Budget()) -> str:  # noqa: B008 - frozen
-    """Return why the last of these messages is refused. The others must be accepted."""
+    """Return the reason why the last message is refused. The other messages must be accepted."""
     account = Account(KEY, budget)
     for each in messages[:-1]:
         account.take(each)
@@ -78,7 +78,7 @@ def test_messages_have_a_budget_in_number_bytes_values_and_depth() -> None:
     nested: list[Any] = []
     for _ in range(60):
         nested = [nested]
-    assert "more than 50 objects inside each other" in refused(message({"a": nested}))
+    assert "more than 50 nested objects" in refused(message({"a": nested}))
 
 
 def test_frames_survive_the_pipe_in_pieces_of_any_size() -> None:

@@ -41,7 +41,7 @@ def notebook(submission: Path) -> Iterator[Notebook]:
 
 def test_a_kernel_in_a_cell(notebook: Notebook, submission: Path, tmp_path: Path) -> None:
     assert notebook.run("print(open('package/node.py').read())") == "mine\n\n"
-    # A link that leads out of the submission was not even copied.
+    # A link that leads out of the submission was not copied.
     assert notebook.run("import os; print(sorted(os.listdir()))") == "['ipykernel.py', 'package']\n"
     assert notebook.run(f"print(os.path.exists({str(tmp_path / 'secret')!r}))") == "False\n"
     solutions = course_folder().parent / "solutions"
@@ -49,7 +49,7 @@ def test_a_kernel_in_a_cell(notebook: Notebook, submission: Path, tmp_path: Path
     # Changes stay in the cell.
     assert notebook.run("open('package/node.py', 'w').write('changed')") == "7"
     assert (submission / "package" / "node.py").read_text() == "mine\n"
-    # The cell has no network except its own.
+    # The cell has only its loopback network.
     said = notebook.run("import socket; socket.create_connection(('192.0.2.1', 80), 5)")
     assert "unreachable" in said
     assert "4" in notebook.run("import rclpy; print(2 + 2)")

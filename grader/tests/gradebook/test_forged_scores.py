@@ -1,4 +1,4 @@
-"""A score that the grader has not confirmed does not count: the real nbgrader and database, with forging notebooks."""
+"""Scores that the grader has not confirmed do not count. The tests use the real nbgrader and forging notebooks."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from grader.classroom.results import Result
     from grader.gradebook.scores import Synced
 
-pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="autograde runs others' code in a sandbox only")
+pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="autograde runs submissions only in a sandbox")
 
 FULL_MARKS = """\
 class Verdict:
@@ -36,9 +36,9 @@ class Verdict:
 def check(step):
     return Verdict()
 """
-"""Points that autograde believes, because each is at most what its cell is worth."""
+"""Points that autograde accepts, because they are at most the maximum of each cell."""
 ANOTHERS = "homework"
-"""An assignment in the same gradebook that does not belong to this course."""
+"""An assignment in the same gradebook that is not part of this course."""
 
 
 def forge(folder: Path) -> None:
@@ -46,7 +46,7 @@ def forge(folder: Path) -> None:
 
 
 def unreadable(folder: Path) -> None:
-    """A forging notebook with an additional cell whose file would lie below another file."""
+    """Create a forging notebook with a cell whose file would be inside another file."""
     forge(folder)
     edit(
         folder,
@@ -142,13 +142,13 @@ def test_a_forged_score_never_counts(term: Term, monkeypatch: pytest.MonkeyPatch
     with_another_assignment(term)
     term.run("autograde", STEP)
 
-    # Before sync, no score of a kernel is stored, and the gradebook needs manual grades.
+    # Before a sync, no score from a kernel is stored, and the gradebook needs manual grades.
     assert all(withheld(term, student) for student in ("honest", "forger", "gone", "unreadable"))
     assert points_of(term) == {"honest": 0, "forger": 0, "gone": 0, "unreadable": 0}
     said = term.run("grader", "gradebook", "compare")
     assert f"forger {STEP} circle: kernel 25, grader 0, needs manual grading (not confirmed" in said
 
-    # In this sync, the machine fails for one student, a second one's folder is gone, and a third one's cannot be read.
+    # In this sync, the machine fails for one submission, a second one is missing, and a third one cannot be read.
     shutil.rmtree(term.root / "class" / "submitted" / "gone")
     done = sync_with_an_error_for("forger", term, monkeypatch)
     assert done.unjudged == ("forger",)
@@ -184,7 +184,7 @@ def test_a_forged_score_never_counts(term: Term, monkeypatch: pytest.MonkeyPatch
     assert (again["forger"], again["honest"]) == (7, 20)
     assert grades(term, "forger")["start"] == (0, None, True)
 
-    # Assignments of others stay as nbgrader left them.
+    # Assignments of other courses stay unchanged.
     assert points_of(term, ANOTHERS) == {"honest": 3, "forger": 0, "gone": 0, "unreadable": 0}
 
 

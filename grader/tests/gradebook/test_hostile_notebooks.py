@@ -56,21 +56,21 @@ NOTEBOOKS: dict[str, tuple[Callable[[Path], object], str]] = {
     "a pipe": (pipe, "is not a regular file"),
     "a link to endless zeros": (lambda file: link(file, "/dev/zero"), "changed while it was read"),
     "a link to another student's": (lambda file: link(file, __file__), "changed while it was read"),
-    "20 GiB": (sparse, "has more than the 8388608 bytes"),
+    "20 GiB": (sparse, "has more than 8388608 bytes"),
     "deep lists": (lambda file: file.write_text("[" * 100_000 + "]" * 100_000), "nested too deeply"),
     "deep metadata": (
         lambda file: file.write_text(
             a_notebook(code("1")).replace('"metadata": {}', '"metadata": {"a": ' + "[" * 90 + "]" * 90 + "}", 1)
         ),
-        "more than 50 objects inside each other",
+        "more than 50 nested objects",
     ),
     "many values": (
         lambda file: file.write_text(json.dumps({"cells": [], "metadata": {"a": [[]] * 1_000_000}})),
-        "more than the 500000 values",
+        "more than 500000 values",
     ),
     "many cells": (
         lambda file: file.write_text(a_notebook(*(code("1") for _ in range(1001)))),
-        "1001 cells, more than the 1000",
+        "1001 cells, but the maximum is 1000",
     ),
     "a long number": (lambda file: file.write_text('{"nbformat": ' + "9" * 5000 + "}"), "could not be read"),
     "half a letter": (
@@ -126,7 +126,7 @@ def test_a_time_is_read_as_nbgrader_reads_it(tmp_path: Path) -> None:
 
 @dataclass(frozen=True)
 class Hostile:
-    """A class with attacks in it: its folder, the output of the commands, and the score of each student."""
+    """A class that was attacked: its folder, the output of the commands, and the score of each student."""
 
     folder: Path
     collected: str
@@ -136,9 +136,9 @@ class Hostile:
 
 @pytest.fixture(scope="module")
 def hostile(tmp_path_factory: pytest.TempPathFactory) -> Hostile:
-    """A class with a short assignment, submissions in the exchange that attack, and an honest one. It was graded."""
+    """Grade a class with a short assignment, submissions in the exchange that attack, and an honest one."""
     if not bubblewrap.usable():
-        pytest.skip("autograde runs others' code in a sandbox only")
+        pytest.skip("autograde runs submissions only in a sandbox")
     folder = tmp_path_factory.mktemp("term")
     secret = folder / "secret"
     secret.write_text(SECRET)
@@ -159,7 +159,7 @@ def hostile(tmp_path_factory: pytest.TempPathFactory) -> Hostile:
     odd = term.exchange / "ros2-topics" / "inbound" / f"mallory+{HOMEWORK}+when I had time"
     odd.mkdir()
     collected = term.run("collect", HOMEWORK)
-    # An instructor may put submissions there without nbgrader's exchange.
+    # An instructor may also add submissions without nbgrader's exchange.
     for name, change in BESIDE.items():
         to = term.root / "class" / "submitted" / name / HOMEWORK
         shutil.copytree(term.root / "exercises" / HOMEWORK, to)
@@ -206,14 +206,14 @@ SUBMISSIONS: dict[str, Callable[[Path, Path], object]] = {
     "links": with_links,
     "when": lambda folder, _: (folder / readable.TIMESTAMP).write_text("yesterday evening"),
 }
-"""Student -> what is wrong with the folder in the exchange."""
+"""Student -> what is wrong with the student's folder in the exchange."""
 BESIDE: dict[str, Callable[[Path, Path], object]] = {
     "beside": beside,
     "never": lambda folder, _: (folder / readable.TIMESTAMP).write_text("yesterday evening"),
     "deep": lambda folder, _: (folder / f"{HOMEWORK}.ipynb").write_text("[" * 100_000),
     "blocks": lambda folder, _: pipe(folder / f"{HOMEWORK}.ipynb"),
 }
-"""Student -> what is wrong with the folder among those that were collected."""
+"""Student -> what is wrong with the student's folder in submitted/."""
 
 
 def scores(term: Term) -> dict[str, float]:
@@ -250,6 +250,6 @@ def test_nothing_of_the_instructor_reaches_a_copy_that_a_kernel_can_read(hostile
 def test_feedback_runs_no_script_of_a_student(hostile: Hostile) -> None:
     page = (hostile.folder / "feedback" / "anna" / HOMEWORK / f"{HOMEWORK}.html").read_text("utf-8")
     assert "<h1>Title" in page
-    assert "steal()" in page  # it is shown as text
+    assert "steal()" in page  # the script is shown as text
     scripts = ("<script>steal", "<img src=x", 'href="javascript', "<div onclick", "<style>*")
     assert [each for each in scripts if each in page] == []

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
 MORE_KIB = 512 * 1024
-"""The limit for the growth of nbgrader's process while it runs one of these."""
+"""The maximum growth of nbgrader's process during an attack."""
 NO_MESSAGE = "The kernel sent data that is not a message of a kernel."
 
 COMM = "from comm import create_comm\n"
@@ -57,7 +57,7 @@ ATTACKS = {
     ),
     "a deep list": (
         SEND + "deep = []\nfor _ in range(200):\n    deep = [deep]\nsend('comm_msg', {'comm_id': 'a', 'data': deep})",
-        "The kernel sent a message with more than 50 objects inside each other.",
+        "The kernel sent a message with more than 50 nested objects.",
     ),
     "half a letter": (
         SEND + PLAIN + "send('stream', {'name': 'stdout', 'text': '\\ud800'})",
@@ -92,7 +92,7 @@ ATTACKS = {
     ),
     "its own bridge": ("import os, signal\nos.kill(os.getppid(), signal.SIGKILL)", "The kernel died."),
 }
-"""Name -> a cell, and the reason why no cell runs after it."""
+"""Name -> the source of a cell, and the reason why no cell runs after it."""
 SAMPLE = ("large widgets", "messages without end", "files without end", "output without keys")
 
 MANY_CHANGED = (
@@ -101,17 +101,17 @@ MANY_CHANGED = (
     + "for _ in range(300):\n    send('display_data', {'data': {'text/plain': ''}, **about})\n"
     + "send('update_display_data', {'data': {'text/plain': 'x' * 3_000_000}, **about})"
 )
-"""A gigabyte of outputs from one message that changes all of them."""
+"""The source of a message that changes outputs to a total of a gigabyte."""
 
 
 class Application(Configurable):
-    """The parts of nbgrader's application that a step needs."""
+    """The parts of nbgrader's application that a step uses."""
 
     coursedir: Any = None
 
 
 def executed(folder: Path, *sources: str, **limits: int) -> NotebookNode:
-    """Run autograde's step on a notebook with these cells. Check that the result can be written and read."""
+    """Run autograde's step on a notebook with these cells. Assert that the result can be written and read."""
     application = Application()
     application.coursedir = SimpleNamespace(format_path=lambda *_: str(folder), submitted_directory="submitted")
     step = ConfinedExecute(parent=Configurable(parent=application), **limits)
@@ -125,12 +125,12 @@ def executed(folder: Path, *sources: str, **limits: int) -> NotebookNode:
 
 
 def said(cell: NotebookNode) -> str:
-    """Return the text of the outputs below a cell."""
+    """Return the text of the outputs of a cell."""
     return "".join(str(output.get("evalue") or output.get("text")) for output in cell.outputs)
 
 
 def names(folder: str) -> set[str]:
-    """Return the content of a folder of the machine."""
+    """Return the names in a folder of the machine."""
     return {path.name for path in Path(folder).iterdir()}
 
 
@@ -154,11 +154,11 @@ def test_one_message_that_changes_many_outputs_does_not_make_a_large_notebook(tm
 def test_cells_that_sleep_have_one_time_limit_together(tmp_path: Path) -> None:
     sleeps = "import time; time.sleep(600)"
     *_, last = executed(tmp_path, sleeps, sleeps, "print('later')", notebook_s=1).cells
-    assert said(last) == "All cells of the notebook together took longer than 1 s."
+    assert said(last) == "The cells of the notebook took longer than 1 s."
 
 
 def test_a_kernel_can_only_write_to_its_own_disks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    # Kernels of other tests have their folders beside the usual one.
+    # Use another folder than the kernels of other tests.
     with tempfile.TemporaryDirectory(prefix="k") as own:
         monkeypatch.setattr(tempfile, "tempdir", own)
         assert_writes_only_to_own_disks(tmp_path)

@@ -21,7 +21,7 @@ def roster(folder: Path, text: str) -> Path:
 def test_a_class_has_its_students_and_no_other_data(tmp_path: Path) -> None:
     file = roster(tmp_path, "id,last_name,first_name,room\nada,Lovelace,Ada,12\nbob,,,\n")
     assert make_class(tmp_path / "new", file) == 2
-    folders = open_class(tmp_path / "new")  # its folder course/ is found
+    folders = open_class(tmp_path / "new")  # finds its folder course/
     assert open_class(tmp_path / "new" / "course").course.root == folders.course.root == str(tmp_path / "new")
     from nbgrader.api import Gradebook
 
@@ -62,7 +62,7 @@ def test_a_folder_without_a_course_is_a_usage_error(tmp_path: Path) -> None:
 
 @pytest.fixture
 def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A student's clone of the course, which is the current folder. Its configuration leaves a trace."""
+    """Create a student's clone of the course as the current folder. Its configuration leaves a trace when it runs."""
     folder = tmp_path / "clone"
     (folder / "course").mkdir(parents=True)
     (folder / "course" / CONFIG).write_text(f"open({str(tmp_path / 'touched')!r}, 'w').close()\n")
@@ -75,7 +75,7 @@ def test_the_configuration_of_an_unknown_folder_is_not_run(clone: Path) -> None:
     for place in (clone, clone / "course"):
         with pytest.MonkeyPatch.context() as patch:
             patch.chdir(place)
-            with pytest.raises(UsageError, match=r"is a program, but .* has not made this folder for you.*--course "):
+            with pytest.raises(UsageError, match=r"is a program, but .* did not create this folder for you.*--course "):
                 open_class(None)
     assert not (clone.parent / "touched").exists()
 

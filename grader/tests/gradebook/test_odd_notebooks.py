@@ -30,7 +30,7 @@ ODD = {
 
 @dataclass(frozen=True)
 class Folders:
-    """The folders, named as in gradebook.folders.ClassFolders."""
+    """The folders, named as in gradebook.class_folders.ClassFolders."""
 
     root: Path
 
@@ -49,7 +49,7 @@ def with_cell(folder: Path, source: str) -> None:
 
 
 def make(root: Path) -> Folders:
-    """The odd notebooks, and an honest one."""
+    """Create the odd notebooks and an honest one."""
     folders = Folders(root)
     (root / "submitted").mkdir()
     for student in (*ODD, "zoe"):

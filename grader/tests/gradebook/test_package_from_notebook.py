@@ -34,9 +34,9 @@ def start(path: str) -> str:
 @pytest.mark.parametrize(
     ("cell", "node", "graded"),
     [
-        ("mine\n", start(NODE), "mine\n"),  # written in the cell, but never executed
-        ("mine\n", "edited later\n", "edited later\n"),  # the file with the student's changes
-        (start(NODE), "mine\n", "mine\n"),  # the cell was not changed
+        ("mine\n", start(NODE), "mine\n"),  # the cell was changed, but never executed
+        ("mine\n", "edited later\n", "edited later\n"),  # the file was changed
+        (start(NODE), "mine\n", "mine\n"),  # only the file was changed
     ],
 )
 def test_which_text_is_graded(tmp_path: Path, cell: str, node: str, graded: str) -> None:

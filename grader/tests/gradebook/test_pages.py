@@ -1,4 +1,4 @@
-"""The pages of nbgrader show what a student wrote, and the grader's browser runs no script in it."""
+"""nbgrader's pages show the text of a student's notebook, and browsers run no script in it."""
 
 from __future__ import annotations
 
@@ -60,5 +60,5 @@ def test_nothing_of_a_notebook_is_a_script_in_the_formgrader() -> None:
     page, _ = exporter.from_notebook_node(notebook, resources={**RESOURCES})
     assert "plain" in page
     assert "<h1>Title" in page
-    assert "steal()" in page  # it is shown as text
+    assert "steal()" in page  # the script is shown as text
     assert re.findall(r"<script[^>]*>\s*steal|(?:href|src|on\w+)\s*=\s*[\"']?[^\"'>]*steal|<svg onload", page) == []

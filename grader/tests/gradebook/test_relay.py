@@ -1,4 +1,4 @@
-"""The relay passes on what comes through the pipe of a cell. It ends when the cell or nbgrader ends."""
+"""The relay forwards the data from the pipe of a cell. It exits when the cell or nbgrader exits."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NO_MESSAGE = "The kernel sent data that is not a message of a kernel."
 
 
 class Started:
-    """Start a relay whose cell is a Python process with this code, without a sandbox."""
+    """Starts a relay whose cell is a Python process with this code, without a sandbox."""
 
     def __init__(self, folder: Path, code: str) -> None:
         self.folder = folder
@@ -34,7 +34,7 @@ class Started:
         self.process = subprocess.Popen(start.argv, env=start.env, stdin=subprocess.PIPE)
 
     def why(self) -> str:
-        """Return why the relay ended the cell."""
+        """Return the reason why the relay stopped the cell."""
         assert self.process.wait(60) == 0
         file = self.folder / WHY_FILE
         return file.read_text() if file.is_file() else ""

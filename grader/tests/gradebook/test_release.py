@@ -1,4 +1,4 @@
-"""nbgrader's own commands with our notebooks: generate_assignment and `grader release` agree, and validate works."""
+"""nbgrader's commands with our notebooks: generate_assignment agrees with `grader release`, and validate works."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def test_hidden_tests_are_neither_released_nor_in_the_feedback(tmp_path: Path) -
 
 
 def validated(step: str, root: str, home: Path) -> str:
-    """Return the output of `nbgrader validate`. It works on a copy, because it runs the notebook in place."""
+    """Return the output of `nbgrader validate` for a copy of the notebook, since it executes the notebook in place."""
     folder = home / root / step
     shutil.copytree(ROOT / root / step, folder)
     argv = ("validate", "--Execute.timeout=600", f"{step}.ipynb")

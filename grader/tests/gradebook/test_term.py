@@ -1,4 +1,4 @@
-"""A term with the real nbgrader and its database: the exported CSV has exactly the scores that the students earned."""
+"""A term with the real nbgrader and its database. The exported CSV contains exactly the scores of the students."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from grader.tests.gradebook.term import (
 if TYPE_CHECKING:
     from pathlib import Path
 
-pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="autograde runs others' code in a sandbox only")
+pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="autograde runs submissions only in a sandbox")
 
 FORGED = """\
 class Verdict:
@@ -61,7 +61,7 @@ def forge(folder: Path, promised: str) -> None:
 
 
 def notebook_alone(folder: Path) -> None:
-    """Hand in only a notebook, with the node in a cell that was never run."""
+    """Hand in only a notebook, with the node in a cell that was never executed."""
     shutil.rmtree(folder / "my_robot_controller")
 
     def solved(cells: list[Notebook]) -> list[Notebook]:
@@ -129,7 +129,7 @@ def test_a_short_term(term: Term) -> None:
     term.grade()
     assert term.exported() == {"slow": (55, 0, 55), "forger": (15, 0, 15), "late-typist": (100, 0, 100)}
 
-    # The false score of the kernel is found, and the feedback has the grader's reasons.
+    # The false score of the kernel is reported, and the feedback contains the grader's reasons.
     said = term.run("grader", "gradebook", "compare")
     assert "forger 03-circle-publisher circle: kernel 5, grader 0" in said
     assert not {"slow", "late-typist"} & {line.split()[0] for line in said.splitlines()}
@@ -181,7 +181,7 @@ def test_a_whole_term(term: Term) -> None:
     term.run("grader", "gradebook", "sync")
     exported = term.exported()
     assert exported.pop("late") == (100, 100, 0)
-    submitted_late = exported.pop(getpass.getuser())  # the time on this machine does not matter
+    submitted_late = exported.pop(getpass.getuser())  # the time of this machine does not matter
     assert submitted_late[0] == 100
     assert exported == {name: (points, 0, points) for name, points in earned.items() if name in exported}
     assert len(exported) == 11
