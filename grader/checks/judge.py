@@ -40,13 +40,15 @@ class Judgement:
     def of_trial(self, trial: str) -> tuple[Outcome, ...]:
         """Return the outcomes of the checks that judge the recording of this trial (an id)."""
         return tuple(
-            _outcome(spec, self.findings[spec.id]) for spec in self.exercise.checks if _judges_trial(spec, trial)
+            _outcome(spec, self.findings[spec.id])
+            for spec in self.exercise.checks
+            if _judges_trial(self.exercise, spec, trial)
         )
 
     def wants(self, trial: str) -> bool:
         """Return whether any check would use a recording of this trial (an id). If not, the trial need not run."""
         return any(
-            _judges_trial(spec, trial) and not any(_blocks(self.findings[need]) for need in spec.needs)
+            _judges_trial(self.exercise, spec, trial) and not any(_blocks(self.findings[need]) for need in spec.needs)
             for spec in self.exercise.checks
         )
 
@@ -93,8 +95,8 @@ class Early:
 
     def may_run(self, evidence: Evidence) -> bool:
         """Return whether the trial may still be needed because at least one of its checks is not blocked."""
-        specs = evidence.exercise.checks
-        return any(_judges_trial(spec, evidence.trial.id) and spec.id not in self.blocked for spec in specs)
+        exercise, trial = evidence.exercise, evidence.trial.id
+        return any(_judges_trial(exercise, spec, trial) and spec.id not in self.blocked for spec in exercise.checks)
 
 
 def judge_early(evidence: Evidence) -> Early:
@@ -116,8 +118,9 @@ def judge_early(evidence: Evidence) -> Early:
     return Early(tuple(failed_), frozenset(blocked))
 
 
-def _judges_trial(spec: CheckSpec, trial: str) -> bool:
-    return KINDS[spec.kind].stage == "trial" and spec.trial == trial
+def _judges_trial(exercise: Exercise, spec: CheckSpec, trial: str) -> bool:
+    """Return whether the check judges the recording of this trial, also from the viewpoint of a node beside."""
+    return KINDS[spec.kind].stage == "trial" and trial in (spec.trial, exercise.trial(spec.trial).beside)
 
 
 def _blocks(finding: Finding) -> bool:

@@ -104,10 +104,9 @@ class Evidence:
         return tuple(self.from_trial(id_) for id_ in ids if id_ in self.runs or id_ == ids[0])
 
     def with_run(self, run: Run) -> Evidence:
-        """Return the evidence with the result of this trial."""
-        if run.recording is not None:
-            run = replace(run, recording=with_crash_first(run.recording))
-        return replace(self, runs={**self.runs, self.trial.id: run})
+        """Return the evidence with the result of this trial, also from the viewpoints of the nodes beside."""
+        specs = (self.trial, *self.exercise.beside(self.trial.id))
+        return replace(self, runs={**self.runs, **{spec.id: _seen_by(spec, run, specs) for spec in specs}})
 
     @cached_property
     def _views(self) -> dict[str, Evidence]:
@@ -226,3 +225,14 @@ class Evidence:
             if found:
                 return found[0].where
         return self.code.start
+
+
+def _seen_by(spec: TrialSpec, run: Run, specs: tuple[TrialSpec, ...]) -> Run:
+    """Return the result of a trial from the viewpoint of one of its nodes. The other nodes are not its own."""
+    recording = run.recording
+    if recording is None:
+        return run
+    if spec.beside:
+        recording = recording.seen_from(spec.executable)
+    others = tuple(f"/{each.node}" for each in specs if each is not spec)
+    return replace(run, recording=with_crash_first(replace(recording, own_nodes=(*recording.own_nodes, *others))))

@@ -7,8 +7,8 @@ The keys in `schema = 2`:
   that exercises/ must fail).
 - `[numbers]` has file (the name of a TOML file in the package), and lists of possible values. Each student gets one
   value from each list. In a `[[check]]`, the value `{ own = "radius_m" }` stands for the student's own value.
-- `[[trial]]` has id, executable, node, duration_s, start, rename, pose_every, pose_from_s and
-  answers_after_s. `[[trial.drive]]` has
+- `[[trial]]` has id, executable, node, duration_s, start, rename, pose_every, pose_from_s, answers_after_s, targets
+  and alone_s. A `[[trial]]` whose node runs in another trial has id, executable, node and beside. `[[trial.drive]]` has
   from_s, linear_x_m_s and angular_z_rad_s (one number, or the two limits of a random number). `[[trial.call]]` has
   at_s, service, type and request (a table with fields), `[[trial.set]]` has at_s, parameter, value and also.
   `[trial.parameters]` and `[trial.params_file]` map the names of parameters to their values.

@@ -70,6 +70,10 @@ class Scenario:
     simulator, such as "/turtle1/pose:=/where". `pose_every` is the number of frames between two poses. The first pose
     is published at `pose_from_s` (s), to simulate a late simulator. Services respond `answers_after_s` (s) after a
     call. The node starts with `parameters` on its command line and with `params_file` in a parameter file.
+
+    The simulator adds `targets` turtles at random places, and the trial plays the node that announces them
+    (grader/trial/target_keeper.py). If `alone_s` is set, the trial ends early when there were other turtles, and
+    turtle1 has been alone for this long (s).
     """
 
     duration_s: float
@@ -82,6 +86,8 @@ class Scenario:
     calls: tuple[CallInput, ...] = ()
     parameters: Mapping[str, Setting] = field(default_factory=dict)
     params_file: Mapping[str, Setting] = field(default_factory=dict)
+    targets: int = 0
+    alone_s: float | None = None
 
 
 @dataclass(frozen=True)
@@ -90,6 +96,9 @@ class TrialSpec:
 
     Without an executable, the simulator runs alone. With `calls`, neither a simulator nor a node runs: the function or
     the executable is called once for each of them. With `tests`, the student's tests run without a simulator.
+
+    If it is `beside` another trial (an id), its node runs in that trial, beside the node there, and the scenario is the
+    same. Its checks judge that trial from the viewpoint of its node.
     """
 
     id: str
@@ -98,6 +107,7 @@ class TrialSpec:
     scenario: Scenario
     calls: CallsSpec = NO_CALLS
     tests: TestsSpec | None = None
+    beside: str = ""
 
 
 @dataclass(frozen=True)
@@ -138,6 +148,10 @@ class Exercise:
     def trial(self, id_: str) -> TrialSpec:
         """Return the trial with this id. Raises KeyError if there is none."""
         return {trial.id: trial for trial in self.trials}[id_]
+
+    def beside(self, id_: str) -> tuple[TrialSpec, ...]:
+        """Return the trials whose nodes run in the trial with this id, beside its own node."""
+        return tuple(trial for trial in self.trials if trial.beside == id_)
 
 
 def course_folder() -> Path:

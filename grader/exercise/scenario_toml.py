@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from grader.common.words import shorten
@@ -29,6 +30,8 @@ PARAMETER_TYPES = (
 CALLS = ("function", "points", "bag")
 """The keys of a `[[trial]]` without a simulator."""
 MAX_DURATION_S = 600.0
+MOST_TARGETS = 5
+"""More turtles do not fit on the canvas in an order that is clear (grader/trial/target_places.py)."""
 MAX_SPEED = 10.0
 """The maximum speed (m/s, rad/s)."""
 
@@ -39,6 +42,7 @@ def read_trials(top: Table, package: str) -> tuple[TrialSpec, ...]:
     if not tables:
         top.problem("there is no [[trial]], so nothing would run.")
     trials = tuple(_trial(table, package) for table in tables)
+    trials = tuple(_with_scenario(table, trial, trials) for table, trial in zip(tables, trials, strict=True))
     for table, trial in zip(tables, trials, strict=True):
         if [each.id for each in trials].count(trial.id) > 1:
             table.problem(f'the id "{trial.id}" is used twice; each trial needs its own id.')
@@ -57,7 +61,21 @@ def _trial(table: Table, package: str) -> TrialSpec:
     return spec
 
 
+def _with_scenario(table: Table, trial: TrialSpec, trials: tuple[TrialSpec, ...]) -> TrialSpec:
+    """Return a trial that is beside another one with the scenario of that one."""
+    if not trial.beside:
+        return trial
+    ids = [each.id for each in trials if each.node and not each.beside and each.tests is None]
+    if trial.beside not in ids:
+        table.problem(f'"beside" is "{shorten(trial.beside)}"; it must be the id of a trial with a node of its own.')
+        return trial
+    return replace(trial, scenario=next(each.scenario for each in trials if each.id == trial.beside))
+
+
 def _run(table: Table, id_: str, package: str) -> TrialSpec:
+    if "beside" in table.values:
+        executable, node = table.string("executable", ROS_NAME, NAME), table.string("node", ROS_NAME, NAME)
+        return TrialSpec(id_, executable, node, Scenario(0.0), beside=table.string("beside"))
     return TrialSpec(
         id=id_,
         executable=table.string("executable", ROS_NAME, NAME) if package else "",
@@ -93,6 +111,10 @@ def _scenario(table: Table, node: str) -> Scenario:
         + tuple(_set(each, node) for each in table.tables("set")),
         parameters=table.settings("parameters"),
         params_file=table.settings("params_file"),
+        alone_s=table.number("alone_s", 0.1, MAX_DURATION_S, f"from 0.1 to {MAX_DURATION_S:g} (s)")
+        if "alone_s" in table.values
+        else None,
+        targets=int(table.number("targets", 0, MOST_TARGETS, f"a number from 0 to {MOST_TARGETS}", default=0)),
     )
     for rule in scenario.rename:
         if not REMAP.fullmatch(rule):

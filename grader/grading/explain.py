@@ -62,10 +62,11 @@ def part_of(exercise: Exercise, check: str) -> Exercise:
         wanted[spec.id] = spec
         waiting += [specs[need] for need in spec.needs if need not in wanted]
     kept = {spec.trial for spec in wanted.values()}
+    kept |= {exercise.trial(id_).beside for id_ in kept}
     return replace(
         exercise,
         checks=tuple(spec for spec in exercise.checks if spec.id in wanted),
-        trials=tuple(each for each in exercise.trials if each.id in kept),
+        trials=tuple(each for each in exercise.trials if each.id in kept or (each.beside and each.beside in kept)),
     )
 
 

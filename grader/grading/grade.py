@@ -192,7 +192,7 @@ class _Grading:
             self.stage = "trial"
             judgement = self.judging.so_far(self.evidence, {})
             trials.run_ahead(view for view in _longest_first(self.evidence) if judgement.wants(view.trial.id))
-            for spec in self.exercise.trials:
+            for spec in (each for each in self.exercise.trials if not each.beside):
                 self.settled = judgement.settled
                 if judgement.wants(spec.id):
                     runs = trials if spec.tests is None else tests
@@ -212,5 +212,6 @@ class _Grading:
 
 def _longest_first(evidence: Evidence) -> list[Evidence]:
     """Return a view of the evidence per trial of a node, the longest first, so that it is not alone at the end."""
-    views = [evidence.from_trial(spec.id) for spec in evidence.exercise.trials if spec.tests is None]
+    specs = evidence.exercise.trials
+    views = [evidence.from_trial(spec.id) for spec in specs if spec.tests is None and not spec.beside]
     return sorted(views, key=lambda view: -view.trial.scenario.duration_s)

@@ -27,7 +27,8 @@ DEFAULT_SEED = 1
 def plan_of(evidence: Evidence, clock: ClockName, *, choice: ClockChoice, seed: int | None) -> Plan:
     """Return the plan of this trial. `seed` is the seed from the user, and `choice` is the value of `--clock`."""
     scenario = evidence.trial.scenario
-    checks = [check for check in evidence.exercise.checks if check.trial == evidence.trial.id]
+    ids = [evidence.trial.id, *(spec.id for spec in evidence.exercise.beside(evidence.trial.id))]
+    checks = [check for check in evidence.exercise.checks if check.trial in ids]
     radii = [KINDS[check.kind].radius(evidence, check.params) for check in checks]
     radius = max((each for each in radii if each is not None), default=USUAL_RADIUS_M)
     start = start_pose(DEFAULT_SEED if seed is None and scenario.anywhere else seed, radius)
@@ -40,6 +41,7 @@ def plan_of(evidence: Evidence, clock: ClockName, *, choice: ClockChoice, seed: 
         inputs=draw_inputs(scenario, start, DEFAULT_SEED if seed is None else seed),
         stop_at_doubt=stops_at_doubt(choice),
         judged=_topics(checks),
+        beside=tuple(spec.executable for spec in evidence.exercise.beside(evidence.trial.id)),
     )
 
 

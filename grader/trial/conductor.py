@@ -14,6 +14,7 @@ import json
 import os
 import sys
 import time
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
@@ -24,8 +25,9 @@ from grader.ros import installation
 from grader.sandbox import bubblewrap
 from grader.sandbox.limits import NODE_LIMITS, limited
 from grader.trial.inputs import Inputs
+from grader.trial.node_group import NodeGroup
 from grader.trial.node_process import LaunchError, NodeProcess
-from grader.trial.recording import Pose, Recording, frames_of, to_json
+from grader.trial.recording import Beside, Pose, Recording, frames_of, to_json
 from grader.trial.rest import DoubtError
 
 if TYPE_CHECKING:
@@ -88,7 +90,13 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
         recording = AloneTrial(start, prefixes, inputs).record(order["duration_s"], order["seed"])
         _say(answers, {"recording": to_json(recording)})
         return
-    with NodeProcess(lambda *fds: _command(ros, order, *fds), NODE_LIMITS, in_cell=order["in_cell"]) as node:
+    names, in_cell = ["", *order["beside"]], order["in_cell"]
+    with ExitStack() as stack:
+        processes = [
+            stack.enter_context(NodeProcess(lambda *fds: _command(ros, order, *fds), NODE_LIMITS, in_cell=in_cell))
+            for _ in names
+        ]
+        node = NodeGroup(processes)
         # These imports are slow. They run here, while the launcher is importing too.
         from grader.trial.simulated import SimulatedTrial
         from grader.trial.wall import WallTrial
@@ -104,9 +112,9 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
         if not line:
             return
         go = json.loads(line)
-        node.start(go, sys.stdin.buffer.read(go.pop("tree_bytes")))
+        node.start(go["nodes"], sys.stdin.buffer.read(go["tree_bytes"]))
         sigint_s = _run(trial, order["duration_s"])
-        stdout, stderr = node.output()
+        first, *others = (Beside(name, *p.output(), p.end(sigint_s)) for name, p in zip(names, processes, strict=True))
         doubts = tuple(trial.doubts)
         recorder = trial.recorder
         recording = Recording(
@@ -123,9 +131,11 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
             log=tuple(recorder.log),
             graphs=tuple(recorder.graphs),
             topics={topic: tuple(sorted(types)) for topic, types in sorted(recorder.topics.items())},
-            stdout=stdout,
-            stderr=stderr,
-            end=node.end(sigint_s),
+            stdout=first.stdout,
+            stderr=first.stderr,
+            end=first.end,
+            beside=tuple(others),
+            own_nodes=trial.own_nodes,
             interventions=tuple(trial.interventions),
             interventions_dropped=trial.interventions_dropped,
             graph_dropped=recorder.graph_dropped,
@@ -153,7 +163,7 @@ def _run(trial: SimulatedTrial | WallTrial, duration_s: float) -> float:
         raise Overwhelmed(message[:500]) from error
 
 
-def _own_doing(stall: tuple[float, float], node: NodeProcess, trial: SimulatedTrial | WallTrial) -> bool:
+def _own_doing(stall: tuple[float, float], node: NodeGroup, trial: SimulatedTrial | WallTrial) -> bool:
     """Return whether the node caused the stall, by its own work or by the work that it gave the simulator."""
     now_s = trial.now()
     offset = time.monotonic() - now_s

@@ -6,7 +6,8 @@ import os
 import time
 from pathlib import Path
 
-from grader.trial.rest import GoneError, Threads
+from grader.trial.node_group import GroupThreads
+from grader.trial.rest import GoneError
 
 STALL_S = 0.03
 """If the simulator or the node had to wait longer than this between two frames (s), arrival times cannot be trusted."""
@@ -47,8 +48,8 @@ def is_machines(stalled_s: float, others_s: float) -> bool:
 class Stalls:
     """Finds stalls. The kernel counts how long threads were ready to run but did not run."""
 
-    def __init__(self, pid: int) -> None:
-        self._parts = [_threads(pid), _threads(os.getpid())]
+    def __init__(self, *pids: int) -> None:
+        self._parts = [_threads(*pids), _threads(os.getpid())]
         self._before = [(0.0, 0.0), (0.0, 0.0)]
         self._stolen_s = _stolen_s()
         self._since_s = 0.0
@@ -100,14 +101,14 @@ class Others:
         return _machine_worked_s() - time.process_time() - self._before - but_s
 
 
-def _threads(pid: int) -> Threads | None:
+def _threads(*pids: int) -> GroupThreads | None:
     try:
-        return Threads(pid)
+        return GroupThreads(pids)
     except GoneError:
         return None
 
 
-def _times(threads: Threads | None) -> tuple[float, float]:
+def _times(threads: GroupThreads | None) -> tuple[float, float]:
     """Return how long all threads have run, and how long they have waited for a processor (s)."""
     if threads is None:
         return 0.0, 0.0

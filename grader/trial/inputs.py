@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from grader.trial.start_pose import MARGIN_M
+from grader.trial.target_places import Target, draw_targets
 from grader.turtlesim.turtle import FRAME_S, SIDE_M, Start, Turtle
 
 if TYPE_CHECKING:
@@ -47,13 +48,21 @@ class Inputs:
     calls: tuple[PlannedCall, ...] = ()
     arguments: tuple[str, ...] = ()
     params_file: str = ""
+    targets: tuple[Target, ...] = ()
+    alone_s: float | None = None
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Inputs:
         """Create Inputs from the JSON data that dataclasses.asdict produced."""
         drives = tuple((from_s, linear, angular) for from_s, linear, angular in data["drives"])
         calls = tuple(PlannedCall(**call) for call in data["calls"])
-        lists = {"drives": drives, "calls": calls, **{name: tuple(data[name]) for name in ("rename", "arguments")}}
+        targets = tuple(Target(**target) for target in data["targets"])
+        lists = {
+            "drives": drives,
+            "calls": calls,
+            "targets": targets,
+            **{name: tuple(data[name]) for name in ("rename", "arguments")},
+        }
         return cls(**{**data, **lists})
 
     def drive(self, now_s: float) -> tuple[float, float] | None:
@@ -73,6 +82,8 @@ def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
         calls=tuple(PlannedCall(call.at_s, call.service, call.type, dict(call.request)) for call in scenario.calls),
         arguments=tuple(part for each in _settings(scenario.parameters) for part in ("-p", each)),
         params_file=_params_file(scenario.params_file),
+        alone_s=scenario.alone_s,
+        targets=draw_targets(scenario.targets, start, seed) if scenario.targets else (),
     )
     if not scenario.drives:
         return inputs

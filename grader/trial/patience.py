@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from grader.trial.node_group import GroupThreads
     from grader.trial.rest import Threads
 
 ASLEEP_S = 20.0
@@ -53,7 +54,7 @@ class TickPatience:
     Reading the CPU time of the node costs as much as checking its threads. Most instants end before it is necessary.
     """
 
-    def __init__(self, node: Threads, now_s: float) -> None:
+    def __init__(self, node: Threads | GroupThreads, now_s: float) -> None:
         self._node = node
         self._cpu_s: float | None = None
         self._before_s: dict[int, float] = {}

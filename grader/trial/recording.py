@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from grader.common.lazy import np
@@ -141,6 +141,16 @@ class ProcessEnd:
 
 
 @dataclass(frozen=True)
+class Beside:
+    """What a recording holds of a process that ran beside the node of the trial."""
+
+    executable: str
+    stdout: Output
+    stderr: Output
+    end: ProcessEnd
+
+
+@dataclass(frozen=True)
 class Recording:
     """Everything that was observed in one trial. `why` tells a beginner why this clock was used."""
 
@@ -162,8 +172,11 @@ class Recording:
     stdout: Output
     stderr: Output
     end: ProcessEnd
+    beside: tuple[Beside, ...] = ()
+    """The other nodes of the submission in the same trial."""
     own_nodes: tuple[str, ...] = ("/turtlesim",)
-    """The grader's nodes. Every other node of the graph belongs to the submission."""
+    """The grader's nodes, and those that the exercise asks for beside this one. Every other node of the graph counts as
+    the node of the trial."""
     interventions: tuple[str, ...] = ()
     """The services and actions of the simulator that were called, in order: "reset", "spawn", "teleport_absolute".
     After a maximum number of calls, each further name is kept only once."""
@@ -193,6 +206,11 @@ class Recording:
     crowded: bool = False
     """Whether other programs used the processors so much that the simulator and the node often had to wait (wall
     time)."""
+
+    def seen_from(self, executable: str) -> Recording:
+        """Return the recording from the viewpoint of a node beside: its output and its end. Raises KeyError."""
+        other = {each.executable: each for each in self.beside}[executable]
+        return replace(self, stdout=other.stdout, stderr=other.stderr, end=other.end)
 
     @property
     def stalled_s(self) -> float:
@@ -253,6 +271,10 @@ def from_json(data: dict[str, Any], payloads: Iterable[bytes] | None = None) -> 
             "stdout": _output(data["stdout"]),
             "stderr": _output(data["stderr"]),
             "end": ProcessEnd(**data["end"]),
+            "beside": tuple(
+                Beside(each["executable"], _output(each["stdout"]), _output(each["stderr"]), ProcessEnd(**each["end"]))
+                for each in data.get("beside", ())
+            ),
             "own_nodes": tuple(data["own_nodes"]),
             "interventions": tuple(data["interventions"]),
             "calls": tuple(Call(**call) for call in data.get("calls", ())),

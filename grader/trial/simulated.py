@@ -16,6 +16,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 from rosgraph_msgs.msg import Clock
 
+from grader.trial.node_group import GroupThreads
 from grader.trial.patience import HandshakePatience, TickPatience
 from grader.trial.rest import DoubtError, GoneError, Threads, not_of_dds, of_dds, only_sends, receives
 from grader.trial.simulation import Simulation
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.trial.inputs import Inputs
-    from grader.trial.node_process import NodeProcess
+    from grader.trial.node_group import NodeGroup
     from grader.trial.recording import Pose
 
 QUIET_S = 0.02
@@ -56,7 +57,7 @@ class SimulatedTrial(Simulation):
 
     def __init__(
         self,
-        node: NodeProcess,
+        node: NodeGroup,
         start: Pose,
         prefixes: list[Path],
         inputs: Inputs,
@@ -98,6 +99,8 @@ class SimulatedTrial(Simulation):
                         break
                 if frame % WAITS_EVERY == 0:
                     self._doubt_sleepers()
+                if self.is_over(self._now_s):
+                    break
         except GoneError:
             self.spin()
         self.recorder.snapshot()
@@ -127,7 +130,7 @@ class SimulatedTrial(Simulation):
     # --- rest -------------------------------------------------------------------------------------------------
 
     def _watch(self) -> None:
-        self._node = Threads(self.node.pid)
+        self._node = GroupThreads(self.node.pids)
         self._receivers = Threads(os.getpid(), receives)
         self._senders = Threads(os.getpid(), only_sends)
         self._received: tuple[bytes, ...] = ()
@@ -213,7 +216,7 @@ class SimulatedTrial(Simulation):
 
     def _found_each_other(self) -> bool:
         """Wait for QUIET_S. Return whether there was no discovery traffic and the node waits for its clock."""
-        quiet = Threads(self.node.pid, of_dds)
+        quiet = GroupThreads(self.node.pids, of_dds)
         try:
             before = quiet.look().runs
             silent_s = time.monotonic()
@@ -227,24 +230,25 @@ class SimulatedTrial(Simulation):
             quiet.close()
         if not before or self.recorder.follow_graph():
             return False
-        main = [wait for wait in self._node.waits() if wait.tid == self.node.pid]
-        waits = bool(main) and main[0].call == "futex" and not main[0].timed
-        return waits and bool(self.students_nodes()) and self._clock.get_subscription_count() > 0
+        amount = len(self.node.pids)
+        main = [wait for wait in self._node.waits() if wait.tid in self.node.pids]
+        waits = len(main) == amount and all(wait.call == "futex" and not wait.timed for wait in main)
+        return waits and self.all_nodes_found() and self._clock.get_subscription_count() >= amount
 
     def _wake(self) -> None:
-        """Publish time 0 until the node has woken up twice. This shows that both sides have discovered each other."""
-        rest = Threads(self.node.pid, not_of_dds)
+        """Publish time 0 until each node has woken up twice. This shows that both sides have discovered each other."""
+        rest = GroupThreads(self.node.pids, not_of_dds)
         try:
-            before = rest.look().runs
-            wakes = 0
+            before = rest.looks()
+            wakes = [0 for _ in before]
             deadline = time.monotonic() + WAKE_S
-            while wakes < 2 and time.monotonic() < deadline:
+            while min(wakes) < 2 and time.monotonic() < deadline:
                 self._publish_clock(0.0)
                 self._settle()
-                runs = rest.look().runs
-                wakes += runs != before
-                before = runs
-                if wakes < 2:
+                looks = rest.looks()
+                wakes = [count + (now.runs != last.runs) for count, now, last in zip(wakes, looks, before, strict=True)]
+                before = looks
+                if min(wakes) < 2:
                     self.spin(0.005)
         finally:
             rest.close()
@@ -254,7 +258,7 @@ class SimulatedTrial(Simulation):
         sleeping = [wait for wait in timed if wait.call in ("nanosleep", "clock_nanosleep")]
         if sleeping and not self._is_ending():
             self._doubt("the node sleeps on wall time")
-        elif not sleeping and len(timed) > 1:
+        elif not sleeping and len(timed) > len(self.node.pids):
             self._doubt("the node waits for wall time")
 
     def _is_ending(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ from grader.trial.caller import Caller
 from grader.trial.goals import GoalLog
 from grader.trial.observed import Call
 from grader.trial.recorder import Recorder
+from grader.trial.target_keeper import TargetKeeper
 from grader.trial.turtles import TurtleWatch
 from grader.turtlesim.node import TurtlesimNode
 from grader.turtlesim.turtle import FRAME_S, Start
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 
     from grader.trial.crowd import Stalls
     from grader.trial.inputs import Inputs
-    from grader.trial.node_process import NodeProcess
+    from grader.trial.node_group import NodeGroup
     from grader.trial.recording import Pose
 
 COMMANDS = "/turtle1/cmd_vel"
@@ -52,7 +54,7 @@ class Simulation:
     """Whether the trial's clock stands still while a frame runs."""
 
     def __init__(
-        self, node: NodeProcess, start: Pose, prefixes: list[Path], inputs: Inputs, judged: Collection[str] = ()
+        self, node: NodeGroup, start: Pose, prefixes: list[Path], inputs: Inputs, judged: Collection[str] = ()
     ) -> None:
         """Create the simulator and the recorder. `judged` are the topics that a check needs."""
         # Our own log lines go to /rosout, for the recorder, and not to disk. Otherwise, a node that makes the simulator
@@ -81,11 +83,15 @@ class Simulation:
         self.caller = Caller(self.recorder, inputs.calls, self.now) if inputs.calls else None
         self.recorder.follows_services = self.caller is not None
         self._calls: list[Call] = []
+        self._in_company_s: float | None = None
         leave_out_events(self.recorder)
-        leave_out_events(self.turtlesim)
+        leave_out_events(self.turtlesim)  # before there are other turtles, which can be removed
+        self.keeper = TargetKeeper(self.turtlesim, inputs.targets, self._called) if inputs.targets else None
+        self._nodes: tuple[Node, ...] = (self.turtlesim, self.recorder)
+        self._nodes += (self.keeper,) if self.keeper is not None else ()
         self.executor = SingleThreadedExecutor()
-        self.executor.add_node(self.turtlesim)
-        self.executor.add_node(self.recorder)
+        for node_of_ours in self._nodes:
+            self.executor.add_node(node_of_ours)
         self.frames: list[tuple[float, float, float, float, float, float, bool]] = []
         self.doubts: list[str] = []
         self.stalls: list[tuple[float, float]] = []
@@ -128,13 +134,22 @@ class Simulation:
         drive = self.inputs.drive(now_s)
         if drive is not None and self.turtlesim.turtle_state("turtle1") is not None:
             self.turtlesim.world.command("turtle1", drive[0], 0.0, drive[1])
+        if self.keeper is not None:
+            self.keeper.frame(now_s)
         self.turtlesim.frame(now_s)
         self.turtles.look(now_s, self.turtlesim.world)
+        if len(self.turtlesim.world.turtles) > 1:
+            self._in_company_s = now_s
         state = self.turtlesim.turtle_state("turtle1")
         if state is not None:
             self.frames.append(
                 (now_s, state.x, state.y, state.theta, state.linear, state.angular, state.wall),
             )
+
+    def is_over(self, now_s: float) -> bool:
+        """Return whether the trial ends early, because turtle1 has been alone for long enough."""
+        alone_s = self.inputs.alone_s
+        return alone_s is not None and self._in_company_s is not None and now_s - self._in_company_s >= alone_s
 
     def spin(self, timeout_s: float = 0.0) -> list[object]:
         """Handle everything that has arrived, waiting up to `timeout_s` if there is nothing yet.
@@ -161,7 +176,7 @@ class Simulation:
         if not self._services:
             self._services = [
                 name
-                for node in (self.turtlesim, self.recorder)
+                for node in self._nodes
                 for name, _ in node.get_service_names_and_types_by_node(node.get_name(), node.get_namespace())
             ]
         # This does not use Node.count_clients, which validates the name each time and takes four times as long.
@@ -170,7 +185,7 @@ class Simulation:
 
     def hear(self) -> None:
         """Handle the messages that have arrived."""
-        for node in (self.turtlesim, self.recorder):
+        for node in self._nodes:
             for subscription in list(node.subscriptions):
                 _handle_messages(subscription)
 
@@ -192,9 +207,16 @@ class Simulation:
 
     def students_nodes(self) -> list[str]:
         """Return the names of the nodes in the graph that are not ours."""
-        others: list[str] = self.recorder.nodes()
-        others.remove(self.turtlesim.get_fully_qualified_name())
-        return others
+        return list((Counter(self.recorder.nodes()) - Counter(self.own_nodes)).elements())
+
+    @property
+    def own_nodes(self) -> tuple[str, ...]:
+        """The names of our nodes that a recording shows."""
+        return tuple(node.get_fully_qualified_name() for node in self._nodes if node is not self.recorder)
+
+    def all_nodes_found(self) -> bool:
+        """Return whether the graph has a node for each process."""
+        return len(self.students_nodes()) >= len(self.node.pids)
 
     @property
     def calls(self) -> tuple[Call, ...]:
@@ -215,11 +237,11 @@ class Simulation:
             self.interventions_dropped += 1
 
     def wind_down(self) -> None:
-        """Send SIGINT to the node and continue, in wall time, until it has exited."""
+        """Send SIGINT to the nodes and continue, in wall time, until they have exited."""
         self.node.interrupt()
         begun, from_s = time.monotonic(), self.now()
         frames = 0
-        while not self.node.ended():
+        while not self.node.all_ended():
             if time.monotonic() - begun >= frames * FRAME_S:
                 self.tick(from_s + frames * FRAME_S)
                 frames += 1

@@ -55,6 +55,8 @@ class Plan:
     """Whether the simulator runs without a node."""
     judged: tuple[str, ...] = ()
     """The topics that a check needs. They are recorded, however many other topics there are."""
+    beside: tuple[str, ...] = ()
+    """The executables that run beside the node of the trial."""
 
 
 def last_words(stderr: bytes) -> str:
@@ -150,22 +152,13 @@ class Trial:
             OverwhelmedError: the trial could not be completed because of something that the node did.
             MachineError: the simulator or the sandbox failed.
         """
-        install = self._workspace / "install"
-        prefix = install / package
-        env = installation.environment(self._ros, home=self._home, overlays=[prefix], domain=self._domain)
         arguments = ["--ros-args", "-p", "use_sim_time:=true"] if self._plan.clock == "simulated" else []
         inputs = self._plan.inputs
         if inputs.arguments:
             arguments += ["--ros-args", *inputs.arguments]
-        order = {
-            "script": str(prefix / "lib" / package / executable),
-            "ros_arguments": arguments,
-            "params_file": inputs.params_file,
-            "python_path": env["PYTHONPATH"].split(os.pathsep)[:1],
-            "env": env,
-            "install": str(install),
-            "tree_bytes": len(tree),
-        }
+        executables = enumerate((executable, *self._plan.beside))
+        nodes = [self._order(package, name, arguments, f"install{number or ''}") for number, name in executables]
+        order = {"nodes": nodes, "tree_bytes": len(tree)}
         self.await_ready()
         self._limit()
         self._send(json.dumps(order).encode() + b"\n" + tree)
@@ -174,6 +167,20 @@ class Trial:
         if self._group.out_of_memory() and recording.end.by == "itself":
             return replace(recording, end=replace(recording.end, out_of="memory"))
         return recording
+
+    def _order(self, package: str, executable: str, arguments: list[str], folder: str) -> dict[str, Any]:
+        """Return the order for the launcher of one node. Each launcher unpacks the install tree in its own folder."""
+        install = self._workspace / folder
+        prefix = install / package
+        env = installation.environment(self._ros, home=self._home, overlays=[prefix], domain=self._domain)
+        return {
+            "script": str(prefix / "lib" / package / executable),
+            "ros_arguments": arguments,
+            "params_file": self._plan.inputs.params_file,
+            "python_path": env["PYTHONPATH"].split(os.pathsep)[:1],
+            "env": env,
+            "install": str(install),
+        }
 
     def run_alone(self) -> Recording:
         """Return the recording of the simulator without a node, for a plan with `alone` set.

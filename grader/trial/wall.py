@@ -28,10 +28,10 @@ class WallTrial(Simulation):
         self._discover()
         self.lap("discovery")
         self._begun = time.monotonic()
-        watch = self.watch = Stalls(self.node.pid)
+        watch = self.watch = Stalls(*self.node.pids)
         others = Others()
         frame = 0
-        while frame * FRAME_S < duration_s and not self.node.ended():
+        while frame * FRAME_S < duration_s and not self.node.ended() and not self.is_over(frame * FRAME_S):
             early_s = frame * FRAME_S - self.now()
             if early_s > 0:
                 self.spin(early_s)
@@ -73,7 +73,7 @@ class WallTrial(Simulation):
             self.node.read_output(self.now())
             if self.recorder.commands:
                 return
-            found = bool(self.students_nodes()) and not self.recorder.follow_graph()
+            found = self.all_nodes_found() and not self.recorder.follow_graph()
         # Handle what arrived before the clock starts, so that no interval contains it. Reading the graph takes a while.
         self.spin()
         self.node.read_output(self.now())

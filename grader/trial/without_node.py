@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.trial.inputs import Inputs
-    from grader.trial.node_process import NodeProcess
+    from grader.trial.node_group import NodeGroup
     from grader.trial.recording import Pose
 
 GRAPH_S = 5.0
@@ -26,7 +26,7 @@ class AloneTrial(Simulation):
     def __init__(self, start: Pose, prefixes: list[Path], inputs: Inputs) -> None:
         self._now_s = 0.0
         # There is no process, and none of the methods here uses it.
-        super().__init__(cast("NodeProcess", None), start, prefixes, inputs)
+        super().__init__(cast("NodeGroup", None), start, prefixes, inputs)
         self._start = start
 
     def now(self) -> float:

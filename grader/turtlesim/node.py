@@ -143,28 +143,36 @@ class TurtlesimNode(Node):
         if len(self.world.turtles) >= MOST_TURTLES:
             self.get_logger().error(f"There are {MOST_TURTLES} turtles already; no more can be spawned")
             return response
-        name = self.world.spawn(request.name, Start(request.x, request.y, request.theta))
+        response.name = self.add_turtle(request.name, Start(request.x, request.y, request.theta))
+        return response
+
+    def add_turtle(self, wanted: str, start: Start) -> str:
+        """Add a turtle at `start`. Return its name, or "" if that cannot be done; the log says why."""
+        name = self.world.spawn(wanted, start)
         if not name:
-            self.get_logger().error(f"A turtle named [{request.name}] already exists")
-            return response
+            self.get_logger().error(f"A turtle named [{wanted}] already exists")
+            return ""
         try:
             self._show(name)
         except Exception as error:
             # The real turtlesim exits with this exception. The first line of the message lists the allowed characters.
             self.world.kill(name)
             self.get_logger().error(f"A turtle cannot be named [{name}]: {str(error).partition(chr(10))[0]}")
-            return response
+            return ""
         self._log_spawned(name)
-        response.name = name
-        return response
+        return name
 
     def _kill(self, request: Kill.Request, response: Kill.Response) -> Kill.Response:
         self._hooks.on_intervention("kill")
-        if self.world.kill(request.name):
-            self._hide(request.name)
-        else:
-            self.get_logger().error(f"Tried to kill turtle [{request.name}], which does not exist")
+        self.remove_turtle(request.name)
         return response
+
+    def remove_turtle(self, name: str) -> None:
+        """Remove a turtle. The log says if there is none with this name."""
+        if self.world.kill(name):
+            self._hide(name)
+        else:
+            self.get_logger().error(f"Tried to kill turtle [{name}], which does not exist")
 
     def _clear(self, _: Empty.Request, response: Empty.Response) -> Empty.Response:
         self._hooks.on_intervention("clear")

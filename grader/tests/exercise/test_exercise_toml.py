@@ -282,3 +282,20 @@ def test_every_exercise_of_the_course_is_valid_and_named_as_its_folder() -> None
         exercise = load_exercise(file)
         assert exercise.id == id_
         assert sum(check.points for check in exercise.checks) == 100
+
+
+BESIDE = GOOD.replace(
+    "[[check]]", '[[trial]]\nid = "more"\nexecutable = "b"\nnode = "b"\nbeside = "drive"\n\n[[check]]', 1
+)
+
+
+def test_a_node_beside_another_one_has_the_same_scenario(tmp_path: Path) -> None:
+    exercise = load(tmp_path, BESIDE)
+    assert exercise.beside("drive") == (exercise.trial("more"),)
+    assert exercise.trial("more") == TrialSpec("more", "b", "b", exercise.trial("drive").scenario, beside="drive")
+
+
+@pytest.mark.parametrize("name", ["more", "nowhere"])
+def test_a_node_must_be_beside_a_trial_with_a_node_of_its_own(tmp_path: Path, name: str) -> None:
+    (reported,) = problems(tmp_path, BESIDE.replace('beside = "drive"', f'beside = "{name}"'))
+    assert reported == f'[[trial]] 3 (more): "beside" is "{name}"; it must be the id of a trial with a node of its own.'

@@ -52,7 +52,7 @@ def a_line_while_the_graph_is_looked_at() -> list[float]:
         written.clear()
 
     stage: Any = WallTrial.__new__(WallTrial)
-    stage.node = SimpleNamespace(ended=lambda: False, read_output=read)
+    stage.node = SimpleNamespace(pids=(1,), ended=lambda: False, read_output=read)
     stage.recorder = SimpleNamespace(commands=[], follow_graph=lambda: written.append("a line"))
     stage.spin = lambda _=0.0: []
     stage.students_nodes = lambda: ["/draw_circle"]
@@ -64,7 +64,7 @@ def a_node_that_drives_before_it_is_found() -> int:
     """Return how many of its commands have arrived when the clock starts."""
     commands: list[str] = []
     stage: Any = WallTrial.__new__(WallTrial)
-    stage.node = SimpleNamespace(ended=lambda: False, read_output=lambda _: 0)
+    stage.node = SimpleNamespace(pids=(1,), ended=lambda: False, read_output=lambda _: 0)
     stage.recorder = SimpleNamespace(commands=commands, follow_graph=lambda: True)
     stage.spin = lambda _=0.0: commands.append("a command")
     stage.students_nodes = lambda: ["/draw_square"]

@@ -1,0 +1,104 @@
+"""Several nodes run in one trial: they hear each other, keep their own output, and end together."""
+
+from __future__ import annotations
+
+import io
+import tarfile
+
+import pytest
+
+from grader.ros.installation import find_ros
+from grader.ros.underlay import with_turtlesim
+from grader.trial.inputs import Inputs
+from grader.trial.recording import Pose, Recording, from_json, to_json
+from grader.trial.target_places import draw_targets
+from grader.trial.trial import Plan, Trial
+
+PACKAGE = "my_package"
+START = Pose(5.544445, 5.544445, 0.0)
+NODE = """#!/usr/bin/env python3
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from std_msgs.msg import String
+from turtlesim.srv import Kill
+
+rclpy.init()
+node = rclpy.create_node("{name}")
+{body}
+print("hello from {name}", flush=True)
+try:
+    rclpy.spin(node)
+except (KeyboardInterrupt, ExternalShutdownException):
+    pass
+"""
+PING = """
+publisher = node.create_publisher(String, "/ping", 10)
+node.create_timer(0.5, lambda: publisher.publish(String(data="ping")))
+"""
+PONG = """
+publisher = node.create_publisher(String, "/pong", 10)
+node.create_subscription(String, "/ping", publisher.publish, 10)
+"""
+ENDS = """
+node.create_timer(1.0, lambda: exit(0))
+"""
+CATCHER = """
+client = node.create_client(Kill, "/catch")
+def hear(msg):
+    print(msg.data, flush=True)
+    for name in msg.data.split()[:1]:
+        client.call_async(Kill.Request(name=name))
+node.create_subscription(String, "/targets", hear, 10)
+"""
+
+
+def trial_of(inputs: Inputs, **bodies: str) -> Recording:
+    """Run a node with each of these bodies, all in one trial of 4 s."""
+    stream = io.BytesIO()
+    with tarfile.open(fileobj=stream, mode="w|") as tar:
+        for name, body in bodies.items():
+            source = NODE.format(name=name, body=body).encode()
+            member = tarfile.TarInfo(f"./{PACKAGE}/lib/{PACKAGE}/{name}")
+            member.size, member.mode = len(source), 0o755
+            tar.addfile(member, io.BytesIO(source))
+    first, *others = bodies
+    plan = Plan("simulated", START, None, 4.0, inputs=inputs, beside=tuple(others))
+    with Trial(plan, with_turtlesim(find_ros()), in_cell=True) as trial:
+        return trial.run(PACKAGE, first, stream.getvalue())
+
+
+@pytest.fixture(scope="module")
+def both() -> Recording:
+    return trial_of(Inputs(), ping=PING, pong=PONG)
+
+
+def test_the_nodes_of_a_trial_hear_each_other_in_simulated_time(both: Recording) -> None:
+    sent, answered = ([m.t_s for m in both.messages if m.topic == topic] for topic in ("/ping", "/pong"))
+    assert sent == pytest.approx([0.5 * n for n in range(1, 9)], abs=0.02)
+    assert answered == sent
+
+
+def test_each_node_keeps_its_own_output_and_stops_on_ctrl_c(both: Recording) -> None:
+    beside = both.seen_from("pong")
+    assert (both.stdout.text, beside.stdout.text) == ("hello from ping\n", "hello from pong\n")
+    assert [each.end.by for each in (both, beside)] == ["SIGINT", "SIGINT"]
+    assert {"/ping", "/pong"} <= set(both.graphs[-1].nodes)
+    assert from_json(to_json(both)).beside == both.beside
+
+
+def test_when_one_node_ends_the_trial_is_over_for_all() -> None:
+    recording = trial_of(Inputs(), ping=PING, ends=ENDS)
+    assert recording.seen_from("ends").end.by == "itself"
+    assert recording.end.by == "SIGINT"
+    assert recording.sigint_t_s < 2.0
+
+
+def test_the_trial_plays_the_node_that_announces_and_removes_targets() -> None:
+    targets = draw_targets(3, START, 1)
+    recording = trial_of(Inputs(targets=targets, alone_s=0.5), catcher=CATCHER)
+    names = [target.name for target in targets]
+    assert recording.stdout.text.splitlines()[:3] == ["hello from catcher", " ".join(names), " ".join(names[1:])]
+    assert [call.request["name"] for call in recording.calls if call.service == "/catch"] == names
+    assert [track.turtle for track in recording.tracks if track.gone_s is not None] == names
+    assert recording.own_nodes == ("/turtlesim", "/spawner")
+    assert recording.sigint_t_s < 3.0  # turtle1 has been alone for long enough

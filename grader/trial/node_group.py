@@ -1,0 +1,118 @@
+"""The processes of all nodes of one trial, which start, run and stop together."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.trial.rest import GoneError, Threads
+from grader.trial.rest import Look as LookAtThreads
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from grader.trial.node_process import NodeProcess
+    from grader.trial.rest import Wait
+
+
+class NodeGroup:
+    """The node of the trial, which comes first, and the nodes beside it."""
+
+    def __init__(self, processes: Sequence[NodeProcess]) -> None:
+        self.processes = tuple(processes)
+
+    @property
+    def pids(self) -> tuple[int, ...]:
+        """The process ids of the nodes."""
+        return tuple(process.pid for process in self.processes)
+
+    def await_ready(self) -> None:
+        """Wait until all launchers are ready. Raises LaunchError if one of them exited."""
+        for process in self.processes:
+            process.await_ready()
+
+    def start(self, orders: Sequence[dict[str, object]], tree: bytes) -> None:
+        """Send each launcher its order and the install tree."""
+        for process, order in zip(self.processes, orders, strict=True):
+            process.start(order, tree)
+
+    def ended(self) -> bool:
+        """Return whether at least one of the processes has exited."""
+        return any(process.ended() for process in self.processes)
+
+    def all_ended(self) -> bool:
+        """Return whether all of the processes have exited."""
+        return all(process.ended() for process in self.processes)
+
+    def interrupt(self) -> None:
+        """Send SIGINT to each of them, as Ctrl-C does in a terminal."""
+        for process in self.processes:
+            process.interrupt()
+
+    def escalate(self) -> None:
+        """Send the stronger signals to those that did not stop. Call this repeatedly after `interrupt`."""
+        for process in self.processes:
+            if not process.ended():
+                process.escalate()
+
+    def read_output(self, now_s: float) -> int:
+        """Store the output with the arrival time `now_s`, and return the number of bytes."""
+        return sum(process.read_output(now_s) for process in self.processes)
+
+    def waited_to_write(self, size: int) -> bool:
+        """Return whether one of the nodes, which wrote this many bytes together, may have waited for a reader."""
+        return any(process.waited_to_write(size) for process in self.processes)
+
+    def worked_s(self, begin: float, end: float) -> float:
+        """Return the CPU time that all of them used between two times of CLOCK_MONOTONIC (s)."""
+        return sum(process.worked_s(begin, end) for process in self.processes)
+
+    def started_ready_s(self) -> float:
+        """Return how long the processes that they started have run or waited for a processor so far (s)."""
+        return sum(process.started_ready_s() for process in self.processes)
+
+
+class GroupThreads:
+    """The threads of several processes, as `Threads` has those of one. All raise GoneError if one has exited."""
+
+    def __init__(self, pids: Sequence[int], wanted: Callable[[str], bool] = lambda _: True) -> None:
+        self._each: list[Threads] = []
+        try:
+            for pid in pids:
+                self._each.append(Threads(pid, wanted))
+        except GoneError:
+            self.close()
+            raise
+
+    def close(self) -> None:
+        """Close the files in /proc."""
+        for threads in self._each:
+            threads.close()
+
+    def look(self) -> LookAtThreads:
+        """Look at every thread once."""
+        looks = self.looks()
+        return LookAtThreads(all(look.asleep for look in looks), sum((look.runs for look in looks), ()))
+
+    def looks(self) -> list[LookAtThreads]:
+        """Look at every thread once, and return one look per process."""
+        return [threads.look() for threads in self._each]
+
+    def runs(self) -> tuple[bytes, ...]:
+        """Return how often each thread of the last look has run."""
+        return sum((threads.runs() for threads in self._each), ())
+
+    def main_asleep(self) -> bool:
+        """Return whether all main threads sleep."""
+        return all(threads.main_asleep() for threads in self._each)
+
+    def run_time_s(self) -> float:
+        """Return the CPU time that all threads have used so far (s)."""
+        return sum(threads.run_time_s() for threads in self._each)
+
+    def run_times_s(self) -> dict[int, float]:
+        """Return the CPU time that each thread except those of Fast DDS has used so far (s), by thread id."""
+        return {tid: ran_s for threads in self._each for tid, ran_s in threads.run_times_s().items()}
+
+    def waits(self) -> list[Wait]:
+        """Return what each thread is waiting for now, except the threads of Fast DDS."""
+        return [wait for threads in self._each for wait in threads.waits()]

@@ -1,0 +1,77 @@
+"""Draw the places of targets: turtles that a node is to catch, the nearest first.
+
+The places are drawn again until the order is clear: going to the nearest target each time gives one order only, and
+another rule (by name, by the distance from the start) gives another one.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from grader.trial.recording import Pose
+
+NAMES = ("ada", "bela", "cleo", "dora", "emil")
+LOW_M, HIGH_M = 1.5, 9.5
+"""The smallest and the largest coordinate (m)."""
+APART_M = 1.6
+"""The smallest distance between two targets, and between a target and the start (m)."""
+CLEAR_M = 1.2
+"""How much nearer the nearest target is than the second one, at least (m)."""
+LONGEST_M = 20.0
+"""The longest way from the start through all targets (m)."""
+MOST_DRAWS = 20_000
+
+
+@dataclass(frozen=True)
+class Target:
+    """A turtle with its name and its place (m)."""
+
+    name: str
+    x: float
+    y: float
+
+
+def draw_targets(count: int, start: Pose, seed: int) -> tuple[Target, ...]:
+    """Return `count` targets, sorted by their names. The first that is right of many draws counts."""
+    draw = random.Random(f"targets {seed}")
+    targets: tuple[Target, ...] = ()
+    for _ in range(MOST_DRAWS):
+        targets = tuple(
+            Target(name, round(draw.uniform(LOW_M, HIGH_M), 2), round(draw.uniform(LOW_M, HIGH_M), 2))
+            for name in NAMES[:count]
+        )
+        if _is_clear(targets, start):
+            break
+    return targets
+
+
+def nearest_first(targets: tuple[Target, ...], start: Pose) -> tuple[Target, ...]:
+    """Return the targets in the order in which each is the nearest one when the turtle is at the one before."""
+    order: list[Target] = []
+    x, y = start.x, start.y
+    left = list(targets)
+    while left:
+        left.sort(key=lambda each: math.hypot(each.x - x, each.y - y))
+        order.append(left.pop(0))
+        x, y = order[-1].x, order[-1].y
+    return tuple(order)
+
+
+def _is_clear(targets: tuple[Target, ...], start: Pose) -> bool:
+    order = nearest_first(targets, start)
+    x, y = start.x, start.y
+    way_m = 0.0
+    for number, target in enumerate(order):
+        to_m = math.hypot(target.x - x, target.y - y)
+        others_m = [math.hypot(each.x - x, each.y - y) for each in order[number + 1 :]]
+        if to_m < APART_M or any(each < to_m + CLEAR_M for each in others_m):
+            return False
+        way_m += to_m
+        x, y = target.x, target.y
+    by_start = sorted(targets, key=lambda each: math.hypot(each.x - start.x, each.y - start.y))
+    other_rules = len(order) < 3 or (order != targets and order != tuple(by_start))
+    return way_m <= LONGEST_M and other_rules
