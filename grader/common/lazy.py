@@ -1,10 +1,11 @@
 """Import numpy and catkin_pkg when they are first used, because that takes 0.1 s and most commands do not need them.
 
-Use `from grader.common.lazy import np` in modules that many commands import but only a few commands use. What is first
-used in a child process is imported in each child again: `load_numpy` and `load_catkin_pkg` import it before.
+Use `from grader.common.lazy import np` in modules that many commands import but only a few commands use. A module that
+is first used in a child process is imported again in each child. `load_numpy` and `load_catkin_pkg` import it before
+the fork.
 
-A thread may be importing numpy while another one forks (grader/submission/reader.py). The child would then wait for
-ever for a module that nobody finishes. So code that forks must hold `IMPORTING`.
+A thread may be importing numpy while another one forks (grader/submission/reader.py). The child would then wait forever
+for an import that never finishes. So code that forks must hold `IMPORTING`.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ def load_numpy() -> None:
 
 
 def load_catkin_pkg() -> None:
-    """Import the parser of package.xml now, before processes are forked that read submissions."""
+    """Import the parser of package.xml now, before forking processes that read submissions."""
     catkin_package.load()
 
 

@@ -1,4 +1,4 @@
-"""Package managers: what they call the packages that the course needs, and how they install them.
+"""Package managers: their names for the packages that the course needs, and their commands.
 
 Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
@@ -25,7 +25,7 @@ class Need(NamedTuple):
 
 
 class Manager(NamedTuple):
-    """A package manager. Its commands are shell lines; `quiet` holds options for when nobody can answer questions."""
+    """A package manager. Its commands are shell lines; `quiet` contains options for unattended use."""
 
     program: str
     systems: Tuple[str, ...]

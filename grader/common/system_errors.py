@@ -12,7 +12,7 @@ OF_THE_DISK = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS})
 """Errors that mean the disk is full or broken. Any other error concerns a single file."""
 ROOM = "free some space there, or set another folder with XDG_CACHE_HOME, XDG_STATE_HOME or TMPDIR"
 _SCARCE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN, errno.EIO})
-_NOT_ALLOWED = "see what `grader doctor` says"
+_NOT_ALLOWED = "see the output of `grader doctor`"
 
 
 def refusal(error: BaseException) -> Optional[str]:

@@ -175,7 +175,7 @@ class _Grading:
     def _run_simulator(self, ros: Ros) -> None:
         """Run the simulator without a node, for an exercise whose answers are compared with it."""
         self.stage = "trial"
-        self.tell("Asking a running simulator")
+        self.tell("Running the simulator")
         self.evidence = self._trials(ros, Ahead(1)).run_alone(self.evidence).evidence
 
     def _build_and_run(self, ros: Ros, certain: Early) -> None:

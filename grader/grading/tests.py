@@ -1,4 +1,4 @@
-"""The student's tests of one grading: run them on the right node and on the broken ones, beside the build."""
+"""Run the student's tests during the build, on the right node and on the broken ones."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Tests:
-    """A context manager. Leaving it ends all runs of the tests."""
+    """Runs the student's tests, as a context manager. Leaving it ends all runs of the tests."""
 
     __test__ = False  # pytest must not take this class for a test
 

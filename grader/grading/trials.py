@@ -83,7 +83,7 @@ class Trials:
         except OverwhelmedError as error:
             if error.hung:
                 return self._overwhelmed(evidence, error, settled)
-            self._tell(f"The simulator was brought down ({printable(str(error))}): once more")
+            self._tell(f"The simulator was brought down ({printable(str(error))}): running the trial again")
         try:
             with self._trial(evidence, clock.name) as trial:
                 return self._decide(evidence, trial, clock, settled)
@@ -129,7 +129,7 @@ class Trials:
             first = self._run(evidence, trial, wall, settled)
         attempts = [first]
         while policy.wants_another(attempts):
-            self._tell("The machine was too busy for wall time: once more")
+            self._tell("The machine was too busy for wall time: running the trial again")
             with self._turns.alone(), self._trial(evidence, wall.name) as again:
                 attempts.append(self._run(evidence, again, wall, settled))
         return policy.that_counts(attempts)

@@ -42,7 +42,7 @@ def goal_rows(recording: Recording) -> list[tuple[str, ...]]:
 
 
 def moments(recording: Recording) -> list[tuple[float, str]]:
-    """Return what the replay says at which time (s): each call, each goal, each request to cancel, and each end."""
+    """Return the events of a replay as (time in s, text): each call, goal, cancel request and end of a goal."""
     found = [(call.t_s, f"{_caller(call)} calls {shorten(call.service)}") for call in recording.calls[:MOST_ROWS]]
     for goal in recording.goals[:MOST_ROWS]:
         found += _moments_of(goal)

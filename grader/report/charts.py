@@ -42,7 +42,7 @@ Series = tuple[tuple[float, float], ...]
 
 @dataclass(frozen=True)
 class Chart:
-    """A picture, and a caption that says the same in words."""
+    """A picture, and a caption that describes its values."""
 
     svg: str
     caption: str

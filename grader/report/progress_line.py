@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Progress:
-    """Two functions: `tell` shows what is being done now, `keep` shows a line until the report says the same.
+    """Two functions: `tell` shows the current step, and `keep` shows a line until the report appears.
 
     Calling the object is the same as calling `tell`:
 
@@ -25,11 +25,11 @@ class Progress:
     keep: Callable[[str], None]
 
     def __call__(self, text: str) -> None:
-        """Show what is being done now."""
+        """Show the current step."""
         self.tell(text)
 
     def keep_all(self, lines: Iterable[str]) -> None:
-        """Show lines until the report says the same."""
+        """Show lines until the report appears."""
         for line in lines:
             self.keep(line)
 

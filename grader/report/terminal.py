@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 RESULTS = {"passes": "then it passes", "further": "the node gets further", "refuted": "it still fails"}
-HIDDEN = "A hidden check tells no details."
+HIDDEN = "A hidden check shows no details."
 NARROW = 50
 """A width in columns. On a narrower terminal, text is not indented under its label."""
 
@@ -48,7 +48,7 @@ def render(report: Report, console: Console, *, brief: bool = False, verbose: bo
     console.print()
     if brief:
         amount = count(len(report.with_status(Status.PASSED)), "check")
-        _line(console, Text(f"{amount} passed. A higher window or `grader check` lists them.", style="dim"))
+        _line(console, Text(f"{amount} passed. `grader check` or a higher window shows them.", style="dim"))
     _line(console, _verdict(report))
     for text in _footnotes(report, verbose=verbose):
         _line(console, Text(text, style="dim"))

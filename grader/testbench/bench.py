@@ -1,7 +1,7 @@
 """The bench: run a student's tests on the right node several times and on each broken node once, in a random order.
 
-The student's process reports whether its tests passed, and nothing keeps it from lying. But it does not know which node
-it has, so a lie is as often wrong as right: tests that pass always, or fail always, or by chance, earn nothing.
+The student's process reports whether its tests passed, and it could lie. But it does not know which node it tests, so a
+lie does not help: tests that always pass, always fail, or pass by chance earn no points.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 RELAYED = Path(__file__).absolute().with_name("relayed_node.py")
 MOST_LANES = 4
 MOST_HANGS = 2
-"""After so many runs that did not end in time, no other is started."""
+"""After this number of runs that did not end in time, no further run is started."""
 
 
 class Bench:
@@ -57,7 +57,7 @@ class Bench:
         self._done: list[Future[None]] = []
 
     def start(self) -> None:
-        """Start the cells, up to `lanes` side by side, and the runs in them.
+        """Start the cells, up to `lanes` in parallel, and the runs in them.
 
         If that fails, `result` raises the error.
         """
@@ -96,7 +96,7 @@ class Bench:
 
 
 class _Queue:
-    """The runs that are to be made, in a random order, and those that have ended."""
+    """The pending runs, in a random order, and the runs that have ended."""
 
     def __init__(self, spec: TestsSpec) -> None:
         self._waiting: list[tuple[str, Behaviour]] = [("", spec.right)] * spec.right_runs
@@ -109,7 +109,8 @@ class _Queue:
     def take(self) -> tuple[str, Behaviour] | None:
         """Return the next run, or None.
 
-        If the tests rejected the right node, catching broken ones earns nothing. Only the right node is left then.
+        If the tests rejected the right node, they earn nothing on broken nodes. The remaining runs then use the right
+        node.
         """
         with self._lock:
             if self._closed or sum(each.over for each in self.ended) >= MOST_HANGS:
@@ -119,12 +120,12 @@ class _Queue:
             return self._waiting.pop() if self._waiting else None
 
     def put(self, ended: Ended) -> None:
-        """Keep how a run ended."""
+        """Store how a run ended."""
         with self._lock:
             self.ended.append(ended)
 
     def close(self) -> None:
-        """Give out no more runs."""
+        """Hand out no more runs."""
         with self._lock:
             self._closed = True
 

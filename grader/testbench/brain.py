@@ -1,7 +1,7 @@
-"""The brain of a node under test: what it does in each event. It runs in the grader's own process, never in the cell.
+"""The brain of a node under test: its reaction to each event. It runs in the grader's own process, never in the cell.
 
 The node in the cell is the same in every run (relayed_node.py), and asks here what to do. So tests can tell a right
-node from a broken one only by what it does.
+node from a broken one only by its behaviour.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Values = list[float]
 
 @dataclass
 class _State:
-    """What one node remembers: the last pose (m), when it came (ns), and whether it is turning for ever."""
+    """The state of one node: the last pose (m), its arrival time (ns), and whether the node turns forever."""
 
     x: float = 0.0
     y: float = 0.0
@@ -32,7 +32,7 @@ class _State:
 
 
 class Brain:
-    """Decides for all nodes that are created in one run of the tests. `node` is the name of the node."""
+    """Controls all nodes that are created in one run of the tests. `node` is the name of the node."""
 
     def __init__(self, behaviour: Behaviour, node: str) -> None:
         self._behaviour = behaviour
@@ -54,7 +54,7 @@ class Brain:
         }
 
     def pose(self, number: int, now_ns: int, x: float, y: float) -> None:
-        """Node `number` has received this pose (m) at this time of its clock (ns)."""
+        """Store the pose (m) that node `number` received at this time of its clock (ns)."""
         if number < len(self._states):
             state = self._states[number]
             state.x, state.y, state.received_ns = x, y, now_ns

@@ -1,4 +1,4 @@
-"""A lane: one cell in which the student's tests run on one node after the other, and the brain of the present node."""
+"""A lane: one cell in which the student's tests run on one node after the other, and the brain of the current node."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ if TYPE_CHECKING:
 
 SESSION = Path(__file__).absolute().with_name("session.py")
 MOST_QUESTIONS = 100_000
-"""How many questions of one run are answered. A test asks a few hundred."""
+"""The maximum number of requests that are answered in one run. A test makes a few hundred."""
 MOST_REPORT = 64 * 1024
 EXTRA_S = 30.0
-"""How long a run may take in addition to the time of the tests, to fork and to clean up (s)."""
+"""The time of a run in addition to that of the tests, for forking and cleaning up (s)."""
 START_S = 120.0
-"""How long the imports may take on a crowded machine (s)."""
+"""The maximum time for the imports, on a crowded machine (s)."""
 _QUESTION = struct.Struct("<cHqdd")
 READY = b"ready\n"
-"""What the session writes when it can run tests, as in session.py."""
+"""The output of the session when it can run tests, as in session.py."""
 _HEADER = struct.Struct("<i?dI")
 _LENGTH = struct.Struct("<H")
 _DISKS = ("/ws", "/tmp", "/dev/shm")
@@ -56,9 +56,10 @@ class Package:
 
 
 class Lane:
-    """A context manager: the cell with its session. Entering it starts the imports.
+    """The cell with its session, as a context manager. Entering it starts the imports.
 
-    `folder` is a folder of its own for a lane without a cell. Its nodes then find no others on the machine.
+    Without a cell, the lane uses `folder`, which no other lane uses. Its nodes then discover no other nodes on the
+    machine.
     """
 
     def __init__(self, ros: Ros, package: Package, duration_s: float, folder: Path | None = None) -> None:
@@ -156,7 +157,7 @@ class Lane:
         return Ended(node, None, time.monotonic() >= until, time.monotonic() - begun)
 
     def _converse(self, brain: Brain, until: float) -> bytes | None:
-        """Answer questions about the node until the session reports the end. Return None if it does not."""
+        """Answer requests about the node until the session reports the end. Return None if it does not."""
         assert self._process.stdout is not None
         reports = self._process.stdout.fileno()
         asked, rest, received = 0, b"", b""
@@ -210,7 +211,7 @@ class Lane:
 
     def _send(self, data: bytes) -> None:
         assert self._process.stdin is not None
-        with suppress(BrokenPipeError):  # it has ended, which `run` notices
+        with suppress(BrokenPipeError):  # the process has ended, and `run` will notice
             self._process.stdin.write(data)
             self._process.stdin.flush()
 

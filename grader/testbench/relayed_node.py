@@ -1,7 +1,7 @@
-"""The node that the student's tests get. It decides nothing by itself: it asks the grader what to do in each event.
+"""The node that the student's tests get. It decides nothing: it asks the grader how to react to each event.
 
-This text is laid over the module of the node in the cell. It is the same in every run, so nothing in the cell but the
-behaviour tells a right node from a broken one. It has the attributes and methods of the node that students were given.
+This file replaces the module of the node in the cell. It is the same in every run, so only the behaviour distinguishes
+a right node from a broken one. It has the attributes and methods of the node that students were given.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class RelayedNode(Node):
         self.timer = self.create_timer(about["period_s"], self.send)
 
     def on_pose(self, pose: Any) -> None:  # noqa: ANN401 - a message
-        """Remember the pose and when it came."""
+        """Store the pose and its arrival time."""
         self.pose = pose
         self.pose_time = self.get_clock().now()
         _ask(b"p", self._number, self._now_ns(), pose.x, pose.y)

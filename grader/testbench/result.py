@@ -1,4 +1,4 @@
-"""What the runs of a student's tests gave, in memory and as JSON."""
+"""The results of the runs of a student's tests, in memory and as JSON."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ class NodeRun:
     """One run of all tests. `node` is the id of the broken node, or "" for the right one.
 
     `exit_code` is that of pytest, None if the run did not end by itself. `collected` is the number of tests that pytest
-    found. The rest is about the first test that did not pass: its name, whether the test failed ("failed"), what it
-    stood on failed ("setup"), or its file could not be imported ("import"), the message, the file and the line. A
-    student's process reports all of it, so only whether a run failed counts, and only together with the other runs.
+    found. The other fields describe the first test that did not pass: its name, the message, the file, the line, and
+    what failed: the test itself ("failed"), a fixture ("setup") or the import of its file ("import"). A student's
+    process reports all of this. So only the pass or failure of a run counts, and only together with the other runs.
     """
 
     node: str
     exit_code: int | None
     over: bool = False
-    """Whether the run did not end within its time."""
+    """Whether the run exceeded its time limit."""
     seconds: float = 0.0
     collected: int = 0
     passed: int = 0
@@ -62,7 +62,7 @@ class BenchResult:
 
 @dataclass(frozen=True)
 class Ended:
-    """How a run ended, before its report is read: a student's process may have written the report (JSON)."""
+    """The end of a run, before its report (JSON) is read. A student's process may have written the report."""
 
     node: str
     exit_code: int | None = None
@@ -72,7 +72,7 @@ class Ended:
 
 
 def run_of(ended: Ended) -> NodeRun:
-    """Return the run with its report. What has another form than expected is left out."""
+    """Return the run with its report. Parts of the report that have an unexpected form are left out."""
     try:
         report = json.loads(ended.report)
     except ValueError:

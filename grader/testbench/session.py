@@ -1,11 +1,11 @@
-"""Run a student's tests in a cell, again and again: pytest and rclpy are imported once, and each run is a fork.
+"""Run a student's tests in a cell, repeatedly: pytest and rclpy are imported once, and each run is a fork.
 
-This file runs as a script of its own. It reads one line of JSON and the files of the package (a tar stream) from
+This file runs as a separate script. It reads one line of JSON and the files of the package (a tar stream) from
 standard input, then one byte per run. It writes to standard output: READY as soon as it can run tests, and after each
 run the exit code of pytest, whether the time was over, the seconds, the size of the report, and the report. It does not
 know which node a run gets.
 
-Between two runs, it ends all processes of the cell and empties its disks. So a run finds nothing of an earlier one.
+Between two runs, it ends all processes of the cell and empties its disks. So a run finds no traces of earlier runs.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _TYPES_AHEAD = (
 )
 _HEADER = struct.Struct("<i?dI")
 READY = b"ready\n"
-"""The session writes this before any of the student's code runs, so what fails later is not the machine's fault."""
+"""The session writes this before any of the student's code runs. A later failure is not the machine's fault."""
 _MOST_REPORT = 64 * 1024
 _DUMPABLE, _PARENT_DEATH = 4, 1
 """PR_SET_DUMPABLE and PR_SET_PDEATHSIG of prctl(2). A run cannot look into a session that is not dumpable."""
@@ -47,7 +47,7 @@ _GONE_S = 5.0
 
 
 class _Watcher:
-    """A plugin of pytest that keeps what the tests reported."""
+    """A pytest plugin that stores the results of the tests."""
 
     def __init__(self) -> None:
         self.collected = 0
@@ -185,7 +185,7 @@ def _end_all(group: int | None) -> None:
 
 
 class _Disk:
-    """A disk of the cell. What is on it at the beginning, folders in which others are mounted, stays there."""
+    """A disk of the cell. Its initial entries are kept, because other disks are mounted there."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -194,7 +194,7 @@ class _Disk:
 
     def empty(self) -> None:
         """Remove what a run left behind. Exit if that fails, because the next run could find it."""
-        # The order puts what is in a folder before the folder.
+        # in this order, the contents of a folder come before the folder itself
         for path in sorted(self._entries(self._folder), reverse=True):
             if path in self._first:
                 path.chmod(0o755)

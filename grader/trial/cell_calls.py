@@ -1,6 +1,6 @@
 """Call a student's function or program in a cell, once with each input, each time in a process of its own.
 
-This file runs as a script of its own. It reads one line of JSON (`calls`, `script`, `function`, `python_path`, `env`,
+This file runs as a separate script. It reads one line of JSON (`calls`, `script`, `function`, `python_path`, `env`,
 `install`, `files`) and then the install tree, a tar stream, from standard input. It writes one line of JSON for
 each call. A student's code may write such lines too, but it does not know the expected numbers.
 """

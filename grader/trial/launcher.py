@@ -1,6 +1,6 @@
 """Start a node quickly inside its cell: rclpy is imported while colcon is still building.
 
-This file runs as a script of its own, before the install tree exists. It reads one line of JSON (`script`,
+This file runs as a separate script, before the install tree exists. It reads one line of JSON (`script`,
 `ros_arguments`, `python_path`, `env`, `install`) and then the install tree, a tar stream, from standard input. It then
 runs the installed script as __main__, as the interpreter in the script's first line would.
 

@@ -29,6 +29,6 @@ def bad_entry_point(point: EntryPoint) -> Finding:
         why = Cause("entry-point-format", "It names the function without parentheses, because it does not call it.")
         why = why.fixed_by(at(where, point.text, point.text.partition("(")[0]))
     elif ":" not in point.text:
-        text = "It does not name a function. After the module comes a colon, then the function name."
+        text = "It does not name a function. After the module, write a colon and the function name."
         why = Cause("entry-point-no-function", text)
     return failed(observed, expected, why.at(where))

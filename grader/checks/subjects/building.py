@@ -221,7 +221,7 @@ PLAIN_FILES = Kind(
     "The package contains only normal files",
     NoParams,
     plain_files,
-    about="The submission holds only files and folders: no link that leads out of it, no device, no huge file.",
+    about="The submission contains only files and folders: no link that leads outside, no device, no huge file.",
 )
 BUILDS = Kind(
     "builds",

@@ -1,4 +1,4 @@
-"""Checks of a goal that is cancelled when the trial asks for it, and that no goal follows it."""
+"""Checks of cancelling a goal when the trial requests it, and of sending no goal afterwards."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class CancelsGoal:
-    """The service that the trial calls, upon which the node cancels its goal within `within_s` (s)."""
+    """The service by which the trial requests that the node cancel its goal within `within_s` (s)."""
 
     service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
     type: str = string("a service type, as in std_srvs/srv/Trigger", about="Its type.")
-    within_s: float = number(0.5, above=0, about="How long it may take until the goal is cancelled.")
+    within_s: float = number(0.5, above=0, about="The maximum time until the goal is cancelled.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,12 +71,12 @@ def _goes_on(evidence: Evidence, params: CancelsGoal, goal: Goal, took_s: float,
         return failed(
             f"The goal was cancelled {took_s:.1f} s after the call.",
             expected,
-            Cause("goal-goes-on", "Ask for it in the callback of the service.", where),
+            Cause("goal-goes-on", "Request this in the callback of the service.", where),
             near_edge=Band.at_most(params.within_s).near(took_s),
         )
-    text = "cancel_goal_async, called on the handle of the goal, asks to cancel it."
+    text = "cancel_goal_async of the goal handle requests the cancellation."
     cause = waits_in_callback(evidence) or Cause("goal-goes-on", text, where)
-    return failed(f"After the call of {params.service}, the turtle went on to its goal.", expected, cause)
+    return failed(f"After the call of {params.service}, the turtle continued to its goal.", expected, cause)
 
 
 def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
@@ -90,9 +90,9 @@ def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
     after = [goal for goal in goals if goal.t_s > found[0].t_s]
     if after:
         observed = f"The node sent another goal {after[0].t_s - found[0].t_s:.1f} s after the call."
-        text = "A cancelled goal has a result, too, and its callback is called. Look at the status in it."
+        text = "A cancelled goal also has a result, and its callback is called. Check the status of the result."
         return failed(observed, expected, Cause("goal-after-cancel", text, evidence.place("get_result_async")))
-    return passed("No goal came after the call.")
+    return passed("No goal arrived after the call.")
 
 
 def _stopped(goals: list[Goal], calls: list[Call]) -> tuple[Call, Goal] | None:
@@ -110,7 +110,7 @@ CANCELS_GOAL = Kind(
     "The node cancels its goal",
     CancelsGoal,
     cancels_goal,
-    about="When a `[[trial.call]]` asks for it, the node cancels the goal of `/turtle1/rotate_absolute` in time.",
+    about="When a `[[trial.call]]` requests it, the node cancels the goal of `/turtle1/rotate_absolute` in time.",
 )
 NO_GOAL_AFTER = Kind(
     "no_goal_after",
@@ -118,5 +118,5 @@ NO_GOAL_AFTER = Kind(
     "No goal follows a cancelled one",
     NoGoalAfter,
     no_goal_after,
-    about="After a `[[trial.call]]` of the service, the node sends no goal to `/turtle1/rotate_absolute` any more.",
+    about="After a `[[trial.call]]` of the service, the node sends no more goals to `/turtle1/rotate_absolute`.",
 )

@@ -32,13 +32,13 @@ class Eight:
     """Both lobes have this radius and turn by 360 degrees; the first one is to the left or to the right."""
 
     radius_m: float = number(above=0, at_most=2.5, about="The radius of both lobes.")
-    radius_tolerance_m: float = number(0.1, above=0, about="How far a radius may be off.")
+    radius_tolerance_m: float = number(0.1, above=0, about="The maximum error of a radius.")
     residual_m: float = number(
-        0.03, above=0, about="How far a lobe may deviate from its fitted circle (root mean square)."
+        0.03, above=0, about="The maximum deviation of a lobe from its fitted circle (root mean square)."
     )
-    angle_tolerance_deg: float = number(12.0, above=0, about="How far a lobe may be from 360 degrees.")
-    closing_m: float = number(0.2, above=0, about="How far from the start the first lobe may end.")
-    first: str = choice("left", "right", "either", about="To which side the first lobe goes.")
+    angle_tolerance_deg: float = number(12.0, above=0, about="The maximum difference of a lobe from 360 degrees.")
+    closing_m: float = number(0.2, above=0, about="The maximum distance from the start to the end of the first lobe.")
+    first: str = choice("left", "right", "either", about="The side of the first lobe.")
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ def _drives_on(evidence: Evidence, lobes: list[Lobe], expected: str) -> Finding 
 
 
 def requested_eight(evidence: Evidence, params: Eight) -> Requested:
-    """A circle on either side of where the turtle first drives."""
+    """Return a circle on either side of the turtle's first movement."""
     begin = first_heading(evidence)
     directions = ("counter-clockwise", "clockwise")
     sides = [CircleParams(radius_m=params.radius_m, direction=direction) for direction in directions]

@@ -86,7 +86,7 @@ def _no_module(evidence: Evidence, module_name: str) -> Finding:
     outer, _dot, last = module_name.rpartition(".")
     file = module_file(outer, files) if outer else None
     if file is not None and any(_bindings(read_module(file, files[file]), last)):
-        cause = f"{shorten(last)} is a function in {file}. Between module and function there is a colon, not a dot."
+        cause = f"{shorten(last)} is a function in {file}. Write a colon between module and function, not a dot."
         why = Cause("entry-point-no-function", cause, line(evidence))
         return failed(observed, f"{FORM}.", why.fixed_by(at(why.where, module_name, f"{outer}:{last}")))
     if module_name in evidence.exercise.package or "." not in module_name:
@@ -95,7 +95,7 @@ def _no_module(evidence: Evidence, module_name: str) -> Finding:
         guess = nearest(module_name, modules)
         cause = f"There is a module {shorten(guess)}." if guess else "Compare it with the names of your files."
         if f"{last}.py" in files:
-            cause = f"{last}.py is beside setup.py. It belongs in the folder {shorten(outer)}."
+            cause = f"{last}.py is next to setup.py. It belongs in the folder {shorten(outer)}."
     right = nearest(module_name, modules, alike=0.7)
     fix = at(line(evidence), module_name, right) if right is not None else ()
     return failed(observed, expected, Cause("entry-point-module", cause, line(evidence)).fixed_by(fix))
@@ -113,7 +113,7 @@ def _attribute(evidence: Evidence, module: Module, attribute: str) -> Finding:
     name = attribute.partition(".")[0]
     if not name:
         observed = f"The entry point {executable} names the module in {module.file}, but no function."
-        cause = "After the module comes a colon, then the function name."
+        cause = "After the module, write a colon and the function name."
         return failed(observed, f"{FORM}.", Cause("entry-point-no-function", cause, line(evidence)))
     bound = list(_bindings(module, name))
     if not bound:

@@ -1,4 +1,4 @@
-"""Check of logged feedback: while the turtle follows a goal, lines say how far it still has to turn."""
+"""Check of logged feedback: while the turtle follows a goal, lines show the remaining angle."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from grader.trial.observed import Goal
 
 BEGIN_S = 0.1
-"""In this time after a goal was accepted, a line may still be about the goal before (s)."""
+"""For this time after a goal was accepted, a line may still be about the previous goal (s)."""
 FRAME_S = 0.016
 LONG = 2.0
 """A goal counts if it lasts at least this many periods. A shorter one may end between two lines."""
@@ -33,16 +33,16 @@ LONG = 2.0
 
 @dataclass(frozen=True, kw_only=True)
 class LogFeedback:
-    """One line per `period_s` while a goal runs, with the angle that remains, at most `lag_s` old."""
+    """One line per `period_s` while a goal is active, with the remaining angle, at most `lag_s` old."""
 
     format: str = string("a log line with remaining in it", about="The format of a line with the number `remaining`.")
-    period_s: float = number(0.5, above=0, about="The time from one line to the next.")
+    period_s: float = number(0.5, above=0, about="The time between two lines.")
     tolerance_rad: float = number(0.05, above=0, about="The maximum error of the angle.")
-    lag_s: float = number(0.15, above=0, about="How old the angle in a line may be.")
+    lag_s: float = number(0.15, above=0, about="The maximum age of the angle in a line.")
 
 
 def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
-    """While the turtle follows a goal, lines say how far it still has to turn."""
+    """While the turtle follows a goal, lines show the remaining angle."""
     example = student_log.Format(params.format).example(1.25)
     expected = f'While the turtle turns, a line such as "{example}" comes every {params.period_s:g} s.'
     goals = [goal for goal in goals_of(evidence) if _ended_s(evidence, goal) - goal.t_s >= LONG * params.period_s]
@@ -64,13 +64,13 @@ def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
     turning_s = sum(_ended_s(evidence, goal) - goal.t_s for goal in goals)
     amount = Band(0.5 * turning_s / params.period_s - 1.0, 2.0 * turning_s / params.period_s + 1.0)
     if not amount.holds(len(told)):
-        observed = f"{len(told)} such lines came while the turtle turned for {turning_s:.1f} s."
+        observed = f"{len(told)} such lines appeared while the turtle turned for {turning_s:.1f} s."
         if len(told) > turning_s / params.period_s:
-            text = "The feedback comes 62 times per second. Only remember it, and let the timer log."
+            text = "The feedback comes 62 times per second. Store it, and log it in the callback of a timer."
             return failed(observed, expected, Cause("every-message", text, where))
-        text = "Log in the callback of the timer, as long as there is a goal."
+        text = "Log in the callback of the timer while there is a goal."
         return failed(observed, expected, _unheard(evidence) or Cause("feedback-not-logged", text, where))
-    return passed("The lines say how far the turtle still has to turn.")
+    return passed("The lines show how far the turtle still has to turn.")
 
 
 def _unheard(evidence: Evidence) -> Cause | None:
@@ -135,16 +135,18 @@ def _wrong(
     )
     where = evidence.place("info")
     if all(_holds(evidence, params, *pair, factor=-1.0) for pair in told):
-        return failed(observed, expected, Cause("wrong-sign", "Log the number as it is in the feedback.", where))
+        return failed(
+            observed, expected, Cause("wrong-sign", "Log the number from the feedback without a change.", where)
+        )
     if all(_holds(evidence, params, *pair, signed=False) for pair in told):
         text = "The number keeps its sign: it is negative while the turtle turns to the right. Do not use abs."
         return failed(observed, expected, Cause("wrong-sign", text, where))
     if all(_holds(evidence, params, *pair, factor=math.degrees(1.0)) for pair in told):
-        return failed(observed, expected, Cause("degrees", "The feedback is in radians, and so is the line.", where))
+        return failed(observed, expected, Cause("degrees", "The feedback and the line are both in radians.", where))
     if len({line.numbers["remaining"] for line, _ in told}) == 1:
         text = "The number never changes. Store it in self each time feedback arrives."
         return failed(observed, expected, Cause("stale-feedback", text, where))
-    text = "The message has a field feedback, and that one has the field remaining."
+    text = "The message has a field feedback, which has the field remaining."
     return failed(observed, expected, Cause("wrong-feedback", text, where))
 
 
@@ -154,5 +156,5 @@ LOG_FEEDBACK = Kind(
     "The log shows the feedback",
     LogFeedback,
     log_feedback,
-    about="While the turtle follows a goal of `/turtle1/rotate_absolute`, lines say how far it must turn.",
+    about="While the turtle follows a goal of `/turtle1/rotate_absolute`, lines show how far it must still turn.",
 )

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from grader.trial.called import Called
 
 SIGMAS = 6.0
-"""How many standard deviations of the best fit a right answer may be off."""
+"""The maximum error of a right answer, in standard deviations of the best fit."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +40,9 @@ class FitCall(OneCall):
     """One call, with the points of a circle."""
 
     rounding_m: float = number(
-        1e-3, above=0, about="How far each value may be off without noise (m). With noise, six deviations are added."
+        1e-3,
+        above=0,
+        about="The maximum error of each value without noise (m). With noise, six standard deviations are added.",
     )
 
 
@@ -67,13 +69,13 @@ def fits_circle(evidence: Evidence, params: FitCall) -> Finding:
     if not all(math.isfinite(value) for value in values):
         if fit.centre_right:
             return failed(observed, expected, Cause(*RADIUS_OF_C).at(where))
-        cause = "A root of a negative number, or a division by zero, makes NaN in numpy, and only warns."
+        cause = "In numpy, the root of a negative number and a division by zero give NaN, with only a warning."
         return failed(observed, expected, Cause("not-a-number", cause, where))
     return passed(observed) if fit.right else failed(observed, expected, why_fit(fit).at(where))
 
 
 def tolerances(arc: Arc, rounding_m: float) -> tuple[float, float, float]:
-    """Return how far centre x, centre y and radius may be off (m)."""
+    """Return the maximum errors of centre x, centre y and radius (m)."""
     x, y, radius = (rounding_m + SIGMAS * each for each in arc.deviations())
     return x, y, radius
 
@@ -99,7 +101,7 @@ def stopped(evidence: Evidence, called: Called, expected: str, name: str) -> Fin
 
 
 def _missing(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
-    """Return a finding if the module or the function is not there, or None."""
+    """Return a finding if the module or the function is missing, or None."""
     module = evidence.trial.calls.function.partition(":")[0]
     file = module_file(module, evidence.submission.files)
     if file is None:
@@ -116,14 +118,14 @@ def _missing(evidence: Evidence, called: Called, expected: str, name: str) -> Fi
 
 
 def _late(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
-    """Return a finding about a call that did not end, or that was not made after such a call, or None."""
+    """Return a finding about a call that did not end, or that was not made because of an earlier one, or None."""
     late = any(each.ended == TOO_LATE for each in evidence.run.called or ())
     if not late or called.ended not in (TOO_LATE, ""):
         return None
-    observed = f"{name} did not end in time (5 s of computing)."
+    observed = f"{name} did not end in time (5 s of CPU time)."
     if not called.ended:
-        observed = f"{name} was not called with this any more, because an earlier call did not end."
-    cause = "A loop may never end, or it waits for something that never comes."
+        observed = f"{name} was not called with this input, because an earlier call did not end."
+    cause = "A loop may never end, or it waits for something that never happens."
     return failed(observed, expected, Cause("call-too-long", cause, evidence.code.start))
 
 
@@ -132,11 +134,11 @@ def _why_raised(evidence: Evidence, crash: Crash, id_: str) -> Cause | None:
     if any(each.id == id_ and each.lists for each in evidence.trial.calls.points):
         others = [each for each in evidence.run.called or () if each.id != id_ and each.values is not None]
         if others:
-            cause = "It works with numpy arrays, but not with lists. `np.asarray` makes an array out of either."
+            cause = "It works with numpy arrays, but not with lists. `np.asarray` converts both to an array."
             return Cause("lists-refused", cause)
     if evidence.code.calls("lstsq") and (crash.error == "LinAlgError" or "to unpack" in crash.message):
         cause = (
-            "lstsq takes the matrix first and the right side second. It returns four things: the solution, the "
+            "lstsq takes the matrix first and the right side second. It returns four values: the solution, the "
             "residuals, the rank and the singular values."
         )
         return Cause("lstsq-result", cause)
@@ -149,7 +151,7 @@ def refuses(evidence: Evidence, params: OneCall) -> Finding:
     name = evidence.trial.calls.function.rpartition(":")[2]
     x, y = next((each.x, each.y) for each in evidence.trial.calls.points if each.id == params.call)
     given = f"x = {list(x)} and y = {list(y)}"
-    expected = f"{name} raises ValueError for {given}, with a sentence that says why."
+    expected = f"{name} raises ValueError for {given}, with a message that explains why."
     crash = read_traceback(called.stderr, evidence.submission.files)
     if "ValueError" in called.kind.split() and crash is not None:
         return passed(f"{name} raises {crash.observed}.")
@@ -159,7 +161,8 @@ def refuses(evidence: Evidence, params: OneCall) -> Finding:
     where = evidence.place("ValueError", "lstsq", "solve")
     if called.ended == "exit 0":
         cause = (
-            "The points are not looked at before the computation. A printed message, NaN or None is not an exception."
+            "The function does not check the points before the computation. A printed message, NaN or None is not an "
+            "exception."
         )
         return failed(f"{name} returned {_form(called)}.", expected, Cause("no-error", cause, where))
     if crash is not None and called.kind:

@@ -28,7 +28,7 @@ class Goal:
 
     x_m: float = number(about="x of the goal.")
     y_m: float = number(about="y of the goal.")
-    tolerance_m: float = number(0.1, above=0, about="How far from the goal the turtle may stop.")
+    tolerance_m: float = number(0.1, above=0, about="The maximum distance from the goal at the end.")
 
 
 def goal(evidence: Evidence, params: Goal) -> Finding:
@@ -71,7 +71,7 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
 
 
 def requested_goal(_: Evidence, params: Goal) -> Requested:
-    """A ring around what counts as arrived, and four strokes that lead to it."""
+    """Return a ring around the points that count as arrived, and four strokes that lead to it."""
     x, y = params.x_m, params.y_m
     near, far = params.tolerance_m, params.tolerance_m + STROKE_M
     rays = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))

@@ -31,13 +31,13 @@ LARGE_RAD = 7.0
 
 @dataclass(frozen=True, kw_only=True)
 class SendsGoals:
-    """Goals of rotate_absolute: `total` of them from the `nth` on (from 1), each `turn_deg` further than the last."""
+    """`total` goals of rotate_absolute, beginning with the `nth` (from 1). Each heading is `turn_deg` further."""
 
     heading_deg: float = number(about="The heading of the goal, in degrees: 0 is to the right, 90 is up.")
-    nth: float = number(1, at_least=1, about="Which goal of the trial it is, from 1.")
-    total: float = number(1, at_least=1, about="How many goals are compared, from this one on.")
-    turn_deg: float = number(0.0, about="How much further to the left each goal is than the one before.")
-    tolerance_deg: float = number(1.0, above=0, about="How far a heading may be off.")
+    nth: float = number(1, at_least=1, about="The number of the first goal that is compared, from 1.")
+    total: float = number(1, at_least=1, about="How many goals are compared.")
+    turn_deg: float = number(0.0, about="The angle from one goal to the next, to the left.")
+    tolerance_deg: float = number(1.0, above=0, about="The maximum error of a heading.")
 
 
 def sends_goals(evidence: Evidence, params: SendsGoals) -> Finding:
@@ -68,7 +68,7 @@ def sends_goals(evidence: Evidence, params: SendsGoals) -> Finding:
             if crash is not None:
                 return crash_finding(evidence, crash, end_observed(evidence), expected)
             observed = f"The goal of {goal.t_s:.1f} s was not reached until the end: it is {goal.status}."
-            text = "The node itself cancelled it." if goal.status == "canceled" else "The node begins too late."
+            text = "The node itself cancelled it." if goal.status == "canceled" else "The node starts too late."
             return failed(observed, expected, Cause("goal-not-reached", text, where))
     if len(goals) < first + amount:
         return _no_more(evidence, goals, expected)
@@ -87,7 +87,7 @@ def first_call_s(evidence: Evidence) -> float:
 
 
 def _reached(evidence: Evidence, goal: Goal) -> bool:
-    """Return whether the turtle reached the goal, or the trial had it cancelled."""
+    """Return whether the turtle reached the goal, or the trial requested its cancellation."""
     by_trial = goal.cancel_asked_s is not None and goal.cancel_asked_s >= first_call_s(evidence)
     return goal.status == "succeeded" or (goal.status == "canceled" and by_trial)
 
@@ -107,26 +107,26 @@ def _no_more(evidence: Evidence, goals: list[Goal], expected: str) -> Finding:
         return crash_finding(evidence, crash, observed, expected)
     if goals[-1].result_asked_s is None:
         return failed(observed, expected, waits_in_callback(evidence) or _no_result(evidence))
-    text = "The callback that receives the result must lead to the next goal."
+    text = "The callback that receives the result must send the next goal."
     cause = waits_in_callback(evidence) or Cause("goal-not-sent", text, evidence.place("get_result_async", *SENDS))
     return failed(observed, expected, cause)
 
 
 def _no_result(evidence: Evidence) -> Cause:
     text = (
-        "The answer to a goal only says that it was accepted. get_result_async, called on that answer, "
-        "asks for the result, which arrives when the goal ends."
+        "The response to a goal only says that it was accepted. get_result_async of the goal handle requests the "
+        "result, which arrives when the goal ends."
     )
     return Cause("result-not-awaited", text, evidence.place("get_result_async", *SENDS))
 
 
 def _other_turn(before: Goal, goal: Goal, turn_deg: float) -> str:
-    """Return a sentence about a heading that does not follow from the one before."""
+    """Return a sentence about a heading that does not follow from the previous one."""
     theta = float(goal.request["theta"])
     if abs(normalize(theta - math.radians(turn_deg))) <= SAME_RAD:
-        return "A goal is an absolute heading, not a turn: 0 is to the right, wherever the turtle looks before."
+        return "A goal is an absolute heading, not a turn: 0 is to the right, whatever the heading was before."
     more = math.degrees(normalize(theta - float(before.request["theta"])))
-    return f"It is {more:.0f} degrees further to the left than the goal before; the exercise asks for {turn_deg:g}."
+    return f"It is {more:.0f} degrees further to the left than the previous goal; the exercise asks for {turn_deg:g}."
 
 
 def _other_heading(
@@ -146,7 +146,7 @@ def _other_heading(
 
 
 def awaits_result(evidence: Evidence, _: NoParams) -> Finding:
-    """The node asked for the result of each goal that was reached."""
+    """The node requested the result of each goal that was reached."""
     expected = "The node asks for the result of each goal."
     reached = [goal for goal in goals_of(evidence) if goal.status == "succeeded"]
     if not reached:

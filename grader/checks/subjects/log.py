@@ -163,18 +163,18 @@ def log_counter(evidence: Evidence, params: Counter) -> Finding:
 
 
 def _thrown_away(evidence: Evidence) -> Cause | None:
-    """Return the cause if a line calculates a value that nothing keeps, else None."""
+    """Return the cause if a line calculates a value that is not stored, else None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.Expr) and isinstance(node.value, ast.BinOp | ast.Compare):
-                text = f"This line calculates {shorten(ast.unparse(node.value), 40)} and keeps the result nowhere."
+                text = f"This line calculates {shorten(ast.unparse(node.value), 40)} but does not store the result."
                 where = Where(module.file, node.lineno)
                 return Cause("counter-stuck", text, where).fixed_by(at(where, " + ", " += "))
     return None
 
 
 def _set_again(evidence: Evidence) -> Cause | None:
-    """Return the cause if the method that logs sets a name to a constant and raises it later, else None."""
+    """Return the cause if the method that logs sets a name to a constant and increases it later, else None."""
     for module in evidence.code.modules:
         for method in (node for node in module.nodes if isinstance(node, ast.FunctionDef) and node.name != "__init__"):
             inside = list(ast.walk(method))

@@ -33,8 +33,8 @@ class LogPosition:
     """The logged x and y may be at most `lag_s` old and may differ by the tolerance."""
 
     format: str = string("a log line with x and y in it", about="The format of a line with the numbers `x` and `y`.")
-    tolerance_m: float = number(0.02, above=0, about="How far x and y may be off.")
-    lag_s: float = number(0.15, above=0, about="How old the position in a line may be.")
+    tolerance_m: float = number(0.02, above=0, about="The maximum error of x and y.")
+    lag_s: float = number(0.15, above=0, about="The maximum age of the position in a line.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,8 +42,8 @@ class LogDistance:
     """The logged distance driven since the start may be at most `lag_s` old and may differ by the tolerance."""
 
     format: str = string("a log line with distance in it", about="The format of a line with the number `distance`.")
-    tolerance_m: float = number(0.05, above=0, about="How far the distance may be off.")
-    lag_s: float = number(0.15, above=0, about="How old the distance in a line may be.")
+    tolerance_m: float = number(0.05, above=0, about="The maximum error of the distance.")
+    lag_s: float = number(0.15, above=0, about="The maximum age of the distance in a line.")
 
 
 def log_position(evidence: Evidence, params: LogPosition) -> Finding:
@@ -57,7 +57,7 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
     early = [line for line in logged if line.t_s < evidence.trial.scenario.pose_from_s]
     if early:
         observed = "The log has a line with numbers before the first pose had arrived."
-        cause = "Before the first pose, nothing is known, not even 0. Keep None until then, and log nothing meanwhile."
+        cause = "Before the first pose, the position is unknown, not 0. Keep None until then, and log nothing."
         where = evidence.place("info", "create_subscription")
         return failed(observed, expected, Cause("before-first-pose", cause, where))
 
@@ -110,7 +110,8 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
     numbers = [line.numbers["distance"] for line in logged]
     if not any(numbers):
         why = _overwritten(evidence) or Cause(
-            "distance-zero", "The distance stays 0: each time a pose arrives, the step from the last pose to it counts."
+            "distance-zero",
+            "The distance stays 0. Each time a pose arrives, the step from the previous pose must be added.",
         )
         return failed(observed, expected, why.at(where))
     if holds(

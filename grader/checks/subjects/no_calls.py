@@ -22,7 +22,7 @@ class NoCalls:
     names: tuple[str, ...] = strings(
         about="The names of the functions without module or object, such as `sleep` for `time.sleep`."
     )
-    cause: str = string("a reason", about="What the student reads as the reason.")
+    cause: str = string("a reason", about="The reason that the student reads.")
 
 
 def no_calls(evidence: Evidence, params: NoCalls) -> Finding:
@@ -43,5 +43,5 @@ NO_CALLS = Kind(
     "The node does not call certain functions",
     NoCalls,
     no_calls,
-    about="The node's file calls none of the given functions, whatever name it gives them.",
+    about="The node's file calls none of the given functions, under any name.",
 )

@@ -25,7 +25,7 @@ EARLY, LATE = 0.8, 1.3
 
 
 def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
-    """The numbers exist, belong to the student named in the file, and that student submitted them."""
+    """The numbers exist, belong to the student named in the file, and were submitted by that student."""
     found = read_numbers(evidence)
     if isinstance(found, Finding):
         return found
@@ -55,11 +55,11 @@ class OwnCircle:
     """Like the kind `circle`, but radius and direction are the student's own."""
 
     radius_tolerance_m: float = number(0.05, above=0, about="The maximum error of the radius.")
-    centre_tolerance_m: float = number(0.05, above=0, about="How far the centre may be off.")
+    centre_tolerance_m: float = number(0.05, above=0, about="The maximum error of the centre.")
     residual_m: float = number(
-        0.02, above=0, about="How far the trajectory may deviate from the fitted circle (root mean square)."
+        0.02, above=0, about="The maximum deviation of the trajectory from the fitted circle (root mean square)."
     )
-    turns: float = number(1.0, above=0, about="How many turns the turtle must drive at least.")
+    turns: float = number(1.0, above=0, about="The minimum number of turns.")
 
 
 def own_circle(evidence: Evidence, params: OwnCircle) -> Finding:
@@ -87,7 +87,7 @@ def own_circle_params(evidence: Evidence, params: OwnCircle) -> CircleParams | F
 class OwnRate:
     """Like the kind `rate`, but the rate is the student's own."""
 
-    tolerance_percent: float = number(5.0, above=0, at_most=100, about="How far the mean rate may be off.")
+    tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error of the mean rate.")
 
 
 def own_rate(evidence: Evidence, params: OwnRate) -> Finding:
@@ -107,7 +107,7 @@ def own_rate(evidence: Evidence, params: OwnRate) -> Finding:
 
 
 def _requested(evidence: Evidence, params: OwnCircle) -> Requested | None:
-    """The student's own circle; None if the numbers cannot be read."""
+    """Return the student's own circle, or None if the numbers cannot be read."""
     own = own_circle_params(evidence, params)
     return requested_circle(evidence, own) if isinstance(own, CircleParams) else None
 
@@ -118,7 +118,7 @@ NUMBERS = Kind(
     "The numbers are your own",
     NoParams,
     own_numbers,
-    about="The file of `[numbers]` holds the numbers that are drawn from the id of the student who submitted it.",
+    about="The file of `[numbers]` contains the numbers that are drawn from the id of the student who submitted it.",
 )
 CIRCLE = Kind(
     "own_circle",

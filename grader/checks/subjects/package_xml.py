@@ -54,7 +54,7 @@ def valid(evidence: Evidence, _: NoParams) -> Finding:
     if manifest.build_type != BUILD_TYPE and CATKIN in manifest.other_depends:
         cause = f"{CATKIN} is the build tool of ROS 1. Did you follow an old tutorial?"
         where = _line(evidence, CATKIN)
-        return failed(f"{FILE} asks for {CATKIN}.", EXPECTED_BUILD_TYPE, Cause("ros-1-package-xml", cause, where))
+        return failed(f"{FILE} requires {CATKIN}.", EXPECTED_BUILD_TYPE, Cause("ros-1-package-xml", cause, where))
     if manifest.build_type != BUILD_TYPE:
         observed = f"The build type is {shorten(manifest.build_type or 'missing')}."
         cause = (

@@ -1,4 +1,4 @@
-"""Checks of parameters: how they are declared, and what the node says when the trial sets one."""
+"""Checks of parameters: how they are declared, and how the node responds when the trial sets one."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def declares(evidence: Evidence, params: Declares) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class SetsParameter:
-    """What the node says to a `[[trial.set]]` of this parameter to this value, and of others in the same call."""
+    """The response of the node to a `[[trial.set]]` of this parameter to this value, and of others in the same call."""
 
     parameter: str = string("the name of a parameter", about="The parameter.")
     value: float = number(about="The value that the trial sets.")
@@ -98,12 +98,12 @@ def sets_parameter(evidence: Evidence, params: SetsParameter) -> Finding:
     if params.answer == "refused" and successful:
         text = (
             "The callback of add_on_set_parameters_callback must return SetParametersResult(successful=False, ...) "
-            "for it, whichever parameter is set."
+            "for this value, whichever parameter is set."
         )
         observed = f"The node accepted {name} = {value}."
         return failed(observed, expected, Cause("parameter-accepted", text, where))
     if params.answer == "refused" and not reason:
-        text = "Set the field reason of the SetParametersResult, for the person who reads it."
+        text = "Set the field reason of the SetParametersResult to a sentence for the user."
         observed = f"The node refused {name} = {value} without a reason."
         return failed(observed, expected, Cause("no-reason", text, where))
     return passed(f"The node {params.answer} {name} = {value}" + (f": {shorten(reason)}." if reason else "."))
@@ -129,7 +129,7 @@ def _also(params: SetsParameter) -> str:
 
 
 def _result(call: Call | None) -> Any | None:  # noqa: ANN401 - a SetParametersResult as plain data
-    """Return what the node said to a call that sets one parameter, or several at once. None if it did not answer."""
+    """Return the result of a call that sets one parameter, or several at once; None if the node did not respond."""
     response = (call.response or {}) if call is not None else {}
     return next(iter(response.get("results", [])), response.get("result"))
 
@@ -144,7 +144,7 @@ def _undeclared(evidence: Evidence, name: str, expected: str) -> Finding:
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_observed(evidence), expected)
-    text = "declare_parameter makes a parameter known, with its default value and its descriptor."
+    text = "declare_parameter declares a parameter, with its default value and its descriptor."
     where = evidence.place("declare_parameter", "get_parameter", "__init__")
     return failed(f"The node has no parameter {name}.", expected, Cause("parameter-undeclared", text, where))
 
@@ -155,7 +155,7 @@ def _refused(evidence: Evidence, observed: str, expected: str, reason: str) -> F
         text = "Only a declared parameter can be set."
         return failed(observed, expected, Cause("parameter-undeclared", text, evidence.place("declare_parameter")))
     if "Callback returned" in reason:
-        text = "The callback must return a SetParametersResult in every case. Without return, it gives None."
+        text = "The callback must return a SetParametersResult in every case. Without return, it returns None."
         return failed(observed, expected, Cause("result-not-returned", text, where))
     if "type" in reason:
         text = "The type of the default value is the type of the parameter. Write 2.0 for 2."
@@ -172,7 +172,7 @@ DECLARES = Kind(
     "The parameter has a description and a range",
     Declares,
     declares,
-    about="The node describes a parameter when a `[[trial.call]]` of `/NODE/describe_parameters` asks for it.",
+    about="The node describes a parameter when a `[[trial.call]]` of `/NODE/describe_parameters` requests it.",
 )
 SETS = Kind(
     "sets_parameter",

@@ -33,11 +33,11 @@ TURNED_RAD = 0.1
 STRAIGHT_RADIUS_M = 50.0
 """A larger circle than this looks straight on a canvas of 11 m."""
 LIVES_S = 1.0
-"""How long one command moves a turtle."""
+"""The time for which one command moves a turtle (s)."""
 AT_ONCE_S = 0.05
 """A command that another one follows within this time (s) has no effect."""
 LATE_S = 3.0
-"""If the first command comes later than this (s), a circle that is too short is explained by that."""
+"""If the first command comes later than this (s), it explains a circle that is too short."""
 POLYGON_SHARE = 0.6
 """If more than this fraction of the trajectory is straight, the message describes sides and corners."""
 
@@ -56,11 +56,11 @@ class CircleParams:
         about="The radius. The centre lies this far to the left of the start (clockwise: to the right).",
     )
     radius_tolerance_m: float = number(0.05, above=0, about="The maximum error of the radius.")
-    centre_tolerance_m: float = number(0.05, above=0, about="How far the centre may be off.")
+    centre_tolerance_m: float = number(0.05, above=0, about="The maximum error of the centre.")
     residual_m: float = number(
-        0.02, above=0, about="How far the trajectory may deviate from the fitted circle (root mean square)."
+        0.02, above=0, about="The maximum deviation of the trajectory from the fitted circle (root mean square)."
     )
-    turns: float = number(1.0, above=0, about="How many turns the turtle must drive at least.")
+    turns: float = number(1.0, above=0, about="The minimum number of turns.")
     direction: str = choice("counter-clockwise", "clockwise", about="The direction of the turn.")
 
 
@@ -87,7 +87,7 @@ def circle(evidence: Evidence, params: CircleParams) -> Finding:
 def moved_otherwise(evidence: Evidence, expected: str, *, from_start: bool = False) -> Finding | None:
     """Return a failed finding if something other than velocity commands moved the turtle, else None.
 
-    With `from_start`, what happened before the first command counts, too.
+    With `from_start`, movements before the first command also count.
     """
     means = moved_by(evidence.recording, from_start=from_start)
     if means is None:
@@ -277,7 +277,7 @@ def no_wall(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def requested_circle(evidence: Evidence, params: CircleParams) -> Requested:
-    """The circle, where the turtle's start puts it."""
+    """Return the circle, placed relative to the turtle's start."""
     centre = expected_centre(evidence.recording.start, params)
     return Requested(f"radius {params.radius_m:.2f} m", ((centre, params.radius_m),), fits=True)
 
@@ -288,7 +288,7 @@ CIRCLE = Kind(
     "The turtle drives the circle",
     CircleParams,
     circle,
-    about="The turtle drives a circle by commands: round, in the right direction, of the right size and place.",
+    about="The turtle drives a circle by commands: round, in the right direction, with the right size and place.",
     drives=True,
     requested=requested_circle,
     radius_m=lambda params: params.radius_m,

@@ -1,4 +1,4 @@
-"""Check of a pause: the turtle stands still for a while, and then goes on."""
+"""Check of a pause: the turtle stands still for a while, and then continues."""
 
 from __future__ import annotations
 
@@ -21,27 +21,27 @@ if TYPE_CHECKING:
     from grader.trial.recording import Command
 
 EARLY_S = 0.1
-"""A call of the trial may be this much before its planned time, by rounding (s)."""
+"""A call of the trial may come this much before its planned time because of rounding (s)."""
 BEFORE_S = 1.0
 """The turtle must move in this time before the pause (s)."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Pause:
-    """From `from_s` to `until_s` (s) the turtle stands still; it may take `within_s` (s) to stop and to go on."""
+    """From `from_s` to `until_s` (s) the turtle stands still. It has `within_s` (s) to stop, and to continue."""
 
-    from_s: float = number(at_least=0, about="When the pause begins, on the trial's clock.")
-    until_s: float = number(above=0, about="When the pause ends.")
-    within_s: float = number(0.5, above=0, about="How long the turtle may take to stop, and to go on.")
-    goes_on: float = number(1.0, at_least=0, at_most=1, about="Whether the turtle must go on afterwards: 1 or 0.")
+    from_s: float = number(at_least=0, about="The start of the pause, on the trial's clock.")
+    until_s: float = number(above=0, about="The end of the pause.")
+    within_s: float = number(0.5, above=0, about="The maximum time to stop, and to continue.")
+    goes_on: float = number(1.0, at_least=0, at_most=1, about="Whether the turtle must continue afterwards: 1 or 0.")
 
 
 def pause(evidence: Evidence, params: Pause) -> Finding:
-    """The turtle moves, stands still in time, and goes on in time."""
+    """The turtle moves, stands still in time, and continues in time."""
     trajectory = evidence.trajectory
     within = Band.at_most(params.within_s)
     expected = f"The turtle stands still within {params.within_s:g} s after {params.from_s:g} s"
-    expected += f", and goes on after {params.until_s:g} s." if params.goes_on else "."
+    expected += f", and continues after {params.until_s:g} s." if params.goes_on else "."
     where = evidence.place("create_service")
     if _moved(trajectory, params.from_s - BEFORE_S, params.from_s) is None:
         crash = crash_of(evidence)
@@ -59,10 +59,10 @@ def pause(evidence: Evidence, params: Pause) -> Finding:
     wait_s = float("inf") if first is None else first[0] - params.until_s
     near |= within.near(wait_s)
     if not within.holds(wait_s):
-        observed = "The turtle never went on." if first is None else f"The turtle went on after {wait_s:.1f} s."
+        observed = "The turtle did not continue." if first is None else f"The turtle continued after {wait_s:.1f} s."
         text = "The request with data=False ends the pause."
         return failed(observed, expected, Cause("pause-never-ends", text, where), near_edge=near)
-    return passed("The turtle stood still, and went on.", near_edge=near)
+    return passed("The turtle stood still, and continued.", near_edge=near)
 
 
 def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *, near_edge: bool) -> Finding:
@@ -71,7 +71,9 @@ def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *,
     driving = any(map(_drives, inside))
     again_s = _drives_again_s(evidence, params)
     if again_s is not None:
-        observed = f"The same call came again at {again_s:.1f} s, while the node was paused, and the turtle drove on."
+        observed = (
+            f"The same call arrived again at {again_s:.1f} s, while the node was paused, and the turtle drove again."
+        )
         text = "Each call changes the state. The state must not depend on the old one, but only on request.data."
         return failed(observed, expected, Cause("pause-toggles", text, where), near_edge=near_edge)
     if driving:
@@ -81,7 +83,7 @@ def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *,
         )
         return failed(observed, expected, Cause("pause-ignored", text, where), near_edge=near_edge)
     observed = f"The turtle took {stop_s:.1f} s to stop after the call."
-    text = "Without a new command, a turtle goes on for a second. While the node is paused, publish zeros."
+    text = "Without a new command, a turtle continues for one second. While the node is paused, publish zeros."
     return failed(observed, expected, Cause("no-stop-command", text, where), near_edge=near_edge)
 
 
@@ -110,9 +112,10 @@ def _moved(trajectory: Trajectory, from_s: float, until_s: float) -> tuple[float
 PAUSE = Kind(
     "pause",
     "trial",
-    "The turtle stands still and goes on",
+    "The turtle stands still and continues",
     Pause,
     pause,
-    about="The turtle stands still between two times, such as those of two calls of the trial, and goes on afterwards.",
+    about="The turtle stands still between two times, such as those of two calls of the trial, and continues "
+    "afterwards.",
     drives=True,
 )

@@ -1,4 +1,4 @@
-"""Checks of a program that reads a bag: the line that it prints, and how it ends without the messages it needs."""
+"""Checks of a program that reads a bag: the line that it prints, and how it ends if the bag has no poses."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from grader.exercise.call_inputs import BagInput
 
 HUNDREDTH = 0.0101
-"""A printed value has two decimal places, and may be cut instead of rounded."""
+"""A printed value has two decimal places, and may be truncated instead of rounded."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Printed(OneCall):
-    """One run of the program, and which numbers of its line are compared."""
+    """One run of the program, and the names of the numbers in its line that are compared."""
 
     format: str = string("a line with its numbers in braces", about=FORMAT)
     values: tuple[str, ...] = strings(about='Which numbers are compared: "messages", "rate", "x", "y", "radius".')
@@ -41,7 +41,7 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
     crash = read_traceback(called.stderr, evidence.submission.files)
     if crash is not None and crash.error == "AttributeError" and "Twist" in crash.message:
         observed = f"{name} raised {crash.observed}."
-        cause = "It took a command for a pose. Read only the messages on the topic of the poses."
+        cause = "It used a command as a pose. Read only the messages on the topic of the poses."
         return failed(observed, expected, Cause("all-messages", cause, crash.where))
     broken = stopped(evidence, called, expected, name)
     if broken is not None:
@@ -54,7 +54,7 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
     found = next((match for match in map(pattern.fullmatch, lines) if match is not None), None)
     where = evidence.place("print")
     if found is None and "nan" in lines[-1]:
-        cause = "NaN is no number. Where does it come from?"
+        cause = "NaN is the result of an undefined computation. Where does it come from?"
         return failed(f'{name} printed "{shorten(lines[-1], 80)}".', expected, Cause("not-a-number", cause, where))
     if found is None:
         cause = "Compare it letter by letter: names, spaces and the digits after the decimal point count."
@@ -67,14 +67,15 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
 
 
 def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
-    """Without a pose in the bag, the program ends with an exit code other than 0 and a sentence."""
+    """Without a pose in the bag, the program ends with an exit code other than 0 and a message."""
     called = evidence.called(params.call)
     name = evidence.trial.executable
-    expected = f"{name} says in one sentence what is missing, and ends with an exit code other than 0."
+    expected = f"{name} prints one sentence about what is missing, and ends with an exit code other than 0."
     crash = read_traceback(called.stderr, evidence.submission.files)
     if crash is not None:
         cause = (
-            "Nobody but you can read a traceback. Look whether there are poses, and end with sys.exit and a sentence."
+            "A user cannot read a traceback. Check whether there are poses. If there are none, call sys.exit with a "
+            "sentence."
         )
         observed = f"For a bag without poses, {name} ended with {crash.observed}."
         return failed(observed, expected, Cause("program-traceback", cause, crash.where))
@@ -101,8 +102,7 @@ def _why(key: str, given: dict[str, float], bag: BagInput) -> Cause:
         if abs(value - rate * count / (count - 1)) <= HUNDREDTH:
             return Cause(
                 "rate-off-by-one",
-                "Count / duration is too high: between the first and the last message there is one interval fewer than "
-                "there are messages.",
+                "Count / duration is too high: the number of intervals is one less than the number of messages.",
             )
         if abs(value - 1.0 / rate) <= HUNDREDTH:
             return Cause(
@@ -139,7 +139,7 @@ def _bag(evidence: Evidence, id_: str) -> BagInput:
 PRINTS = Kind(
     "prints_report",
     "trial",
-    "The program prints what the bag holds",
+    "The program prints the content of the bag",
     Printed,
     prints,
     about="The executable, started with the name of a `[[trial.bag]]`, prints a line in the format, with the right "
@@ -148,7 +148,7 @@ PRINTS = Kind(
 ENDS = Kind(
     "ends_with_message",
     "trial",
-    "The program says what is missing",
+    "The program reports what is missing",
     OneCall,
     ends_with_message,
     about="The executable, started with the name of a `[[trial.bag]]` without poses, prints a sentence on standard "

@@ -44,7 +44,7 @@ SAME = 0.1
 
 PERIOD = "The first argument of create_timer is the timer period in seconds."
 FASTEST_HZ = 40.0
-"""Simulated time moves in steps of 16 ms, so what is faster than this looks slower than it is."""
+"""Simulated time advances in steps of 16 ms, so a higher rate than this appears lower than it is."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,12 +56,12 @@ class Rate:
     """
 
     rate_hz: float = number(above=0, at_most=1000, about="The mean rate, from the first to the last arrival.")
-    tolerance_percent: float = number(5.0, above=0, at_most=100, about="How far the mean rate may be off.")
+    tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error of the mean rate.")
     min_interval_s: float = number(at_least=0, about="The shortest interval between two arrivals.")
     max_interval_s: float = number(
         above=0, about="The longest interval between two arrivals, and from the last one to the end."
     )
-    first_within_s: float = number(3.0, above=0, about="How long after the start the first one may arrive.")
+    first_within_s: float = number(3.0, above=0, about="The maximum time from the start to the first arrival.")
 
 
 @dataclass(frozen=True)
@@ -81,12 +81,12 @@ COMMAND = Subject("command", "publish")
 
 
 def rate(evidence: Evidence, params: Rate) -> Finding:
-    """The commands arrive at the rate: on average and each one, from soon after the start until the end."""
+    """The commands arrive at the rate: on average and in each interval, from soon after the start until the end."""
     return rate_of(evidence, params, COMMAND, evidence.command_arrivals)
 
 
 def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured) -> Finding:
-    """Commands or log lines arrive at the rate: on average and each one, from soon after the start until the end."""
+    """Commands or log lines arrive at the rate: on average and in each interval, until the end."""
     period = 1.0 / params.rate_hz
     expected = f"One {what.noun} every {period:.2f} s ({params.rate_hz:.1f} Hz)."
     if len(measured.arrivals) < FEWEST:
@@ -148,7 +148,7 @@ def _slow_timer(evidence: Evidence, params: Rate, amount: int) -> Cause | None:
 
 
 def _period_cause(cause: Cause, period: float, params: Rate) -> Cause:
-    """Return the cause of a wrong timer period: the rate in its place, if the numbers say so."""
+    """Return the cause of a wrong timer period, for example the rate in its place."""
     if abs(period - params.rate_hz) > SAME * params.rate_hz:
         return cause
     text = "create_timer takes the period in seconds, not the rate. The period is 1 divided by the rate."
@@ -156,7 +156,7 @@ def _period_cause(cause: Cause, period: float, params: Rate) -> Cause:
 
 
 def _right_period(timer: Call, params: Rate) -> tuple[Edit, ...]:
-    """Return the edit that gives a timer the period of the exercise, where the source has it as a constant."""
+    """Return the edit that sets the period of the exercise, if the period in the source is a constant."""
     node = written(timer.argument(0, "timer_period_sec"), timer.module.names)
     if node is None:
         return ()
@@ -271,7 +271,7 @@ def _stopped(evidence: Evidence, what: Subject, measured: Measured, expected: st
 
 
 def requested_rate(_: Evidence, params: Rate) -> Requested:
-    """The interval between two commands."""
+    """Return the interval between two commands."""
     return Requested(interval=Interval(1.0 / params.rate_hz, params.min_interval_s, params.max_interval_s))
 
 
@@ -281,7 +281,8 @@ RATE = Kind(
     "Commands arrive at the right rate",
     Rate,
     rate,
-    about="Commands arrive at the given rate: on average, each one, and from soon after the start until the end.",
+    about="Commands arrive at the given rate: on average and in each interval, from soon after the start until the "
+    "end.",
     drives=True,
     requested=requested_rate,
 )

@@ -1,4 +1,4 @@
-"""Checks of a bag that the student recorded: it can be read, holds the topic, and shows a circle."""
+"""Checks of a bag that the student recorded: it can be read, contains the topic, and shows a circle."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ BAG = "The folder of the bag in the package."
 STILL_M = 0.05
 """A turtle that never leaves a square with this side has not moved."""
 ROUND_M = 0.05
-"""How far the poses may be from the circle (root mean square)."""
+"""The maximum deviation of the poses from the circle (root mean square)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,22 +33,22 @@ class InBag:
 
 
 def readable(evidence: Evidence, params: InBag) -> Finding:
-    """The bag is there, was closed properly, and holds messages."""
+    """The bag exists, was closed properly, and contains messages."""
     bag, where = evidence.bag(params.bag), Where(params.bag)
-    expected = f"The folder {params.bag} beside package.xml holds a bag with at least one message."
+    expected = f"The folder {params.bag} next to package.xml contains a bag with at least one message."
     if bag.problem == "missing":
         return failed(
             f"There is no folder {params.bag}.",
             expected,
-            Cause("no-bag", "The recorder makes it in the folder in which you type its command."),
+            Cause("no-bag", "`ros2 bag record` creates it in the current folder."),
         )
     if bag.problem == "elsewhere":
         observed = f"There is no bag in {params.bag}, but {shorten(bag.detail)} belongs to one."
-        cause = "The option -o gives the bag its name, in the folder in which you type the command."
+        cause = "The option -o sets the name of the bag, which is created in the current folder."
         return failed(observed, expected, Cause("bag-name", cause, Where(bag.detail)))
     if bag.problem == "unfinished":
         cause = (
-            "It is written when the recording ends with Ctrl-C. A recorder that was killed leaves none; `ros2 bag "
+            "It is written when you end the recording with Ctrl-C. If the recorder was killed, `ros2 bag "
             "reindex` makes it."
         )
         return failed(f"{params.bag} has no metadata.yaml.", expected, Cause("bag-unfinished", cause, where))
@@ -65,7 +65,7 @@ def readable(evidence: Evidence, params: InBag) -> Finding:
     if not sum(bag.counts.values()):
         cause = "The recording ended before anything arrived, or nothing was published meanwhile."
         return failed(f"The bag {params.bag} is empty.", expected, Cause("bag-empty", cause, where))
-    return passed(f"The bag holds {sum(bag.counts.values())} messages.")
+    return passed(f"The bag contains {sum(bag.counts.values())} messages.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,17 +77,17 @@ class TopicInBag(InBag):
 
 
 def topic_in_bag(evidence: Evidence, params: TopicInBag) -> Finding:
-    """The bag holds messages of the topic."""
+    """The bag contains messages of the topic."""
     bag, where = evidence.bag(params.bag), Where(params.bag)
-    expected = f"The bag holds {params.topic} with messages of type {params.type}."
+    expected = f"The bag contains {params.topic} with messages of type {params.type}."
     held = [f"{shorten(topic)} ({count})" for topic, count in sorted(bag.counts.items())]
     if bag.types.get(params.topic, params.type) != params.type:
         observed = f"{params.topic} has the type {shorten(bag.types[params.topic])} in the bag."
         return failed(observed, expected, Cause("wrong-type", "", where))
     if not bag.counts.get(params.topic):
         cause = "The topics to record are the last words of the command. Each begins with a slash."
-        return failed(f"The bag holds {a_list(held)}.", expected, Cause("bag-topic", cause, where))
-    return passed(f"The bag holds {a_list(held)}.")
+        return failed(f"The bag contains {a_list(held)}.", expected, Cause("bag-topic", cause, where))
+    return passed(f"The bag contains {a_list(held)}.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,10 +107,10 @@ def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:
     x, y = np.array(poses.x), np.array(poses.y)
     if len(x) < 2 or max(np.ptp(x), np.ptp(y)) < STILL_M:
         cause = "Start the recording, then the turtle, and end the recording after a whole turn."
-        return failed("The turtle stands still in all of the bag.", expected, Cause("bag-still", cause, where))
+        return failed("The turtle stands still in the whole bag.", expected, Cause("bag-still", cause, where))
     circle = fit_circle(x, y)
     if circle is None or circle.rms > ROUND_M:
-        cause = "Only one circle belongs into the bag. A wall, a teleport or another drawing spoils it."
+        cause = "The bag must show only one circle: no wall, no teleport and no other figure."
         return failed("The path in the bag is not a circle.", expected, Cause("not-round", cause, where))
     driven = abs(turns_about(x, y, circle.x, circle.y))
     if not Band.around(params.radius_m, params.radius_m * params.tolerance_percent / 100.0).holds(circle.radius):
@@ -129,15 +129,16 @@ READABLE = Kind(
     "The bag can be read",
     InBag,
     readable,
-    about="A folder of the package holds a bag (MCAP) with at least one message, and its recording was ended properly.",
+    about="A folder of the package contains a bag (MCAP) with at least one message, and its recording was ended "
+    "properly.",
 )
 TOPIC = Kind(
     "bag_topic",
     "source",
-    "The bag holds the topic",
+    "The bag contains the topic",
     TopicInBag,
     topic_in_bag,
-    about="The bag holds messages of a topic, with the right type.",
+    about="The bag contains messages of a topic, with the right type.",
 )
 CIRCLE = Kind(
     "bag_circle",
@@ -145,5 +146,5 @@ CIRCLE = Kind(
     "The bag shows a circle",
     CircleInBag,
     circle_in_bag,
-    about="The poses in the bag lie on one circle with the radius, all the way round.",
+    about="The poses in the bag lie on one whole circle with the radius.",
 )

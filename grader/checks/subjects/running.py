@@ -46,7 +46,7 @@ def _no_node(evidence: Evidence) -> Finding:
 
 
 def name(evidence: Evidence, _: NoParams) -> Finding:
-    """A node of the submission has the name that the exercise asks for."""
+    """A node of the submission has the name that the exercise requires."""
     wanted = f"/{evidence.trial.node}"
     names = activity.nodes(evidence.recording)
     if wanted in names:

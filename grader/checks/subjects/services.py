@@ -1,4 +1,4 @@
-"""Checks of services: what the node asked the simulator for, and what it answered when the trial called it."""
+"""Checks of services: the requests of the node to the simulator, and its responses to the trial."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ if TYPE_CHECKING:
     from grader.trial.observed import Call
 
 AT_ONCE_S = 0.05
-"""A call that comes at most this much before an answer may come at the same time, in wall time (s)."""
+"""In wall time, a call that comes at most this much before a response may come at the same time (s)."""
 CLOSE = 1e-3
-"""How far a number in a request may be off. Many fields are float32."""
+"""The maximum error of a number in a request. Many fields are float32."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class CallsService:
-    """A call of a service of the simulator, with the fields that matter; `after` names a service that comes before."""
+    """A call of a service of the simulator with these fields. `after` names a service that must be called before it."""
 
     service: str = string("the full name of a service", start="/", about="The service.")
-    fields: tuple[tuple[str, Any], ...] = table(about="The fields of the request that matter, with their values.")
+    fields: tuple[tuple[str, Any], ...] = table(about="The relevant fields of the request, with their values.")
     after: str = string(
         "the full name of a service",
         default=" ",
@@ -61,7 +61,7 @@ def calls_service(evidence: Evidence, params: CallsService) -> Finding:
         text = f"Send this request in the callback that receives the response of {after}."
         observed = f"The node called {params.service} with {request}, but not after {after}."
         if in_order:
-            observed = f"The node called {params.service} with {request} before {after} had answered."
+            observed = f"The node called {params.service} with {request} before {after} had responded."
         return failed(observed, expected, Cause("service-order", text, evidence.place("call_async")))
     crash = crash_of(evidence)
     if crash is not None:
@@ -78,7 +78,7 @@ def calls_service(evidence: Evidence, params: CallsService) -> Finding:
 
 
 def _before_the_answer(call: Call, asked: Call) -> bool:
-    """Return whether the call came before the answer to what was asked. Without a delay, both have the same time."""
+    """Return whether the call came before the response to `asked`. Without a delay, both have the same time."""
     return asked.answered_s is not None and call.t_s < asked.answered_s - AT_ONCE_S
 
 
@@ -86,7 +86,7 @@ def _other_request(evidence: Evidence, params: CallsService, calls: list[Call], 
     nearest_call = min(calls, key=lambda call: len(wrong_fields(call.request, params.fields)))
     wrong = wrong_fields(nearest_call.request, params.fields)
     seen = ", ".join(f"{name}={_value(nearest_call.request.get(name))}" for name in wrong)
-    observed = f"The nearest call of {params.service} has {seen}."
+    observed = f"The most similar call of {params.service} has {seen}."
     where = next((place for name in wrong if (place := evidence.code.assigned(name)) is not None), None)
     zero = all(not nearest_call.request.get(name) for name, _ in params.fields)
     text = "All these fields have their default values: set them before the call." if zero else ""
@@ -99,9 +99,9 @@ class AnswersCall:
 
     service: str = string("the full name of a service", start="/", about="The service.")
     type: str = string("a service type, as in std_srvs/srv/SetBool", about="Its type.")
-    nth: float = number(1, at_least=1, about="Which call of this service in the trial, from 1.")
-    within_s: float = number(1.0, above=0, about="How long the response may take.")
-    fields: tuple[tuple[str, Any], ...] = table(about="The fields of the response that matter, with their values.")
+    nth: float = number(1, at_least=1, about="The number of the call of this service in the trial, from 1.")
+    within_s: float = number(1.0, above=0, about="The maximum time until the response.")
+    fields: tuple[tuple[str, Any], ...] = table(about="The relevant fields of the response, with their values.")
 
 
 def answers_call(evidence: Evidence, params: AnswersCall) -> Finding:
@@ -154,10 +154,11 @@ def _missing(evidence: Evidence, service: str, type_: str, expected: str) -> Fin
     if names:
         guess = nearest(service, names) or names[0]
         observed = f"No service is named {service}. The node offers {a_list([shorten(name) for name in names])}."
-        text = f"The name is the second argument of create_service. It is {service}, with the slash."
+        text = f"The name is the second argument of create_service. It is {service}, including the slash."
         if guess.endswith(service):
             text = (
-                "Without a slash at the beginning, a name is below the namespace of the node; with ~, below its name."
+                "A name without a slash at the beginning is in the namespace of the node; with ~, it is below the "
+                "node's name."
             )
         return failed(observed, expected, Cause("service-name", text, where))
     stuck = waits_in_callback(evidence)

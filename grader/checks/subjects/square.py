@@ -35,12 +35,12 @@ SHORT_M = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class Square:
-    """Sides of this length and corners of 90 degrees; the fourth side ends at the start; then the turtle stands."""
+    """Sides of this length, corners of 90 degrees, the end of the fourth side at the start, and then a standstill."""
 
     side_m: float = number(above=0, at_most=5, about="The length of a side.")
-    side_tolerance_m: float = number(0.15, above=0, about="How far a side may be off.")
-    corner_tolerance_deg: float = number(7.0, above=0, about="How far a corner may be from 90 degrees.")
-    closing_m: float = number(0.4, above=0, about="How far from the start the fourth side may end.")
+    side_tolerance_m: float = number(0.15, above=0, about="The maximum error of a side.")
+    corner_tolerance_deg: float = number(7.0, above=0, about="The maximum error of a corner of 90 degrees.")
+    closing_m: float = number(0.4, above=0, about="The maximum distance from the start to the end of the fourth side.")
     direction: str = choice("counter-clockwise", "clockwise", "either", about="The direction of the turn.")
 
 
@@ -48,7 +48,7 @@ class Square:
 class Sides:
     """The straight parts: their lengths (m), their headings and the turns between them (rad), and their end points (m).
 
-    After the last one of the figure, the turtle drives `more_m` (m) and turns by `more_rad` (rad).
+    After the last side of the figure, the turtle drives `more_m` (m) and turns by `more_rad` (rad).
     """
 
     lengths: tuple[float, ...]
@@ -173,7 +173,7 @@ def _drives_on(evidence: Evidence, params: Square, sides: Sides, sign: float, ex
 
 
 def requested_square(evidence: Evidence, params: Square) -> Requested:
-    """The corners, the first one again at the end; the side that is free is the one that the turtle took."""
+    """Return the corners, closed with the first one. If either direction is allowed, take the turtle's direction."""
     begin = first_heading(evidence)
     turn = evidence.trajectory.turn[np.abs(evidence.trajectory.turn) > STRAIGHT_RAD]
     taken = -1.0 if len(turn) and turn[-1] < 0.0 else 1.0

@@ -1,4 +1,4 @@
-"""The end of a drive: the turtle stands still, and it does so because the node said so."""
+"""The end of a drive: the turtle stands still because of a command, not because the commands ended."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 REST_S = 0.5
 """The turtle must stand still for this long at the end."""
 STILL = 1e-3
-"""A slower turtle (m/s, rad/s) stands still."""
-ZEROS = "Publish a command with all values 0, and go on doing so or stop the timer."
+"""Below this speed (m/s, rad/s), a turtle stands still."""
+ZEROS = "Publish a command with all values 0, and keep publishing it or stop the timer."
 
 
 def no_standstill(evidence: Evidence, expected: str) -> Finding | None:

@@ -1,4 +1,4 @@
-"""Check of a star: straight sides, with a turn on the spot between them that goals of an action make."""
+"""Check of a star: straight sides, and turns on the spot by action goals between them."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ BY_GOALS = "rotate_absolute"
 
 @dataclass(frozen=True, kw_only=True)
 class Star:
-    """Sides of this length, each `corner_deg` further to the left; the last one ends where the first one began."""
+    """Sides of this length, each `corner_deg` further to the left; the last side ends where the first one began."""
 
     side_m: float = number(above=0, at_most=5, about="The length of a side.")
     heading_deg: float = number(about="The heading of the first side, in degrees: 0 is to the right, 90 is up.")
     sides: float = number(5, at_least=3, about="The number of sides.")
     corner_deg: float = number(144.0, about="The turn to the left from one side to the next.")
-    side_tolerance_m: float = number(0.15, above=0, about="How far a side may be off.")
-    corner_tolerance_deg: float = number(6.0, above=0, about="How far the heading of a side may be off.")
-    closing_m: float = number(0.4, above=0, about="How far from the start the last side may end.")
+    side_tolerance_m: float = number(0.15, above=0, about="The maximum error of a side.")
+    corner_tolerance_deg: float = number(6.0, above=0, about="The maximum error of the heading of a side.")
+    closing_m: float = number(0.4, above=0, about="The maximum distance from the start to the end of the last side.")
 
 
 def star(evidence: Evidence, params: Star) -> Finding:
@@ -89,7 +89,7 @@ def _measured(evidence: Evidence, params: Star, sides: Sides, expected: str) -> 
         near = near or right.near(off)
         if not right.holds(off):
             observed = f"Side {index + 1} has a heading of {math.degrees(heading) % 360.0:.0f} degrees."
-            text = "The heading of a goal is absolute: 0 is to the right, wherever the turtle looks before."
+            text = "The heading of a goal is absolute: 0 is to the right, whatever the heading was before."
             return failed(observed, expected, Cause("corner-angle", text, where), near_edge=near)
     gap = math.dist(sides.ends[amount - 1], (float(evidence.trajectory.x[0]), float(evidence.trajectory.y[0])))
     closed = Band.at_most(params.closing_m)
@@ -105,7 +105,7 @@ def _measured(evidence: Evidence, params: Star, sides: Sides, expected: str) -> 
 
 
 def requested_star(evidence: Evidence, params: Star) -> Requested:
-    """The corners, the first one again at the end."""
+    """Return the corners, closed with the first one."""
     x, y = evidence.recording.start.x, evidence.recording.start.y
     corners = [(x, y)]
     for index in range(int(params.sides)):

@@ -19,9 +19,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Stop:
-    """How long the node may take to end after SIGINT (s of wall time)."""
+    """The maximum time from SIGINT to the exit of the node (s of wall time)."""
 
-    within_s: float = number(3.0, above=0, at_most=60, about="How long after Ctrl-C the node may run (wall time).")
+    within_s: float = number(
+        3.0, above=0, at_most=60, about="The maximum time that the node may run after Ctrl-C (wall time)."
+    )
 
 
 def stop(evidence: Evidence, params: Stop) -> Finding:

@@ -1,4 +1,4 @@
-"""Checks of a student's tests by what they do: they pass on the right node, and fail on broken ones."""
+"""Checks of running a student's tests: they pass on the right node, and fail on broken ones."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def pass_(evidence: Evidence, _: NoParams) -> Finding:
     return failed(_observed(rejected[0]), expected, why_rejected(rejected[0], code))
 
 
-LEFT_OUT = "Options in setup.cfg or pytest.ini can leave tests out, and a test can end pytest itself."
+LEFT_OUT = "Options in setup.cfg or pytest.ini can exclude tests, and a test can end pytest itself."
 UNSTEADY = (
     "Something in the tests depends on luck: on the time that passes, on chance, or on what an earlier test left."
 )
@@ -82,11 +82,11 @@ def _one_line(text: str) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class Catches:
-    """The broken node that the tests must reject, in words, and what no test looks at if they do not."""
+    """The broken node that the tests must reject, its description, and what the tests lack if they accept it."""
 
     broken: str = string("the id of a broken node", about="The `id` of the `[[trial.tests.broken]]`.")
-    does: str = string("a description", about="What the broken node does, as in: a node that turns right.")
-    cause: str = string("a reason", about="What the student reads if all tests pass on it.")
+    does: str = string("a description", about="A description of the broken node, such as: a node that turns right.")
+    cause: str = string("a reason", about="The text that the student reads if all tests pass on it.")
 
 
 def catches(evidence: Evidence, params: Catches) -> Finding:
@@ -115,7 +115,7 @@ def _why_accepted(evidence: Evidence, params: Catches, code: TestCode) -> Cause:
 
 
 def _is_silent(evidence: Evidence, broken: str) -> bool:
-    """Return whether nothing of the broken node arrives where commands belong."""
+    """Return whether the broken node sends nothing on the topic of the commands."""
     spec = evidence.trial.tests
     assert spec is not None
     behaviours: dict[str, Behaviour] = {each.id: each.behaviour for each in spec.broken}

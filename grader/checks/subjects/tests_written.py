@@ -1,4 +1,4 @@
-"""Checks of a student's tests by their text: how colcon runs them, and what a good test does not do."""
+"""Checks of the source of a student's tests: how colcon runs them, and what good tests avoid."""
 
 from __future__ import annotations
 
@@ -88,8 +88,8 @@ def outside(evidence: Evidence, _: NoParams) -> Finding:
     return passed("The tests watch the node from outside.")
 
 
-SPIN = "Import the class, create the node in the test, and spin it. Then the test decides about the time."
-LOOKS = "Somebody may write the same node in another way. A test of its text would fail, although the node is right."
+SPIN = "Import the class, create the node in the test, and spin it. Then the test controls the time."
+LOOKS = "The same node can be written differently. A test of its source would then fail, although the node is right."
 
 
 def _imported(node: ast.AST, modules: frozenset[str]) -> str:
@@ -110,16 +110,16 @@ class Steady:
     """The names of functions that make a test depend on luck."""
 
     names: tuple[str, ...] = strings(about="Functions that wait for a fixed time, such as `sleep`.")
-    random: tuple[str, ...] = strings(about="Functions that give another result each time, such as `randint`.")
+    random: tuple[str, ...] = strings(about="Functions that return a different result each time, such as `randint`.")
 
 
 def steady(evidence: Evidence, params: Steady) -> Finding:
     """The tests neither sleep for a fixed time nor use random numbers."""
     code = code_of(evidence)
-    expected = "The tests do the same in every run, on a slow computer, too."
+    expected = "The tests behave the same in every run, even on a slow computer."
     use = _first_use(code, frozenset(params.names))
     if use is not None:
-        cause = "On a slow computer it may be too short. Spin until the message is there, or set the clock."
+        cause = "On a slow computer, the sleep may be too short. Spin until the message arrives, or set the clock."
         observed = f"The tests call {shorten(use.written, 60)}."
         return failed(observed, expected, Cause("sleeps-by-luck", cause, use.where))
     use = _first_use(code, frozenset(params.random))
@@ -171,7 +171,7 @@ STEADY = Kind(
     "The tests do not depend on luck",
     Steady,
     steady,
-    about="The test files call none of the given functions, whatever name they give them.",
+    about="The test files call none of the given functions, under any name.",
 )
 ASSERTS = Kind(
     "tests_assert",

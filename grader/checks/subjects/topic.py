@@ -77,7 +77,7 @@ def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, 
     topics = sorted({publisher.topic for publisher in same_type or publishers})
     guess = nearest(params.topic, topics)
     shown = [guess] if guess is not None else topics
-    observed = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, but no turtle subscribes to that."
+    observed = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, but no turtle subscribes to it."
     why = why_topic(params.topic, shown[0], evidence)
     why = why.fixed_by(right_name(evidence, "create_publisher", shown[0], params.topic))
     return failed(observed, _expected(params), why.at(_publisher_line(evidence, shown[0])))

@@ -39,8 +39,8 @@ class Values:
     angular_x_rad_s: float = number(0.0, about="angular.x of each command.")
     angular_y_rad_s: float = number(0.0, about="angular.y of each command.")
     angular_z_rad_s: float = number(0.0, about="angular.z of each command.")
-    linear_tolerance_m_s: float = number(1e-6, above=0, about="How far a linear value may be off.")
-    angular_tolerance_rad_s: float = number(1e-6, above=0, about="How far an angular value may be off.")
+    linear_tolerance_m_s: float = number(1e-6, above=0, about="The maximum error of a linear value.")
+    angular_tolerance_rad_s: float = number(1e-6, above=0, about="The maximum error of an angular value.")
 
     @property
     def wanted(self) -> Six:
@@ -137,7 +137,8 @@ def _why(six: Six, wanted: Six, off: list[int]) -> tuple[Cause, str]:
     not_numbers = [FIELDS[index] for index in off if not math.isfinite(six[index])]
     if not_numbers:
         return Cause(
-            "not-a-number", "Such a value comes from a calculation that has no result, such as infinity minus infinity."
+            "not-a-number",
+            "Such a value comes from a calculation without a defined result, such as infinity minus infinity.",
         ), not_numbers[0]
     if not any(six):
         return Cause("empty-twist", "All fields of a new Twist are 0. Set them before you publish it."), first
@@ -184,7 +185,7 @@ def _scaled(six: Six, wanted: Six, off: list[int]) -> tuple[Cause, str] | None:
 
 
 def requested_values(_: Evidence, params: Values) -> Requested:
-    """The six values of each command."""
+    """Return the six values of each command."""
     return Requested(values=params.wanted)
 
 

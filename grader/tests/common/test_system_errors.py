@@ -20,7 +20,7 @@ from grader.common.system_errors import of_the_machine, refusal
         (OSError(errno.ENOMEM, "x"), "has no memory left"),
         (
             PermissionError(errno.EPERM, "x", b"/dev/caf\xe9"),
-            "(Operation not permitted): see what",
+            "(Operation not permitted): see the output of",
         ),
         (OSError(errno.EROFS, "x", 7), "The disk cannot be written to: "),
         (OSError(), "it gave no reason"),

@@ -81,7 +81,7 @@ def worth(points: float, *, others: tuple[float, ...] = (100.0,)) -> Report:
 @pytest.mark.parametrize(
     ("made", "verdict", "exit_code"),
     [
-        (worth(0.0), "Passed: 100 of 100 points, with 1 warning: see what did not pass above.", 0),
+        (worth(0.0), "Passed: 100 of 100 points, with 1 warning: see the checks above that did not pass.", 0),
         (worth(5.0), "Not passed yet: 100 of 105 points, 1 check failed.", 1),
         (worth(0.0, others=(0.0,)), "Not passed yet: 0 of 0 points, 1 check failed.", 1),
     ],
@@ -127,7 +127,7 @@ def test_brief_lists_only_what_did_not_pass() -> None:
     signs = [line[0] for line in console.file.getvalue().splitlines()[1:] if line and line[0] in "✓✗-"]
     assert signs == ["✗"]
     amount = len(made.with_status(Status.PASSED))
-    assert f"{amount} checks passed. A higher window" in console.file.getvalue()
+    assert f"{amount} checks passed. `grader check` or a higher window" in console.file.getvalue()
 
 
 def test_an_error_has_no_points_so_far_and_says_what_to_do() -> None:

@@ -179,7 +179,7 @@ def leads_to(target: str) -> Build:
             "entry-point-function",
             "It has a function main.",
         ),
-        ("my_robot_controller.draw_circle:", "entry-point-no-function", "After the module comes a colon,"),
+        ("my_robot_controller.draw_circle:", "entry-point-no-function", "After the module, write a colon"),
     ],
 )
 def test_an_entry_point_that_leads_nowhere_is_explained_by_the_files(target: str, diagnosis: str, cause: str) -> None:

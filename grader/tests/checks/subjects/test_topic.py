@@ -75,18 +75,18 @@ def test_on_the_turtles_topic_what_the_simulator_saw_counts() -> None:
 def test_another_topic_is_explained_by_the_two_names(topic: str, diagnosis: str) -> None:
     finding = publishes(observed(("publisher", topic, TWIST)))
     assert reported(finding) == (diagnosis, ":9")
-    assert finding.observed == f"The node publishes on {topic}, but no turtle subscribes to that."
+    assert finding.observed == f"The node publishes on {topic}, but no turtle subscribes to it."
 
 
 def test_of_several_topics_those_of_the_type_and_the_nearest_are_named() -> None:
     both = observed(("publisher", "/turtle1/cmd_vol", TEXT), ("publisher", "/quaff", TWIST))
-    assert publishes(both).observed == "The node publishes on /quaff, but no turtle subscribes to that."
+    assert publishes(both).observed == "The node publishes on /quaff, but no turtle subscribes to it."
     near = observed(("publisher", "/a", TWIST), ("publisher", "/turtle1/cmd_val", TWIST))
-    assert publishes(near).observed == "The node publishes on /turtle1/cmd_val, but no turtle subscribes to that."
+    assert publishes(near).observed == "The node publishes on /turtle1/cmd_val, but no turtle subscribes to it."
     far = observed(("publisher", "/quaff", TWIST), ("publisher", "/a", TWIST))
-    assert publishes(far).observed == "The node publishes on /a and /quaff, but no turtle subscribes to that."
+    assert publishes(far).observed == "The node publishes on /a and /quaff, but no turtle subscribes to it."
     other = observed(("publisher", "/a", TEXT), ("publisher", "/quaff", COLOR))
-    assert publishes(other).observed == "The node publishes on /a and /quaff, but no turtle subscribes to that."
+    assert publishes(other).observed == "The node publishes on /a and /quaff, but no turtle subscribes to it."
 
 
 @pytest.mark.parametrize(
