@@ -1,4 +1,4 @@
-"""The tutorial's package with changes, and the builds of it."""
+"""The tutorial's package with changes, and its builds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Invented crashes: a node's source, the line where it crashed, and Python's message."""
+"""Made-up crashes: a node's source, the line where it crashed, and Python's message."""
 
 from __future__ import annotations
 
@@ -51,12 +51,12 @@ def line_with(comment: str, source: str) -> int | None:
 
 
 def to_look_at(source: str) -> int | None:
-    """Return the line that is marked to be looked at, or else the line that crashed."""
+    """Return the line that is marked as the expected one, or else the line that crashed."""
     return line_with(LOOK, source) or line_with(CRASHED, source)
 
 
 def reported(source: str, error: str, files: dict[str, str] | None = None) -> Reported:
-    """Return the report of a node with this source that ended with this error. `files` lie beside it."""
+    """Return the report of a node with this source that ended with this error. `files` are next to it."""
     finding = _finding(source, error, files)
     return Reported(finding.diagnosis, None if finding.where is None else finding.where.line, finding.cause)
 

@@ -1,4 +1,4 @@
-"""Invented evidence: recordings with the simulator's own motion, and submissions made of a few lines."""
+"""Made-up evidence: recordings with the simulator's own motion, and submissions of a few lines."""
 
 from __future__ import annotations
 
@@ -159,7 +159,9 @@ def node(*changes: tuple[str, str]) -> Submission:
 def every(
     period_s: float, linear: float, angular: float, until_s: float = DURATION_S, first_s: float | None = None
 ) -> list[Timed]:
-    """Return the same command, repeated with this period on the grid of frames. The first comes after one period."""
+    """Return the same command, repeated with this period on the grid of frames. The first command comes after one
+    period.
+    """
     first = period_s if first_s is None else first_s
     count = max(0, int((until_s - 1e-9 - first) / period_s) + 1)
     return [(round((first + k * period_s) / FRAME_S) * FRAME_S, linear, angular) for k in range(count)]
@@ -171,7 +173,7 @@ def as_command(timed: Timed) -> Command:
 
 
 class NoPaper:
-    """Paper for a turtle whose trail does not matter."""
+    """Paper for a turtle whose trail is not drawn."""
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
         """Draw nothing."""

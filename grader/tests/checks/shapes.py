@@ -1,4 +1,4 @@
-"""Runs of a learner's node, by name: the commands that arrived, and how the turtle moved."""
+"""Runs of a learner's node, by name: the commands that arrived, and the motion of the turtle."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ def crashed(at_s: float) -> ProcessEnd:
 
 
 def fields(linear: tuple[float, float, float], angular: tuple[float, float, float]) -> Recording:
-    """A steady node with these values."""
+    """Return the recording of a node that always publishes these values."""
     return recording(Command(t_s, t_s, linear, angular) for t_s, _, _ in every(0.5, 0.0, 0.0))
 
 
 def polygon(sides_s: float, turns_s: float, angle: float, speed: float) -> list[Timed]:
-    """At 2 Hz: some commands that drive straight on, then some that turn on the spot."""
+    """Return commands at 2 Hz: in turns, some that drive straight on and some that turn on the spot."""
     pattern = [(speed, 0.0)] * round(sides_s / 0.5) + [(0.0, angle / turns_s)] * round(turns_s / 0.5)
     return [(t_s, *pattern[index % len(pattern)]) for index, (t_s, _, _) in enumerate(every(0.5, 0.0, 0.0))]
 
@@ -49,7 +49,7 @@ def uneven() -> list[Timed]:
 
 
 def teleported(given: Recording, *, at_s: float = 5.0, name: str = "teleport_absolute") -> Recording:
-    """The same run, but at some time the turtle is moved half a metre to the left."""
+    """Return the same run, in which the turtle is also moved half a metre to the left."""
     frames = given.frames
     moved = replace(frames, x=frames.x - 0.5 * (frames.t_s > at_s))
     return replace(given, frames=moved, interventions=(name,))

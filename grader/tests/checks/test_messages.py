@@ -1,4 +1,4 @@
-"""Every failure of the catalogue below, checked for words that a beginner understands."""
+"""Every failure in the list below has a message with words that a beginner understands."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_no_failure_tells_a_line_of_the_solution(name: str) -> None:
 
 @pytest.mark.parametrize("name", sorted(FAILURES))
 def test_a_cause_holds_no_time_that_differs_from_run_to_run(name: str) -> None:
-    """Two reports on one submission are compared by their causes (docs/design.md, decision 12)."""
+    """Reports on one submission are compared by their causes (docs/design.md, decision 12)."""
     shape, _, id_ = name.partition(": ")
     if shape not in SHAPES:
         return

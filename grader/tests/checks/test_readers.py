@@ -1,4 +1,4 @@
-"""Source code that is read without running it: setup.py, constants, calls, tracebacks."""
+"""Reading source code without running it: setup.py, constants, calls, tracebacks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""colcon in a cell: a fork that runs setup.py does what a new interpreter does."""
+"""colcon in a cell: a fork that runs setup.py behaves like a new interpreter."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ SHOW = (
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The current folder: its modules report when they are loaded. `other` holds one that prints what it finds."""
+    """Return the current folder, whose modules report when they are imported. One in `other` prints what it finds."""
     (tmp_path / "other" / "module_of_ours").mkdir(parents=True)
     (tmp_path / "other" / "module_of_ours" / "__init__.py").touch()
     (tmp_path / "other" / "module_of_ours" / "show.py").write_text(SHOW)
@@ -81,7 +81,7 @@ COMMANDS = ("grader", "ros2", "rqt", "rqt_console", "rqt_graph", "rqt_plot")
 def test_our_commands_import_nothing_from_the_current_folder(folder: Path, name: str) -> None:
     (folder.parent / "here" / "grader.py").write_text("print('TRAP grader')\n")
     listed = {"PYTHONPATH": f":{folder}:x y", "PYTHONHOME": "here", "LD_LIBRARY_PATH": ":", "PYTHONIOENCODING": "ascii"}
-    # With another home folder, `ros2` would build the turtlesim interfaces there.
+    # with another home folder, `ros2` would build the turtlesim interfaces there
     cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     env = {**SOURCED_ENV, "PATH": ":/usr/bin:/bin", "HOME": str(folder), "XDG_CACHE_HOME": cache, **listed}
     if SOURCED_ENV:

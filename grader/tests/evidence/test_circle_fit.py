@@ -1,4 +1,4 @@
-"""The circle fit uses only numbers, so properties of any circle are tested, not examples."""
+"""The circle fit, tested with properties that hold for any circle."""
 
 from __future__ import annotations
 

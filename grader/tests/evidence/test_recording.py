@@ -64,7 +64,7 @@ RECORDING = Recording(
 
 
 def same(one: Recording, other: Recording) -> bool:
-    """Arrays and NaN need a comparison of their own."""
+    """Return whether two values are equal. Arrays and NaN need a special comparison."""
     return repr(to_json(one)) == repr(to_json(other))
 
 

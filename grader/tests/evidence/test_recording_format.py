@@ -1,4 +1,4 @@
-"""A graded submission stored as a folder: every trial is read back without a change."""
+"""A graded submission as a folder: everything that was saved is loaded again without a change."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CHALLENGES = find_exercise("07-challenges")
 
 
 def some_trials() -> Evidence:
-    """Three trials: two were run, and in one of these the node broke the simulator. The third was not run."""
+    """Return three trials: one completed, one in which the node made the simulator fail, and one that was not run."""
     runs = {
         "circle": Run(good()),
         "eight": Run(recording(every(0.1, 1.0, 1.0))),

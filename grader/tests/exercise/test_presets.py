@@ -1,4 +1,4 @@
-"""One `[[check]]` with a preset replaces the checks that every package or node needs."""
+"""A `[[check]]` with a preset stands for the checks that every package or node needs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The scenario in exercise.toml: what happens to the node in a trial."""
+"""The scenario in exercise.toml: the inputs and events of a trial."""
 
 from __future__ import annotations
 

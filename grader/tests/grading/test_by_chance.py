@@ -27,7 +27,7 @@ SLEEPS = WallTimeNeeded("the node sleeps on wall time")
 
 @dataclass
 class Trials:
-    """A replacement for the class of trials: each trial in simulated time ends with the next doubt, if there is one."""
+    """A replacement for the class of trials. Each trial in simulated time stops at the next doubt, if there is one."""
 
     doubts: list[WallTimeNeeded]
     clocks: list[str] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""The policy of the clock: the first clock of a trial, and the clock of its repetition."""
+"""The choice of the clock: for the first run of a trial, and for its repetition."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Causes are proved by trying a fix. The runs are invented."""
+"""Causes are proved by trying a fix. The runs are made up."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def right(id_: str) -> Outcome:
 def tries(
     source: str, judged: Callable[[str], Sequence[Outcome]], build_s: float = LONG_S
 ) -> tuple[Tries, dict[str, Outcome]]:
-    """Return what is tried for a source, and the reported outcomes. `judged` invents the outcomes of a source."""
+    """Return the tries for a source, and the reported outcomes. `judged` makes up the outcomes of a source."""
     evidence = Evidence(exercise(), submission({NODE_FILE: source}))
     outcomes = tuple(judged(source))
 

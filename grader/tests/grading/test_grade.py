@@ -1,4 +1,4 @@
-"""Gradings of the solution with the real command: regraded, on a broken machine, under load, and many at once."""
+"""Gradings of the solution with the real command: again from a recording, on a broken machine, and many at once."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def broken(tmp_path: Path, sitecustomize: str) -> subprocess.CompletedProcess[str]:
-    """Grade on a machine with a fault. A sitecustomize in the grader's own process causes it."""
+    """Grade on a machine with a fault, which this sitecustomize causes in the grader's own process."""
     (tmp_path / "sitecustomize.py").write_text(sitecustomize)
     return grader("check", SOLUTION, "--json", tmp_path / "report.json", env={"PYTHONPATH": str(tmp_path)})
 

@@ -1,4 +1,4 @@
-"""The trials of an exercise start during its build and run side by side. Those in wall time run after the others."""
+"""The trials of an exercise start during its build and run in parallel. Those in wall time run after the others."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class _Made:
         if executable in LONGEST:
             self.trials.both.wait(HANG_S)
         elif executable == "draw_square":
-            time.sleep(0.1)  # it ends last, unless somebody does not wait for it
+            time.sleep(0.1)  # the last one to end, unless a caller does not wait for it
         self.trials.ended.append(self.clock)
         return replace(good(), clock=self.clock)
 
@@ -84,7 +84,7 @@ def nobody_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def graded(trials: Trials, at_once: int, build: Any, more: bytes = b"") -> Graded:  # noqa: ANN401
-    """Return the solution of step 07, with `more` at the end of its eight."""
+    """Return the graded solution of step 07, with `more` at the end of the file of its eight."""
     given = open_submission(ROOT / "solutions" / STEP)
     eight = f"{PACKAGE}/figure_eight.py"
     given = replace(given, files={**given.files, eight: given.files[eight] + more})
@@ -142,7 +142,9 @@ def test_each_check_is_judged_once_when_its_stage_is_done(monkeypatch: pytest.Mo
 
         return replace(kind, check=check)
 
-    monkeypatch.setattr("grader.submission.reader._Child.inside", True)  # (a child could not increase our counter)
+    monkeypatch.setattr(
+        "grader.submission.reader._Child.inside", True
+    )  # a child process could not increase our counter
     monkeypatch.setattr("grader.checks.judge.KINDS", {name: counted(kind) for name, kind in KINDS.items()})
     graded(Trials(), 2, lambda *_, **__: built_solution())
     assert set(+judged) >= {("node_starts", f"{trial.id} NoParams()") for trial in find_exercise(STEP).trials}

@@ -1,4 +1,4 @@
-"""A trial in wall time that failed on a crowded machine is repeated alone; on an idle machine, it counts."""
+"""A trial in wall time that fails on a crowded machine is repeated alone; on an idle machine, it is final."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Gradings share the machine. A grading that needs it alone waits for the others, and later ones wait for it."""
+"""Gradings share the machine. A grading that needs it alone waits for the others, and later ones wait for that one."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ print("done", flush=True)
 
 
 def other(folder: Path, *how: str) -> subprocess.Popen[str]:
-    """Hold the lock like another grading."""
+    """Start a process that holds the lock, like another grading."""
     return subprocess.Popen(
         [sys.executable, "-c", _OTHER, str(folder), *how], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     )
@@ -77,7 +77,7 @@ def test_who_wants_it_alone_waits_for_the_others_and_later_ones_wait_for_it(tmp_
 
 
 def await_turnstile(folder: Path) -> None:
-    """Wait until some process holds the lock."""
+    """Wait until a process holds the lock."""
     with (folder / "turnstile").open("ab") as turnstile:
         while True:
             try:

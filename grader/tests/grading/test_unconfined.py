@@ -23,7 +23,7 @@ WITHOUT = "import grader.sandbox.bubblewrap\ngrader.sandbox.bubblewrap.program =
 
 @pytest.fixture
 def without(tmp_path: Path) -> dict[str, str]:
-    """The environment of a machine without bubblewrap."""
+    """Return the environment of a machine without bubblewrap."""
     (tmp_path / "sitecustomize.py").write_text(WITHOUT)
     return {**os.environ, "PYTHONPATH": str(tmp_path), "XDG_STATE_HOME": str(tmp_path / "state")}
 

@@ -1,4 +1,4 @@
-"""A submission that breaks the grader while it is read has failed. Only the machine's own faults are errors."""
+"""A submission that makes the grader fail while it is read has failed. Only the machine's own faults are errors."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ def test_what_takes_its_reader_along_fails_every_check_and_nothing_more_is_read(
 
 
 def _in_a_child(how: Callable[..., NoReturn]) -> Callable[..., Any]:
-    """The same for `regrade`. Here the judge is the real one, which does not read what could not be read."""
+    """Return a judge that fails only in a child process. Otherwise, it is the real one, as in `regrade`."""
     return lambda *given: how() if reader._Child.inside else judge_so_far(*given)
 
 

@@ -16,7 +16,7 @@ def subscription(node: str, topic: str) -> Endpoint:
 
 
 def tutorial() -> Graph:
-    """draw_circle drives turtlesim. The data are as `ros2 node info` shows them."""
+    """Return the graph in which draw_circle drives turtlesim, with the data that `ros2 node info` shows."""
     return Graph(
         t_s=1.0,
         nodes=("/turtlesim", "/draw_circle"),
@@ -37,7 +37,9 @@ def tutorial() -> Graph:
 
 
 def ten_nodes() -> Graph:
-    """A closed loop, two nodes with one name, a node without connections, long names, a topic named like a node."""
+    """Return a graph with a loop, two nodes of one name, a node without connections, long names, and a topic named like
+    a node.
+    """
     return Graph(
         t_s=1.0,
         nodes=(

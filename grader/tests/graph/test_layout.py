@@ -1,4 +1,4 @@
-"""Pictures made by Graphviz: the text is read from the SVG and measured with the font that the SVG names."""
+"""Pictures drawn by Graphviz. The text is read from the SVG and measured with the font that the SVG names."""
 
 from __future__ import annotations
 

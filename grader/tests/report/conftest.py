@@ -28,7 +28,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(scope="session")
 def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the page of each submission in GIVEN, and with class.html."""
+    """Return a folder with the page of each submission in GIVEN, and with class.html."""
     folder = tmp_path_factory.mktemp("pages")
     for name, given in GIVEN.items():
         save_html(given, report_of(given, submission=given.submission.name), folder / f"{name}.html")
@@ -45,13 +45,13 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def problems() -> list[str]:
-    """What went wrong in the tab: errors, console messages, dialogs, and the URLs that it requested."""
+    """Return the problems in the tab: errors, console messages, dialogs, and the URLs that it requested."""
     return []
 
 
 @pytest.fixture
 def page(browser: Browser, problems: list[str]) -> Iterator[Page]:
-    """A new tab of the browser."""
+    """Yield a new tab of the browser."""
 
     def note_dialog(dialog: Dialog) -> None:
         problems.append(dialog.message)

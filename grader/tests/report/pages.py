@@ -1,4 +1,4 @@
-"""The submissions whose pages are opened in a browser, and the actions of the tests on a page."""
+"""Submissions whose pages are opened in a browser, and the actions of the tests on a page."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Read each format of a class like its real reader: a spreadsheet, Gradescope, the runner of GitHub Actions."""
+"""Readers of the formats of a class that behave like a spreadsheet, Gradescope and the runner of GitHub Actions."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def table(*reports: tuple[str, Report]) -> list[dict[str, str]]:
 
 
 def gradescope(given: Report) -> dict[str, Any]:
-    """Return results.json after a check against Gradescope's specification."""
+    """Return the content of results.json, checked against Gradescope's specification."""
     data: dict[str, Any] = json.loads(to_gradescope(given))
     jsonschema.validate(data, RESULTS)
     return data

@@ -1,4 +1,4 @@
-"""Reports for tests: one for each status, and a hostile one. The judge makes them from invented evidence."""
+"""Reports for tests: one for each status, and a hostile one. The judge makes them from made-up evidence."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def report_of(given: Evidence, **changes: object) -> Report:
 
 
 def report(status: str, **changes: object) -> Report:
-    """Return a report in which this status occurs; the checks are those of the course."""
+    """Return a report in which this status occurs. The checks are those of the course."""
     assert exercise().checks
     return report_of(EVIDENCE[status], **changes)
 

@@ -1,4 +1,4 @@
-"""Which causes a report tells as facts, and which as possibilities."""
+"""Which causes a report states as facts, and which as possibilities."""
 
 from __future__ import annotations
 

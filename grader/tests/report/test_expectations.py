@@ -1,4 +1,4 @@
-"""The report shows the required path of an exercise where the turtle should have driven."""
+"""The report shows the path that the exercise requires."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ AHEAD = legs((20, 1.0, 0.0))
 
 
 def in_challenge(trial: str, commands: list[Timed], start: Pose = NORTH) -> Evidence:
-    """Return the path of a learner in one of the trials of step 07."""
+    """Return the evidence of a learner's path in one of the trials of step 07."""
     return evidence(recording(commands, start), exercise=find_exercise("07-challenges"), trial_id=trial)
 
 

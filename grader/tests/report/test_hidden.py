@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def with_hidden(status: Status) -> Report:
-    """A report with an additional hidden check."""
+    """Return a report with an additional hidden check."""
     finding = Finding(
         status, "secret seen", "secret expected", "secret cause", "secret-diagnosis", Where("secret.py", 7)
     )

@@ -46,7 +46,7 @@ def page_of(given: Evidence) -> str:
 
 
 class Tags(HTMLParser):
-    """Parse every element with its attributes, and the contents of script and style."""
+    """A parser that collects every element with its attributes, and the contents of script and style."""
 
     def __init__(self, page: str) -> None:
         super().__init__()
@@ -279,7 +279,7 @@ def test_goals_are_in_a_table_and_on_the_time_line_of_the_replay() -> None:
 
 
 def moments_of(page: str) -> list[list[object]]:
-    """Return the words of the replay at each time (s)."""
+    """Return the texts of the replay with their times (s)."""
     found = re.search(r'"calls": ?(\[.*?\]\])', page)
     assert found is not None
     moments: list[list[object]] = json.loads(found[1])

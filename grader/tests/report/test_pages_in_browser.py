@@ -71,7 +71,7 @@ def test_axe_finds_nothing(page: Page, pages: Path, name: str, scheme: str, widt
 
 
 def violations_on(page: Page, pages: Path, name: str, scheme: str, width: int) -> list[str]:
-    """Return what axe finds on a page with all sections open."""
+    """Return the violations that axe finds on a page with all sections open."""
     page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
     page.set_viewport_size({"width": width, "height": 900})
     opened(page, pages, name)

@@ -1,4 +1,4 @@
-"""On a terminal, the progress disappears before the report. Elsewhere it is plain lines on standard error."""
+"""On a terminal, the progress disappears before the report. Elsewhere, it is printed line by line on standard error."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def stop_clock(page: Page) -> None:
-    """Stop the clock of the page. From now on, only `page.clock.run_for` moves it."""
+    """Stop the clock of the page. After this, only `page.clock.run_for` advances it."""
     page.clock.install(time=0)
     page.clock.pause_at(1)
 

@@ -21,7 +21,7 @@ GOLDEN = Path(__file__).parent.parent / "golden" / "report"
 def test_the_format_has_not_changed(status: str) -> None:
     """Other programs read these files.
 
-    If a change is intended, raise SCHEMA and write the new text into golden/report/.
+    If a change is intended, increase SCHEMA and write the new text to golden/report/.
     """
     assert to_json(report(status)) == (GOLDEN / f"{status}.json").read_text("utf-8")
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def unfinished() -> Report:
-    """A report in which the circle could not be judged and all other checks passed: 75 points."""
+    """Return a report with 75 points in which the circle could not be judged and all other checks passed."""
     made = report("passed")
     broken = Finding(Status.ERROR, "The machine was too busy.")
     outcomes = (replace(each, points=0.0, finding=broken) if each.id == "circle" else each for each in made.outcomes)

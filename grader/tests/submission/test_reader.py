@@ -1,4 +1,4 @@
-"""The process that reads what students wrote: its limits and its results."""
+"""The process that reads the files of students: its limits and its results."""
 
 from __future__ import annotations
 

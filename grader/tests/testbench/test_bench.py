@@ -1,4 +1,4 @@
-"""A student's tests cannot find out which node they have, except by what the node does."""
+"""A student's tests cannot find out which node they run on, except by its behaviour."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no san
 
 
 def spec(*broken: str, right_runs: int = 1, duration_s: float = 20.0) -> TestsSpec:
-    """Return the nodes of the course, with only these broken ones."""
+    """Return the nodes of the course, but only these broken ones."""
     whole = find_exercise(STEP).trials[0].tests
     assert whole is not None
     chosen = tuple(each for each in whole.broken if each.id in broken)
@@ -37,7 +37,7 @@ def spec(*broken: str, right_runs: int = 1, duration_s: float = 20.0) -> TestsSp
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
-    """The files of the solution."""
+    """Return the files of the solution."""
     case = Case(name="solution", why="", result="passed", base=STEP)
     given: Path = make_submission(case, tmp_path_factory.mktemp("bench") / "in")
     return dict(open_submission(given).files)
@@ -105,9 +105,9 @@ def test_it():
 
 
 def test_the_code_and_the_environment_are_the_same_for_all_nodes(files: dict[str, bytes]) -> None:
-    """Each run fails with the digest of all that it can read. The digests are equal."""
+    """Each run fails with the digest of everything that it can read. All digests are equal."""
     nodes = spec("rate", "sign")
-    # The right node is not run, because a rejected right node ends the others.
+    # The right node is not run, because its rejection would end the other runs.
     runs = run(dataclasses.replace(nodes, right_runs=0), {**files, TESTS: PEEKS.encode()})
     digests = {each.message.split("==")[0] for each in runs}
     assert (len(runs), len(digests)) == (2, 1), runs

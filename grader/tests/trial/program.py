@@ -1,4 +1,4 @@
-"""A running Python program, for tests of what the kernel reports about programs."""
+"""A running Python program, for tests of the information in /proc."""
 
 from __future__ import annotations
 

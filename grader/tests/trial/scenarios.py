@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def what_one_spin_handles() -> dict[str, Any]:
-    """Return how many of three commands are kept at once, and which log lines are received during a request."""
+    """Return how many of three commands are kept in one spin, and which log lines are received during a request."""
     stage = _stage()
     student = rclpy.create_node("student")
     commands = student.create_publisher(Twist, "/turtle1/cmd_vel", 10)
@@ -43,7 +43,7 @@ def what_one_spin_handles() -> dict[str, Any]:
 
 
 def a_line_while_the_graph_is_looked_at() -> list[float]:
-    """Return when a line is stored that the node writes during the last look before the clock starts (s)."""
+    """Return the times (s) at which a line is stored that the node logs just before the clock starts."""
     written: list[str] = []
     taken_in_s: list[float] = []
 
@@ -61,7 +61,7 @@ def a_line_while_the_graph_is_looked_at() -> list[float]:
 
 
 def a_node_that_drives_before_it_is_found() -> int:
-    """Return how many of its commands have arrived when the clock starts."""
+    """Return how many commands have arrived when the clock starts, for a node that drives before its discovery."""
     commands: list[str] = []
     stage: Any = WallTrial.__new__(WallTrial)
     stage.node = SimpleNamespace(pids=(1,), ended=lambda: False, read_output=lambda _: 0)
@@ -73,7 +73,7 @@ def a_node_that_drives_before_it_is_found() -> int:
 
 
 def who_may_request() -> bool:
-    """Return whether a node without a client can call. A node must be able to call only while it has a client."""
+    """Return whether a request is possible before any client exists. Check that it is possible only while one exists."""
     stage = _stage()
     student = rclpy.create_node("student")
     anybody = stage.may_request()
@@ -95,7 +95,7 @@ def who_may_request() -> bool:
 
 
 def quiet_s() -> float:
-    """Return how long discovery must be silent (s)."""
+    """Return how long discovery must be silent before it counts as finished (s)."""
     return QUIET_S
 
 

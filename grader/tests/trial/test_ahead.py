@@ -21,7 +21,7 @@ SEEN = good()
 
 
 class Made:
-    """A replacement for a trial. `runs` is the effect of its run; it is ready when `ready` is set."""
+    """A replacement for a trial. Its `run` calls `runs`, and it is ready when `ready` is set."""
 
     def __init__(self, runs: Callable[[], Recording]) -> None:
         self.runs = runs
@@ -42,7 +42,7 @@ class Made:
     def __exit__(self, *_: object) -> None:
         self.open = False
         self.closed.set()
-        self.ready.set()  # like a real trial, whose end is noticed by everybody that waits for it
+        self.ready.set()  # like a real trial, which tells all waiting threads that it has ended
 
     def run(self, *_: Any) -> Recording:  # noqa: ANN401
         return self.runs()
@@ -87,7 +87,7 @@ def test_what_was_not_run_ahead_is_run_when_it_is_requested(ahead: Ahead) -> Non
 
 
 def start_two(ahead: Ahead) -> tuple[Made, Made]:
-    """Two trials. The first one is being started and is not ready yet."""
+    """Return two trials. The first one is being started and is not ready yet."""
     first, second = Made(lambda: SEEN), Made(lambda: SEEN)
     first.ready.clear()
     ahead.start("", cast("Trial", first))

@@ -1,4 +1,4 @@
-"""The cell calls a student's function or program. The call can only return its own numbers."""
+"""Calls of a student's function or program in a cell: a call can change only its own result."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def ros() -> Ros:
 
 
 def tree_of(ros: Ros, path: str, source: str) -> bytes:
-    """An install tree with one file. A module's `path` begins with "python/", a program's with "lib/"."""
+    """Return an install tree with one file. A module's `path` begins with "python/", a program's with "lib/"."""
     home = bubblewrap.WORKSPACE
     python = environment(ros, home=home, overlays=[home / PACKAGE])["PYTHONPATH"].split(":")[0]
     place = path.replace("python/", python.removeprefix(f"{home}/{PACKAGE}/") + f"/{PACKAGE}/")
@@ -43,7 +43,7 @@ def tree_of(ros: Ros, path: str, source: str) -> bytes:
 
 
 def called(ros: Ros, source: str) -> list[Called]:
-    """Return what two calls of the function `f` in this module did."""
+    """Return the results of two calls of the function `f` in this module."""
     tree = tree_of(ros, "python/module.py", source)
     output = calling.make_calls(
         ros, PACKAGE, tree, POINTS, {}, function=f"{PACKAGE}.module:f", in_cell=bubblewrap.usable()

@@ -1,4 +1,4 @@
-"""The kernel counts who works and who waits, so these tests examine real processes. Exact numbers are invented."""
+"""How crowds and stalls are measured, with real processes; the exact numbers of some tests are made up."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ for _ in sys.stdin:
 
 @contextmanager
 def program(work_s: float) -> Iterator[subprocess.Popen[str]]:
-    """A program that uses this CPU time (s) for each line that it gets. All such programs share one processor."""
+    """Yield a program that uses this CPU time (s) for each line of input. All such programs share one processor."""
     code = WORKS.format(processor=min(os.sched_getaffinity(0)), work_s=work_s)
     with python(code) as process:
         yield process
@@ -125,7 +125,7 @@ def test_a_stall_is_what_the_machine_owes(counts: Counts, monkeypatch: pytest.Mo
 
 
 def looked(counts: Counts, monkeypatch: pytest.MonkeyPatch) -> Stalls:
-    """Stalls whose next look finds these counts."""
+    """Return a Stalls whose next look finds these counts."""
     node, simulator, stolen_s = counts
     times = iter([(0.0, 0.0), (0.0, 0.0), node, simulator])
     stolen = iter([0.0, 0.0, stolen_s])
@@ -142,7 +142,7 @@ def test_what_the_simulator_works_beyond_its_own_share_is_the_nodes(monkeypatch:
 
 
 class Busy:
-    """A replacement for a node and a trial: their processes have always worked for these times (s)."""
+    """A replacement for a node and a trial. Their processes have always worked for these times (s)."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""What a recording keeps of goals."""
+"""The goals in a recording."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ACTION = "/turtle1/rotate_absolute"
 
 
 class Theta:
-    """An object like the Goal of RotateAbsolute, without ROS 2."""
+    """A replacement for the Goal of RotateAbsolute, without ROS 2."""
 
     theta = 1.5
 

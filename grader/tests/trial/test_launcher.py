@@ -24,7 +24,7 @@ print(signal.getsignal(signal.SIGINT) is signal.default_int_handler, signal.pthr
 
 
 def deaf_to_ctrl_c() -> None:
-    """Start it like a shell that starts a job in the background."""
+    """Ignore Ctrl-C, as in a job that a shell starts in the background."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
 
@@ -39,7 +39,7 @@ SIMULATED = ["--ros-args", "-p", "use_sim_time:=true"]
 
 
 def launch(in_ros: InRos, folder: Path, text: str, ros_arguments: list[str]) -> subprocess.CompletedProcess[bytes]:
-    """Run a program like the launcher."""
+    """Run a program with the launcher."""
     script = folder / "node"
     script.write_text(text, "utf-8")
     tree = io.BytesIO()

@@ -45,7 +45,7 @@ def test_a_pipe_is_made_large(pipe: tuple[int, int]) -> None:
 def test_a_pipe_that_may_not_grow_is_used_as_it_is(
     monkeypatch: pytest.MonkeyPatch, pipe: tuple[int, int], most: int, size: int
 ) -> None:
-    """Refuse like a kernel when all pipes of a user together exceed fs.pipe-user-pages-soft."""
+    """The kernel refuses when all pipes of a user together exceed fs.pipe-user-pages-soft."""
     fcntl.fcntl(pipe[0], fcntl.F_SETPIPE_SZ, PAGE)
     real = fcntl.fcntl
 

@@ -1,4 +1,4 @@
-"""How long simulated time waits for a node that is not idle."""
+"""The time limits for a node that is not idle in simulated time."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ play(other, one)
 
 
 def waited(*, asleep: float, wrote: bool = False, share: float = 0.0) -> float:
-    """Return when patience ends (s) with a node that sleeps this often and gets this share of a processor."""
+    """Return when patience ends (s), for a node that sleeps this often and gets this share of a processor."""
     patience, now_s, observed = HandshakePatience(0.0), 0.0, 0.0
     while True:
         now_s += LOOK_S
@@ -44,8 +44,8 @@ def waited(*, asleep: float, wrote: bool = False, share: float = 0.0) -> float:
 @pytest.mark.parametrize(
     ("least_s", "most_s", "asleep", "wrote", "share"),
     [
-        (20.0, 21.0, 1.0, False, 0.0),  # it sleeps, or waits for something that never comes
-        (20.0, 25.0, 0.9, False, 0.05),  # a loop that checks now and then
+        (20.0, 21.0, 1.0, False, 0.0),  # it sleeps, or waits for something that never happens
+        (20.0, 25.0, 0.9, False, 0.05),  # a loop that polls from time to time
         (20.0, 21.0, 0.0, False, 1.0),  # it always works and has a processor for itself
         (80.0, 81.0, 0.0, False, 0.25),  # with a quarter of a processor, it may use as much CPU time
         (100.0, 101.0, 0.0, False, 0.05),
@@ -60,7 +60,7 @@ def test_only_sleep_and_work_are_counted(
 
 
 class Worker:
-    """A process as `TickPatience` sees it: each request returns the next CPU time (s)."""
+    """A process as `TickPatience` observes it: each request returns the next CPU time (s)."""
 
     def __init__(self, *reported_s: float) -> None:
         self._reported_s = list(reported_s)
@@ -74,7 +74,7 @@ class Worker:
 
 def test_a_node_that_works_on_at_one_instant_ends_patience() -> None:
     patience = TickPatience(cast("Threads", Worker(7.0, 7.0, 7.9, 8.1)), 0.0)
-    assert not patience.ended(0.01)  # it is too soon for a request, and the process has only four answers
+    assert not patience.ended(0.01)  # it is too early for a request, and the process has only four answers
     assert [patience.ended(now_s) for now_s in (0.1, 0.11, 0.2, 0.21, 0.3)] == [False, False, False, False, True]
 
 

@@ -1,4 +1,4 @@
-"""What a trial records about pens and the other turtles."""
+"""The pens and the other turtles in a recording."""
 
 from __future__ import annotations
 

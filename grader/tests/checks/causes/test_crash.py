@@ -1,4 +1,4 @@
-"""The words for how a node ended, and the exception that ended it."""
+"""The sentences about the end of a node, and about the exception that caused it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why the exercise's executable is missing, or why it starts nothing."""
+"""Why the exercise's executable is missing or cannot start."""
 
 from __future__ import annotations
 

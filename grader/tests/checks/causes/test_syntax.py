@@ -1,4 +1,4 @@
-"""Python's messages for a file that it cannot read, and the usual mistake behind each of them."""
+"""The causes of a SyntaxError, from Python's message and the source."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why a call was refused, by Python or by rclpy."""
+"""Why Python or rclpy rejected a call."""
 
 from __future__ import annotations
 

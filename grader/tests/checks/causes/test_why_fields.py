@@ -1,4 +1,4 @@
-"""Why a message's field refused a value."""
+"""Why a message field rejected a value."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ NODES = {"find": "node", "among": "all", "form": "list"}
 
 
 def given(answers: str | None, **changes: Any) -> Evidence:  # noqa: ANN401
-    """A kitchen with two nodes, a submission with the answer `name = ...`, and one message every 0.25 s."""
+    """Return evidence with a graph of two nodes, the answer `name = ...`, and one message every 0.25 s."""
     beats = tuple(Message("/cups", "std_msgs/msg/String", b"", 0.25 * beat, 0.25 * beat) for beat in range(1, 40))
     trial = recording([], graphs=(COFFEE,), messages=beats)
     text = None if answers is None else f"[answers]\n{answers}\n"

@@ -1,4 +1,4 @@
-"""What the checks of bags, functions and programs say about invented results and bags, without running anything."""
+"""The checks of bags, functions and programs, with made-up results and bags."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def solution() -> Submission:
 
 
 def judged(check: str, called: Called | None = None, files: dict[str, bytes] | None = None) -> Finding:
-    """What one check says about one result, or about the solution with other files."""
+    """Return the finding of one check for one result, or for the solution with other files."""
     spec = SPECS[check]
     files = files or {}
     bag = any(path.startswith("circle_bag/") for path in files)

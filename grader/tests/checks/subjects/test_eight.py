@@ -11,11 +11,11 @@ from grader.tests.checks.shapes import teleported
 from grader.trial.recording import Pose
 
 TICKS = 40
-TURN = 2.0 * math.pi / (TICKS * TICK_S)  # rad/s; a circle takes this many ticks
+TURN = 2.0 * math.pi / (TICKS * TICK_S)  # in rad/s; a circle takes this many ticks
 
 
 def lobe(side: float, radius_m: float = 1.0, degrees: float = 360.0) -> tuple[int, float, float]:
-    """A loop of the eight to the left (+1) or to the right (-1)."""
+    """Return one lobe of the eight, to the left (+1) or to the right (-1)."""
     return round(TICKS * degrees / 360.0), radius_m * TURN, side * TURN
 
 

@@ -1,4 +1,4 @@
-"""The check of the entry point, and the causes for a string that is not an entry point."""
+"""The check of the entry point, and the causes of invalid entry points."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tolerance of a fitted circle follows from the noise: each sound fit is within it, and a worse one is not."""
+"""The tolerance of a fitted circle follows from the noise: good fits are within it, and worse ones are not."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ ROUNDING_M = 1e-3
 
 
 def kasa(arc: Arc, seed: int) -> tuple[float, float, float]:
-    """The fit of the lesson."""
+    """Return the circle that the lesson's method fits."""
     x, y = arc.points("test", seed)
     left = np.column_stack((2 * x, 2 * y, np.ones(len(x))))
     a, b, c = (float(each) for each in np.linalg.lstsq(left, x**2 + y**2, rcond=None)[0])
@@ -45,7 +45,7 @@ def test_sound_fits_are_within_the_tolerance(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["noise", "arc", "elsewhere"])
 def test_the_tolerance_is_that_of_the_noise(name: str) -> None:
-    """The errors of the fit of the lesson have the deviation from which the tolerance is computed."""
+    """The errors of the lesson's fit have the standard deviation from which the tolerance is computed."""
     arc = ARCS[name]
     errors = [kasa(arc, seed)[2] - arc.radius_m for seed in SEEDS]
     rms = float(np.sqrt(np.mean(np.square(errors))))

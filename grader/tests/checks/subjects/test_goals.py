@@ -1,4 +1,4 @@
-"""Goals of rotate_absolute: what was sent, what ended it, the feedback in the log, a goal that is cancelled, a star."""
+"""Goals of rotate_absolute: their requests and ends, the feedback in the log, cancellation, and a star."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def test_no_goal_follows_a_cancelled_one() -> None:
 
 
 def turning(from_s: float, until_s: float) -> Frames:
-    """The frames of a turtle that turns to the left at 1 rad/s between two times."""
+    """Return the frames of a turtle that turns left at 1 rad/s between two times."""
     still = frames([], Pose(*Start()), DURATION_S)
     theta = [normalize(min(max(t_s - from_s, 0.0), until_s - from_s)) for t_s in still.t_s.tolist()]
     return replace(still, theta=still.theta * 0.0 + theta)
@@ -164,7 +164,7 @@ def test_feedback_without_a_callback_is_named() -> None:
 
 
 def star(sides: int = 5, ticks: int = 10, turn: float = 144.0, more: int = 0) -> list[tuple[float, float, float]]:
-    """The commands of a star of 2 m by 0.2 m per tick; commands turn, too, since the frames are made of them."""
+    """Return the commands of a star of 2 m, at 0.2 m per tick. They also turn, because the frames follow from them."""
     corner = math.radians(turn) / (4 * TICK_S)
     speeds = []
     for index in range(sides):

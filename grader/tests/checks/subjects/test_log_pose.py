@@ -1,4 +1,4 @@
-"""The lines of step 06 compared with the turtle's trajectory: straight on to the left, a rest, backwards."""
+"""The log lines of step 06, compared with the turtle's trajectory: forward and left, a rest, backward."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ Said = tuple["Floats", "Floats", "Floats"]
 
 
 def truth(lag_s: float = 0.0) -> Said:
-    """The lines of a correct node at TIMES, with the poses that are `lag_s` older."""
+    """Return the lines of a correct node at TIMES, with the poses that are `lag_s` older."""
     frames, start = DRIVE.frames, DRIVE.start
     at = np.searchsorted(frames.t_s, TIMES - lag_s) - 1
     x, y = np.append(start.x, frames.x), np.append(start.y, frames.y)

@@ -1,4 +1,4 @@
-"""Parameters: their description, and what a node answers when one is set."""
+"""Parameters: their descriptions, and the response of a node when one is set."""
 
 from __future__ import annotations
 

@@ -189,7 +189,7 @@ def test_a_command_after_ctrl_c_is_not_counted() -> None:
 
 @pytest.mark.parametrize("arrives_s", [0.0, 0.1])
 def test_what_was_sent_before_the_clock_started_is_in_no_interval(arrives_s: float) -> None:
-    """The first command arrives when both sides have found each other, which takes a while."""
+    """The first command arrives after discovery, which takes a while."""
     late = [(arrives_s, 2.0, 1.0), *every(0.5, 2.0, 1.0, first_s=0.3)]
     found = finding("rate", evidence(recording(late)))
     assert (found.status, found.near_edge) == (Status.PASSED, False)

@@ -1,4 +1,4 @@
-"""The checks of start, name, topic, type and stop."""
+"""The checks of the start, the name, the topic, the type and the stop."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Services: a node's requests and replies, a pause, and an arc in another colour."""
+"""Services: a node's requests and responses, a pause, and an arc in another colour."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ def corner(degrees: float = 90.0) -> Leg:
 
 
 def round_(sides: tuple[float, ...] = (2.0,) * 4, corners: tuple[float, ...] = (90.0,) * 4) -> list[Leg]:
-    """Side, corner, side, ..."""
+    """Return the legs of a square: side, corner, side, ..."""
     return [leg for length, turn in zip(sides, corners, strict=True) for leg in (side(length), corner(turn))]
 
 

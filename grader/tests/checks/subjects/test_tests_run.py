@@ -1,4 +1,4 @@
-"""What the runs of a student's tests say, with results that were made up."""
+"""The checks of a student's tests, with made-up results."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_tests_that_pass_only_sometimes_are_named(order: tuple[NodeRun, ...]) ->
 
 
 def test_a_missing_run_on_the_right_node_is_no_pass() -> None:
-    """The runs end after two that hung, so the right node may not have had all of its runs."""
+    """No further run starts after two runs that hung, so runs on the right node may be missing."""
     hung = NodeRun("stop", None, over=True)
     assert passes(GOOD, hung, dataclasses.replace(hung, node="rate")).diagnosis == "test-hangs"
     assert passes().diagnosis == "test-hangs"
