@@ -1,4 +1,4 @@
-"""Run one of our commands while the system refuses one kind of call, from a certain function on."""
+"""Run a command of the grader in which one kind of system call fails, starting with a given function."""
 
 from __future__ import annotations
 
@@ -63,14 +63,14 @@ LIMIT_S = 300
 
 @dataclass(frozen=True)
 class Fault:
-    """The `nth` call of this kind and all later ones fail with an errno, from a function on ("module:name")."""
+    """A kind of system call that fails with an errno, from the `nth` call after a function ("module:name") starts."""
 
     call: str
     number: int
     nth: int
     since: str
     in_rooms: bool = False
-    """Return whether a conductor calls the function."""
+    """Whether the conductor calls the function."""
 
 
 @dataclass(frozen=True)
@@ -83,8 +83,8 @@ class Done:
 
 
 def environment(folder: Path, shim: Path, fault: Fault) -> dict[str, str]:
-    """Return the variables that make a command meet the fault. `folder` holds the files for it."""
-    observed = folder / "seen"  # the rooms see it, too
+    """Return the variables that inject the fault into a command. `folder` is for the files of the injection."""
+    observed = folder / "seen"  # the folder is visible in the rooms, too
     observed.mkdir(exist_ok=True)
     (observed / "sitecustomize.py").write_text(ARMED)
     preloaded = shutil.copy(shim, observed)
@@ -101,7 +101,7 @@ def environment(folder: Path, shim: Path, fault: Fault) -> dict[str, str]:
 def run(
     command: Sequence[str], folder: Path, shim: Path, fault: Fault, settings: Mapping[str, str] | None = None
 ) -> Done:
-    """Run one of our commands. Messages show its name without its folder."""
+    """Run a command of the grader. Messages show its name without its folder."""
     program = str(Path(sys.prefix, "bin", command[0]))
     env = {**environment(folder, shim, fault), **(settings or {})}
     done = subprocess.run(
@@ -113,7 +113,7 @@ def run(
 
 
 def failures(folder: Path) -> int:
-    """Return how many calls have failed so far."""
+    """Return the number of calls that have failed so far."""
     log = folder / "failures"
     return len(log.read_text("utf-8").splitlines()) if log.exists() else 0
 

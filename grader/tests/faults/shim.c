@@ -1,7 +1,7 @@
-/* Makes system calls of a process fail as the kernel would: preloaded, the functions of the C library pass here.
+/* Makes system calls of a process fail with an errno. Preload this library: it wraps functions of the C library.
  *
- * FAULT is "CALL ERRNO NTH": after fault_arm(), the NTH call of that kind and those after it fail. Each failure is a
- * line of the file FAULT_LOG. Programs that do not inherit the environment are left alone.
+ * FAULT is "CALL ERRNO NTH": after fault_arm(), the NTH call of that kind and all later ones fail. Each failure writes a
+ * line into the file FAULT_LOG. Programs that do not inherit the environment are not affected.
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -55,7 +55,7 @@ static int fails(const char *call) {
 OPEN(open)
 OPEN(open64)
 
-/* What is said to the user goes through: a test reads it. */
+/* Messages to the user never fail, because a test reads them. */
 ssize_t write(int fd, const void *data, size_t size) {
     return fd > 2 && fails("write") ? -1 : REAL(write)(fd, data, size);
 }

@@ -1,4 +1,4 @@
-"""If the system refuses something to a class, a learner's command, `ros2` or the set-up, one sentence says so."""
+"""If a system call fails in a class, a learner's command, `ros2` or the set-up, a one-sentence message reports it."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def commanded(name: str, folder: Path, shim: Path, call: str, number: int, nth: 
 
 
 def reported(done: Done) -> None:
-    """Check that the command succeeded, or ended as it must when the machine is at fault."""
+    """Check that the command succeeded, or reported an error of the machine."""
     no_traceback(done)
     if done.failures and done.code not in (0, 1):
         assert done.code == 3, done
@@ -95,7 +95,7 @@ def test_what_the_system_refuses_watch_is_said_and_it_ends_as_it_was_requested_t
 
 
 def set_up(folder: Path, shim: Path, call: str, number: int, nth: int) -> Done:
-    """Start the set-up in a folder that has what it needs."""
+    """Start the set-up in a folder that contains the necessary files."""
     for name in ("grader/setup", "grader/common"):
         shutil.copytree(ROOT / name, folder / name)
     for name in ("grader/__init__.py", "requirements.lock", "pyproject.toml"):

@@ -1,4 +1,4 @@
-"""If the system refuses something during a grading, one sentence says so, or nothing changes; it costs no points."""
+"""If a system call fails during a grading, the submission loses no points, and a message is one sentence."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Checked:
 
 
 def checked(folder: Path, shim: Path, fault: Fault) -> Checked:
-    """Check a right submission while the system refuses a kind of call."""
+    """Check a correct submission while a kind of system call fails."""
     file = folder / "report.json"
     done = run(["grader", "check", str(SOLUTION), "--json", str(file)], folder, shim, fault)
     report = json.loads(file.read_text("utf-8")) if file.exists() and file.stat().st_size else None

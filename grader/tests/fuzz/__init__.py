@@ -1,8 +1,8 @@
-"""What students hand in, made up by a machine: names, modes, archives, notebooks, sources, install trees, recordings.
+"""Fuzzing with generated submissions: names, modes, archives, notebooks, sources, install trees, recordings.
 
-    python -m grader.tests.fuzz TARGET --minutes N      with atheris, which looks for new paths through the code
-    python -m pytest grader/tests/fuzz                  a few hundred of each, the same every time
+    python -m grader.tests.fuzz TARGET --minutes N      with atheris, which searches for new paths through the code
+    python -m pytest grader/tests/fuzz                  a few hundred inputs per target, always the same ones
 
-A target gets bytes and does with them what a command does. It has found a fault where something else than an error of
-ours comes out, where the grading of a submission ends with `error`, or where that takes too long or too much memory.
+A target processes bytes like a command. A finding is an exception that is not a GraderError, a grading that ends with
+`error`, or a run that takes too much time or memory.
 """

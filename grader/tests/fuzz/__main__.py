@@ -1,6 +1,6 @@
-"""Run a target with atheris: `python -m grader.tests.fuzz TARGET --minutes N`; `pip install atheris` brings it.
+"""Run a target with atheris: `python -m grader.tests.fuzz TARGET --minutes N`. Install it with `pip install atheris`.
 
-What atheris finds ends the run, and lies in build/fuzz/TARGET/ as a file; `--again FILE` runs it once more.
+A finding ends the run. Its input is stored in build/fuzz/TARGET/; `--again FILE` runs this input again.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ def main() -> None:
     with atheris.instrument_imports(include=["grader", "catkin_pkg", "tomllib", "zipfile", "tarfile", "rosbags"]):
         from grader.submission import reader
 
-        # The target runs in this process: atheris does not see a child's paths, and sets the limits itself. This comes
-        # before the import of the modules that use the function by its name.
+        # The target runs in this process, because atheris cannot trace a child process. atheris sets the limits.
+        # Replace the function before the import of the modules that import it by name.
         reader.read = inline.read
         from grader.tests.fuzz.targets import TARGETS
         from grader.tests.no_ros import hide_ros

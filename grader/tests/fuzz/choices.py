@@ -1,4 +1,4 @@
-"""Decisions made from bytes: other bytes lead to other decisions."""
+"""Decisions derived from bytes: different bytes lead to different decisions."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 STEP = "03-circle-publisher"
 KEY = Key("submission", "student", "exercise", "grader", "ros", "options")
 WRITTEN = 8
-"""One in this many reports is written in every format, since that takes longer than reading a submission."""
+"""One report out of this many is written in every format, since writing takes longer than reading a submission."""
 
 
 class Trials:
@@ -87,7 +87,7 @@ def graded(
 
 
 def write(student: str, report: Report, page: str) -> None:
-    """Write everything that `grade` writes about the report, and read it again."""
+    """Write the report in every format of `grade`, and read it again."""
     with tempfile.TemporaryDirectory() as folder:
         results = Results(Path(folder))
         result = results.save(student, report, KEY, page.encode("utf-8", "replace"))

@@ -1,4 +1,4 @@
-"""Folders and archives with odd names, kinds and modes."""
+"""Folders and archives with unusual names, file types and modes."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def fill(folder: Path, choices: Choices) -> None:
         try:
             _make(place, choices, at)
         except OSError:
-            continue  # the name exists already, is too long, is "." or the like
+            continue  # the name exists already, is too long, or is "."
 
 
 def _make(place: bytes, choices: Choices, folders: list[bytes]) -> None:
@@ -49,7 +49,7 @@ def _make(place: bytes, choices: Choices, folders: list[bytes]) -> None:
     elif kind == 4:
         os.mkfifo(place)
     elif os.path.lexists(place):
-        # ".." and links lead out of the folder, to /tmp and /etc. The machine decides about the modes there.
+        # ".." and links lead out of the folder, to /tmp and /etc, where the permissions depend on the machine.
         if os.path.basename(place) not in (b".", b"..") and not os.path.islink(place):  # noqa: PTH114, PTH119
             os.chmod(place, choices.one_of(MODES))  # noqa: PTH101
     else:
@@ -59,7 +59,7 @@ def _make(place: bytes, choices: Choices, folders: list[bytes]) -> None:
 
 
 def archive(choices: Choices) -> bytes:
-    """Return a zip archive with odd members and with some bytes changed."""
+    """Return a zip archive with unusual members and with some bytes changed."""
     packed = BytesIO()
     with zipfile.ZipFile(packed, "w") as file:
         for _ in range(choices.below(6)):

@@ -1,4 +1,4 @@
-"""Read in this process instead of a child. Print where an error that is not ours came from."""
+"""Read in this process instead of a child process. Print the source line of an unexpected exception."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 P = ParamSpec("P")
 T = TypeVar("T")
 ODD: set[str] = set()
-"""The places where errors that are not ours came from."""
+"""The source lines that raised unexpected exceptions."""
 
 
 class _Depth:

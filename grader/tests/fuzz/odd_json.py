@@ -1,4 +1,4 @@
-"""Our own JSON with a value that does not belong there."""
+"""Our own JSON with unexpected values."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MOST_OF_A_LIST = 2
 
 
 def paths(data: Any, path: Path = ()) -> Iterator[Path]:  # noqa: ANN401 - JSON
-    """Yield the place of each value; of a list, only the first ones."""
+    """Yield the path to each value. Of a list, use only the first elements."""
     yield path
     inside = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
     for key, value in list(inside)[: None if isinstance(data, dict) else MOST_OF_A_LIST]:
@@ -28,7 +28,7 @@ def paths(data: Any, path: Path = ()) -> Iterator[Path]:  # noqa: ANN401 - JSON
 
 
 def replaced(data: Any, path: Path, value: Any) -> bytes:  # noqa: ANN401 - JSON
-    """Return the JSON with this value at that place."""
+    """Return the JSON with this value at the path."""
     if not path:
         return json.dumps(value).encode()
     changed = inner = copy.deepcopy(data)
@@ -39,7 +39,7 @@ def replaced(data: Any, path: Path, value: Any) -> bytes:  # noqa: ANN401 - JSON
 
 
 def odd_json(text: bytes, choices: Choices) -> bytes:
-    """Return the JSON with odd values at up to three places."""
+    """Return the JSON with up to three values replaced."""
     for _ in range(1 + choices.below(3)):
         data = json.loads(text)
         text = replaced(data, choices.one_of(list(paths(data))), choices.one_of(ODD))

@@ -1,4 +1,4 @@
-"""The targets: a function of bytes for each reader of what students hand in, and some bytes to start with."""
+"""The targets: one function of bytes for each reader of students' files, and seeds."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ ROOT = course_folder().parent
 
 @dataclasses.dataclass(frozen=True)
 class Target:
-    """`run` does with the bytes what a command does, and returns when it has finished. `seeds` are bytes to vary."""
+    """`run` processes the bytes like a command. `seeds` are inputs that the fuzzer varies."""
 
     run: Callable[[bytes], object]
     seeds: Callable[[], Iterable[bytes]]
@@ -54,7 +54,7 @@ def names(data: bytes) -> None:
 
 
 def archives(data: bytes) -> None:
-    """Unpack: the first byte says whether the rest is an archive, or describes how to make one."""
+    """Unpack an archive. The first byte selects whether the rest is an archive or describes how to create one."""
     made = odd_archive(Choices(data[1:])) if data[:1] == b"z" else data[1:]
     said = io.StringIO()
     with tempfile.TemporaryDirectory() as folder, redirect_stdout(said):
@@ -81,7 +81,7 @@ def package_xml(data: bytes) -> None:
 
 def answers(data: bytes) -> None:
     """Run `check` on these answers."""
-    # The invented trial has none of the messages that one question is about.
+    # One question is about messages that the invented trial does not contain.
     graded_files({"answers.toml": data}, step="02-discover-topics", unjudged=("pose-rate",))
 
 
@@ -104,7 +104,7 @@ def output(data: bytes) -> None:
 
 
 def notebooks(data: bytes) -> None:
-    """Run `gradebook sync` on this notebook, alone or with a package beside it."""
+    """Run `gradebook sync` on this notebook, alone or together with a package."""
     import nbgrader.utils  # noqa: F401 - otherwise each process that reads would import it
 
     if data[:1] == b"j":
@@ -121,7 +121,7 @@ def notebooks(data: bytes) -> None:
 
 
 def recordings(data: bytes) -> None:
-    """Run `regrade` on a recording with one file changed: the first byte says which file, the second one how."""
+    """Run `regrade` on a recording with one changed file. The first byte selects the file, the second the change."""
     files = _recording()
     changed = sorted(files)[data[0] % len(files)] if data else ""
     content = data[1:]
@@ -136,7 +136,7 @@ def recordings(data: bytes) -> None:
 
 
 def reports(data: bytes) -> None:
-    """Run `class-page` on this report and a good one. The first byte may select a good report with odd values."""
+    """Run `class-page` on this report and a valid one. The first byte may select a report with replaced values."""
     data = odd_json(_report(), Choices(data[1:])) if data[:1] == b"j" else data
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "anna.json").write_bytes(data)

@@ -1,4 +1,4 @@
-"""Some of what atheris would try, the same each time, through the real child process with its limits."""
+"""Fixed inputs for every fuzzing target, read by the real child process with its limits."""
 
 from __future__ import annotations
 

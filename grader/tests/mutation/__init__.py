@@ -1,14 +1,14 @@
-"""Mutation run: does some case or test need each piece of the code that makes diagnoses?
+"""Mutation testing of the code that creates diagnoses: find code that no case and no test needs.
 
 `python -m grader.tests.mutation` changes that code in one place at a time: it removes or renames a diagnosis, removes
 its place, makes a condition always true or always false, or changes a number or a comparison. Then it judges the cases
-again from recordings that are made once. It asks the tests in grader/tests/checks about the changes that no case
-noticed. It prints the changes that nothing noticed: a case or a test is missing, or the code is not needed.
+again from stored recordings. If no case notices a change, it runs the tests in grader/tests/checks. It prints the
+changes that neither notices: a case or a test is missing, or the code is not needed.
 
-mutants.py says what is not changed (mainly words), and equivalent.toml lists single changes that have no effect. The
-modules that only read (code.py, scene.py, setup_py.py, trajectory.py, ...) make no diagnosis and are not changed.
+mutants.py describes which code is not changed (mainly text), and equivalent.toml lists changes without an effect. The
+modules that only read (code.py, scene.py, setup_py.py, trajectory.py, ...) create no diagnosis and are not changed.
 
-Measured in November 2026, module by module: of 3,461 changes, 89 were noticed by no case and no test, which is 2.6 %.
+Measured in November 2026, module by module: no case and no test noticed 89 of 3,461 changes, which is 2.6 %.
 Most are in eight.py (20 of 134), square.py (15 of 131), entry_point.py (12 of 207) and path.py (11 of 232). These
 figures do not include the tests that were added later.
 """

@@ -1,4 +1,4 @@
-"""python -m grader.tests.mutation [FILE...]: print the changes that the cases do not notice, and their share."""
+"""Run `python -m grader.tests.mutation [FILE...]` to print the changes that no case notices, and their share."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ if TYPE_CHECKING:
 CHECKS = ROOT / "grader" / "checks"
 MAKES_DIAGNOSES = re.compile(r"\b(failed|Cause)\(|diagnosis")
 NOT_THESE = frozenset({"judge.py", "kind.py", "kinds.py"})
-"""These modules pass diagnoses on and do not make any."""
+"""Modules that only pass diagnoses on."""
 ALIKE_CASES, ALIKE_TESTS = 3, 12
-"""How many of the tests that run the same lines are asked about a mutant. Tests differ more than cases do."""
+"""How many of the tests that cover the same lines run on a mutant. Tests differ more than cases."""
 WORST = 0.10
 """If a larger share survives, the run fails."""
 
 
 def diagnosis_files() -> list[Path]:
-    """Return the files of the checks that make diagnoses."""
+    """Return the files of the checks that create diagnoses."""
     return [
         file
         for file in sorted(CHECKS.rglob("*.py"))
@@ -42,7 +42,7 @@ def diagnosis_files() -> list[Path]:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run it. The exit code is 1 if more than a tenth survives."""
+    """Run the mutation test. The exit code is 1 if more than a tenth of the mutants survive."""
     requested = _arguments(argv)
     begun = time.monotonic()
     files = [path.resolve() for path in requested.files] or diagnosis_files()
@@ -65,14 +65,14 @@ def _unnoticed_by_cases(
     _tell(f"{len(materials)} cases, {len(files)} files")
     lines = judging.touched(materials.values(), files)
     survived = _unnoticed(mutants, lines, ALIKE_CASES, _by_cases(materials), requested.jobs)
-    _tell(f"{len(survived)} of {len(mutants)} are noticed by no case")
+    _tell(f"no case notices {len(survived)} of {len(mutants)}")
     return survived
 
 
 def _materials(*, make: bool) -> dict[str, judging.Material]:
     """Return the cases by name, without those whose recording does not give the expected report.
 
-    Such a recording may have been made while the machine was busy. With `make`, it is made once more.
+    The machine may have been busy during such a recording. With `make`, the case is recorded again.
     """
     recorded = recordings(all_cases(), _tell, make=make)
     good, stale = _judged(recorded)
@@ -82,7 +82,7 @@ def _materials(*, make: bool) -> dict[str, judging.Material]:
         more, stale = _judged(recordings([each.case for each in stale], _tell))
         good |= more
     for each in stale:
-        _tell(f"{each.name} does not get from its recording what it expects: left out")
+        _tell(f"{each.name} is left out: its recording does not give the expected report")
     return good
 
 
@@ -104,7 +104,7 @@ def _unnoticed(
     notice: Callable[[Iterable[str]], bool],
     at_once: int,
 ) -> list[Mutant]:
-    """Return the mutants that no test notices. At most `alike` tests that run the same lines are tried."""
+    """Return the mutants that no test notices. Run at most `alike` of the tests that cover the same lines."""
 
     def job(mutant: Mutant) -> judging.Job:
         names = judging.requested(mutant, lines, alike)
@@ -122,16 +122,30 @@ def _unnoticed(
 def _arguments(argv: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="python -m grader.tests.mutation",
-        description="Change the code that makes diagnoses, one place at a time, and see whether some case notices.",
+        description="Change the code that creates diagnoses, one place at a time. Print the unnoticed changes.",
         epilog="example: python -m grader.tests.mutation grader/checks/subjects/rate.py",
     )
-    parser.add_argument("files", nargs="*", type=Path, metavar="FILE", help="only these (all that make diagnoses)")
-    parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count() or 1, help="at once (one a processor)")
-    parser.add_argument("--recorded", action="store_true", help="judge by the recordings that are there, make none")
+    parser.add_argument(
+        "files",
+        nargs="*",
+        type=Path,
+        metavar="FILE",
+        help="change only these files (default: all that create diagnoses)",
+    )
+    parser.add_argument(
+        "-j",
+        "--jobs",
+        type=int,
+        default=os.cpu_count() or 1,
+        help="the number of parallel jobs (default: one per processor)",
+    )
+    parser.add_argument("--recorded", action="store_true", help="use only stored recordings")
     only = parser.add_mutually_exclusive_group()
-    only.add_argument("--cases", action="store_true", help="leave the tests of single checks out, which take longest")
-    only.add_argument("--units", action="store_true", help="leave the cases out, and their recordings")
-    parser.add_argument("--every", type=int, default=1, metavar="N", help="only each Nth mutant: an estimate")
+    only.add_argument(
+        "--cases", action="store_true", help="do not run the unit tests of the checks, which take longest"
+    )
+    only.add_argument("--units", action="store_true", help="do not use the cases and their recordings")
+    parser.add_argument("--every", type=int, default=1, metavar="N", help="use only every Nth mutant, for an estimate")
     return parser.parse_args(argv)
 
 

@@ -1,4 +1,4 @@
-"""Mutants that are known to have no effect: equivalent.toml lists them, each with its reason."""
+"""Mutants without an effect. equivalent.toml lists them, each with the reason."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FILE = Path(__file__).with_name("equivalent.toml")
 
 @dataclass(frozen=True)
 class Known:
-    """Changes of a line. `code` is part of the line, `change` is part of the change, and `why` is the reason."""
+    """A known mutant. `code` is a part of the line, `change` a part of the printed change, and `why` the reason."""
 
     file: str
     code: str

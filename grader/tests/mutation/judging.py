@@ -1,6 +1,6 @@
-"""Judge recorded cases again, with the grader's checks as they are or with one changed file.
+"""Judge recorded cases again, with the unchanged checks or with one changed file.
 
-The checks are imported in a child of this process, after the fork. So a process knows only one mutant, and all effects
+A child of this process imports the checks after the fork. So a process contains only one mutant, and all effects
 of the mutant end with the process.
 """
 
@@ -31,19 +31,19 @@ if TYPE_CHECKING:
     from grader.tests.mutation.recordings import Recorded
 
 Lines = dict[tuple["Path", int], set[str]]
-"""Who runs a line of a file. Lines are counted from 1."""
+"""File -> line -> the names of the cases or tests that run it. Lines are counted from 1."""
 
 PACKAGE = "grader.checks"
 SHARED = "grader.checks.outcome"
-"""Everybody makes reports from this module. It has no mutants, and its Status must remain the same object."""
+"""All modules use Status from this module. It has no mutants, and Status must remain the same object."""
 SURVIVED, KILLED = 0, 1
 LIMIT_S = 60
-"""A mutant that uses more CPU time than this never ends, and so it is noticed. A busy machine makes no difference."""
+"""The limit on CPU time. A mutant that exceeds it never ends, and counts as noticed. Other load does not matter."""
 
 
 @dataclass(frozen=True)
 class Material:
-    """A case and its evidence. `observed` is Evidence of the checks that were imported first."""
+    """A case and its evidence. `observed` is an Evidence object of the first import of the checks."""
 
     name: str
     case: Case
@@ -60,7 +60,7 @@ class Job:
 
 
 def load(recorded: Iterable[Recorded]) -> list[Material]:
-    """Read recordings. Then forget the checks, so that the next import loads them again."""
+    """Read recordings. Then unload the checks, so that the next import loads them again."""
     from grader.checks.exercises import load_exercise
     from grader.evidence.recording_format import load as open_archive
 
@@ -68,7 +68,7 @@ def load(recorded: Iterable[Recorded]) -> list[Material]:
     for each in recorded:
         archived = open_archive(each.folder, load_exercise)
         loaded.append(Material(each.name, each.case, archived.evidence, archived.ros))
-    # Checks import this late. It is imported here once for all mutants.
+    # The checks import this module lazily. Import it once for all mutants.
     import catkin_pkg.package  # type: ignore[import-untyped]  # noqa: F401
 
     forget()
@@ -76,13 +76,13 @@ def load(recorded: Iterable[Recorded]) -> list[Material]:
 
 
 def forget() -> None:
-    """Forget the checks."""
+    """Remove the modules of the checks from sys.modules."""
     for name in [name for name in sys.modules if name.startswith(f"{PACKAGE}.") and name != SHARED]:
         del sys.modules[name]
 
 
 def fails(material: Material) -> bool:
-    """Return whether the case no longer gets its expected report from the checks that are imported now."""
+    """Return whether the currently imported checks no longer give the case its expected report."""
     try:
         compare(material.case, _graded(material))
     except Exception:  # (an AssertionError of the case, or any exception that a mutant causes)
@@ -111,7 +111,7 @@ def _graded(material: Material) -> Graded:
 
 
 def _anew(observed: Evidence) -> Evidence:
-    """Return the same evidence, made of the classes that are imported now, without anything cached."""
+    """Return the same evidence as objects of the currently imported classes, without cached values."""
     from grader.evidence.evidence import Evidence as Anew
     from grader.evidence.evidence import Fault
 
@@ -135,7 +135,7 @@ def touched(materials: Iterable[Material], files: Collection[Path]) -> Lines:
 
 
 def lines_of(measured: Coverage, files: Iterable[Path]) -> Lines:
-    """Return which context ran which line, from a measurement with one context for each."""
+    """Return which contexts ran which line, from a coverage measurement."""
     data = measured.get_data()
     return {
         (file, line): {name for name in names if name}
@@ -145,7 +145,7 @@ def lines_of(measured: Coverage, files: Iterable[Path]) -> Lines:
 
 
 def who_runs(mutant: Mutant, lines: Lines) -> set[str]:
-    """Return who runs the mutant's lines. If they run at import, everybody who runs a line of the file counts."""
+    """Return the cases or tests that run the mutant's lines, or any line of the file if these lines run at import."""
     if mutant.at_import:
         return {name for (file, _), names in lines.items() if file == mutant.file for name in names}
     numbers = range(mutant.line, mutant.end_line + 1)
@@ -153,10 +153,10 @@ def who_runs(mutant: Mutant, lines: Lines) -> set[str]:
 
 
 def requested(mutant: Mutant, lines: Lines, alike: int) -> list[str]:
-    """Return those who run the mutant's lines. Of those that run the same lines of the file, return only so many.
+    """Return the cases or tests that run the mutant's lines, but few of those that run the same lines of the file.
 
-    Hundreds of cases pass a check in the same way. So a mutant may seem to survive although one of the others would
-    notice it. The opposite is not possible.
+    Hundreds of cases pass a check with the same lines. A mutant may seem to survive although a case that was left out
+    would notice it. The opposite is not possible.
     """
     names = sorted(who_runs(mutant, lines))
     if mutant.at_import:
@@ -184,7 +184,7 @@ def install(mutant: Mutant) -> None:
 
 
 def in_children(jobs: Iterable[Job], at_once: int) -> Iterator[tuple[Mutant, bool]]:
-    """Run each job in a child that has its mutant installed. Yield whether it was noticed, in order of the ends."""
+    """Run each job in a child process with its mutant. Yield whether it was noticed, in the order of completion."""
     waiting = iter(jobs)
     running: dict[int, Mutant] = {}
     while True:

@@ -1,9 +1,8 @@
-"""Mutants: one file of the grader, changed in one place, by the operators of mutmut and some of our own.
+"""Mutants: files of the grader, each changed in one place by the operators of mutmut or by some of our own.
 
-Code that decides is changed. Code that only makes words is not: strings, a choice between two strings, numbers that
-are printed. Other code that is not changed: declarations, the parameters of a kind of check with their defaults, the
-`strict` of zip, and the code that finds values near an edge, which decides about the clock. grader/tests/checks has
-tests for these.
+Only code that decides is changed. Code for messages is not: strings, a choice between two strings, printed numbers.
+Declarations, the parameters of a kind of check with their defaults, the `strict` of zip, and the code that finds values
+near a limit, which chooses the clock, are not changed either. grader/tests/checks has tests for these.
 """
 
 from __future__ import annotations
@@ -35,14 +34,14 @@ LEFT_OUT = {
     mutators.operator_arg_removal,
     mutators.operator_match,
 }
-"""The words of a finding do not change its diagnosis, and other tests check them. A match covers several lines."""
+"""The text of a finding does not change its diagnosis, and other tests check it. A match covers several lines."""
 IDS = frozenset(DIAGNOSES)
-"""One of these strings is more than words."""
+"""Strings that are not only text for readers."""
 WORDS = frozenset({"shorten", "a_list", "count", "shown"})
-"""Functions that make words. Numbers in their arguments do not change a diagnosis."""
+"""Functions that create text. Numbers in their arguments do not change a diagnosis."""
 STRINGS = cst.SimpleString | cst.FormattedString | cst.ConcatenatedString
 MAKERS = {"failed": None, "Cause": 2}
-"""Calls that make a diagnosis of their first argument, its id, and the index of the place if it has no keyword."""
+"""Calls whose first argument is the id of a diagnosis -> the index of the place among the positional arguments."""
 OTHER = cst.SimpleString('"another"')
 KINDS = OUT, ALWAYS, NAME, PLACE, DETAIL = ("taken out", "always", "other name", "no place", "detail")
 """How a change affects a diagnosis. A "detail" is a change by one of mutmut's operators."""
@@ -52,9 +51,9 @@ Change = tuple[str, cst.CSTNode, cst.CSTNode]
 
 @dataclass(frozen=True)
 class Mutant:
-    """A file with one change. `line` and `end_line` are the statement's, counted from 1; `change` is shown to people.
+    """A file with one change. `line` and `end_line` are those of the statement, counted from 1. `change` is printed.
 
-    `kind` is one of KINDS. `at_import` says that the statement runs only when the file is imported.
+    `kind` is one of KINDS. `at_import` is true if the statement runs only when the file is imported.
     """
 
     file: Path
@@ -129,14 +128,14 @@ def _changes(node: cst.CSTNode) -> Iterator[Change]:
 
 
 def _places(call: cst.Call, index: int | None) -> Iterator[cst.BaseExpression]:
-    """Return the arguments of a call that are the place to look at, by their keyword or at this index."""
+    """Return the arguments of a call that name the place in the source, by their keyword or at this index."""
     for number, argument in enumerate(call.args):
         if number == index if argument.keyword is None else argument.keyword.value == "where":
             yield argument.value
 
 
 def _is_words(assignment: cst.Assign) -> bool:
-    """Return whether a name holds words, or the nearness to an edge, which decides about the clock only."""
+    """Return whether a variable contains text, or the distance from a limit, which only affects the clock."""
     return _is_nearness(assignment) or _is_text(assignment.value) or _chooses_text(assignment.value)
 
 
@@ -146,7 +145,7 @@ def _is_nearness(assignment: cst.Assign) -> bool:
 
 
 def _is_text(value: cst.CSTNode) -> bool:
-    """Return whether it is a string for readers and not a diagnosis."""
+    """Return whether the node is a string for readers and not a diagnosis."""
     return isinstance(value, STRINGS) and not _is_id(value)
 
 
@@ -167,7 +166,7 @@ def _statement(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) ->
 
 
 def _idle(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> bool:
-    """Return whether the node only declares something or only makes words."""
+    """Return whether the node is only a declaration or only creates text."""
     if _is_docstring(node, parents) or _chooses_text(node):
         return True
     before, here = node, parents.get(node)
@@ -211,6 +210,6 @@ def _lines(statement: cst.CSTNode, positions: Mapping[cst.CSTNode, CodeRange]) -
 
 
 def _reported(module: cst.Module, node: cst.CSTNode) -> str:
-    """Return a node's code on one line, short enough for two of them on a line."""
+    """Return a node's code on one line, short enough to print two of them on a line."""
     text = " ".join(module.code_for_node(node).split())
     return text if len(text) <= 60 else f"{text[:57]}..."

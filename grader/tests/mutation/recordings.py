@@ -35,17 +35,17 @@ class Recorded:
 
     @property
     def name(self) -> str:
-        """A name such as mistakes/316-syntax-error, since two folders may use the same number."""
+        """A unique name such as mistakes/316-syntax-error, since two folders may use the same number."""
         return f"{self.case.folder.parent.name}/{self.case.name}"
 
 
 def cache() -> Path:
-    """The folder where recordings are kept from one run to the next."""
+    """Return the folder that stores the recordings between runs."""
     return xdg.cache() / "mutation"
 
 
 def all_cases() -> Iterator[Case]:
-    """Return the cases of all folders that get a report."""
+    """Return the cases of all folders for which the grader writes a report."""
     for name in FOLDERS:
         folder = CASES.parent / name
         yield from (case for case in (read_cases(folder) if folder.is_dir() else ()) if case.result != "usage")
@@ -88,7 +88,7 @@ def _recorded(case: Case, below: Path, tell: Callable[[str], None], *, make: boo
 
 
 def _key(submission: Path, *more: str | Path) -> str:
-    """Return a digest of everything that is graded."""
+    """Return a digest of the submission and the exercise."""
     digest = hashlib.sha256()
     for path in sorted(submission.rglob("*"), key=os.fsencode):
         digest.update(os.fsencode(path.relative_to(submission)) + b"\0")

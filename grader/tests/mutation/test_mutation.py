@@ -1,4 +1,4 @@
-"""The mutation run on one real case: a change is noticed if it removes its diagnosis."""
+"""The mutation test with one real case: the case notices a change that removes its diagnosis."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def test_a_case_is_recorded_once(recorded: list[Recorded], folder: Path) -> None
 
 
 def noticed(recorded: list[Recorded], change: str) -> dict[str, bool]:
-    """Return whether the case notices each mutant with this change. It runs in a child, since checks are forgotten."""
+    """Return whether the case notices each mutant with this change. It runs in a child, since it unloads the checks."""
     wanted = [mutant for mutant in mutants_of(ANSWERS) if change in mutant.change]
     assert wanted
     with multiprocessing.get_context("fork").Pool(1) as pool:

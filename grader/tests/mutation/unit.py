@@ -1,4 +1,4 @@
-"""The tests in grader/tests/checks as witnesses: those that run a mutant's lines are asked."""
+"""Run the tests in grader/tests/checks that cover a mutant's lines."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ QUIET = ("-q", "-p", "no:cacheprovider", "-W", "ignore", "--rootdir", str(ROOT))
 
 def touched(files: Collection[Path]) -> Lines:
     """Return the tests that run each line of these files. Lines are counted from 1."""
-    # This runs in a child, since each mutant needs new imports of everything that the tests import.
+    # This runs in a child process, since each mutant needs new imports of all modules that the tests import.
     with multiprocessing.get_context("fork").Pool(1) as pool:
         return pool.apply(_measured, (sorted(files),))
 
@@ -45,7 +45,7 @@ def _measured(files: Iterable[Path]) -> Lines:
 
 
 class _Contexts:
-    """Tells the measurement which test is running."""
+    """Reports to the coverage measurement which test is running."""
 
     def __init__(self, measured: object) -> None:
         self._measured = measured

@@ -1,1 +1,1 @@
-"""Operators: each makes a correct package wrong in one known place, as learners do."""
+"""Operators: each adds a typical mistake of learners to a correct package, at a known place."""

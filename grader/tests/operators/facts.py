@@ -1,9 +1,9 @@
-"""Whether a report names a mistake and says nothing false, judged without the tables of diagnoses.
+"""Judge whether a report names a mistake and makes no false statement, without the tables of diagnoses.
 
 The only inputs are the difference between the correct and the wrong package, the source of the wrong package, and its
-recording. An outcome names the mistake if it points at a changed line and speaks of something that was changed there.
+recording. An outcome names the mistake if it refers to a changed line and mentions a changed word of this line.
 A statement is false if it contradicts one of these facts. Each entry of FACTS recognises one form of sentence by a
-pattern and says whether it is true.
+pattern and decides whether the sentence is true.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 WORD = re.compile(r"[A-Za-z_]\w*|\d+(?:\.\d+)?|[^\w\s]")
 COMMON = frozenset({"self", "msg", "my_robot_controller", "py", "def", "import", "from", "name", "node"})
-"""Words on so many lines that they identify nothing."""
+"""Words that occur on too many lines to identify a change."""
 SIGNS = {
     ":": "colon",
     ",": "comma",
@@ -45,7 +45,7 @@ SIGNS = {
     "&": "&|and|read",
     "f": "f-string",
 }
-"""Changed sign -> a pattern for the words that may speak of it."""
+"""Changed character -> a pattern for the words that may refer to it."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Hunk:
     moved: bool = False
 
     def is_at(self, where: Where) -> bool:
-        """Return whether a report that points there points at the change. Removed lines have no place, so all count."""
+        """Return whether a report that refers to this line refers to the change. For removed lines, any line counts."""
         removed = Counter(WORD.findall("\n".join(self.old))) - Counter(WORD.findall("\n".join(self.new)))
         opened_elsewhere = bool(removed) and set(removed) <= set("()[]{}")
         only_removed = not "".join(self.new).replace("pass", "").strip()
@@ -68,7 +68,7 @@ class Hunk:
         return where.file == self.file and (where.line is None or 0 <= where.line - self.line < len(self.new))
 
     def is_in(self, text: str) -> bool:
-        """Return whether a string speaks of the change."""
+        """Return whether a string mentions the change."""
         before, after = (Counter(WORD.findall("\n".join(lines))) for lines in (self.old, self.new))
         words = {*(before - after), *(after - before)}
         if self.moved:
@@ -89,7 +89,7 @@ def _speaks_of(word: str, text: str) -> bool:
 
 @dataclass(frozen=True)
 class Facts:
-    """A correct package, the wrong one that was made from it, and the evidence about the wrong one."""
+    """A correct package, the wrong package derived from it, and the evidence about the wrong one."""
 
     right: Mapping[str, str]
     wrong: Mapping[str, str]
@@ -114,7 +114,7 @@ class Facts:
 
     @cached_property
     def words(self) -> tuple[Counter[str], Counter[str]]:
-        """Return the words and signs that were removed, and those that were added."""
+        """Return the removed and the added words and characters."""
         both = [Counter[str](), Counter[str]()]
         for path in self.changed:
             for words, files, others in ((both[0], self.right, self.wrong), (both[1], self.wrong, self.right)):
@@ -131,13 +131,13 @@ class Facts:
         return "\n".join(re.sub(r"(?m)#.*$", "", text) for text in files)
 
     def line(self, outcome: Outcome, number: int) -> str:
-        """Return the line with this number in the file to which an outcome points."""
+        """Return the line with this number in the file to which an outcome refers."""
         where = outcome.finding.where
         lines = self.wrong.get(where.file, "").splitlines() if where is not None else []
         return lines[number - 1] if 0 < number <= len(lines) else ""
 
     def names(self, outcome: Outcome) -> bool:
-        """Return whether an outcome points at a change and speaks of what was changed there."""
+        """Return whether an outcome refers to a change and mentions what was changed."""
         where = outcome.finding.where
         text = f"{outcome.finding.observed} {outcome.finding.cause}"
         return where is not None and any(change.is_at(where) and change.is_in(text) for change in self.changes)
@@ -207,7 +207,7 @@ def _is_extra(facts: Facts, _: re.Match[str], __: Outcome) -> bool:
 
 
 def _swapped(facts: Facts, _: re.Match[str], outcome: Outcome) -> bool:
-    """Return whether the words of the line, or of it and the next one, have another order in the correct package."""
+    """Return whether the correct package has the words of the line, or of this line and the next, in another order."""
     where = outcome.finding.where
     if where is None or where.line is None:
         return False

@@ -1,4 +1,4 @@
-"""Correct packages, and the wrong ones that the operators make from them."""
+"""Correct packages, and the wrong packages that the operators derive from them."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ OPERATORS: tuple[Operator, ...] = (
     *places.OPERATORS,
 )
 STEPS = ("01-first-node", "03-circle-publisher", "04-package-files", "06-pose-subscriber")
-"""The solutions to change. Each is used as often as all unusual packages together."""
+"""The solutions to change. Each solution is used as often as all unusual packages together."""
 TWO_AT_ONCE = 1 / 3
 
 
 @dataclass(frozen=True)
 class Made:
-    """A wrong package: the correct one it was made from, the operators, and the changed places."""
+    """A wrong package, with the correct package, the operators and the changed places."""
 
     name: str
     exercise: str
@@ -86,7 +86,7 @@ def _read(case: Case, folder: Path) -> tuple[str, Package] | None:
 
 
 def make(right: Sequence[tuple[str, Package]], number: int, seed: int, operators: Sequence[Operator]) -> Made:
-    """Return the wrong package with this number; it is the same for the same seed."""
+    """Return the wrong package with this number. The same seed gives the same package."""
     draw = random.Random(f"{seed} {number}")
     amount = 2 if draw.random() < TWO_AT_ONCE and len(operators) > 1 else 1
     while True:

@@ -1,4 +1,4 @@
-"""An operator makes one kind of mistake in a correct package, and says what a report must say about it."""
+"""An operator adds one kind of mistake to a correct package, and defines the expected diagnoses."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ class Change:
 
 
 Make = Callable[[Package, Random], Change | None]
-"""Make the mistake at a random suitable place. Return None if the package has no such place."""
+"""Make the mistake at a random suitable place. Return None if the package has no suitable place."""
 
 
 @dataclass(frozen=True)
 class Operator:
-    """A kind of mistake: `says` are the diagnoses that name it, `never` is a pattern for false statements about it.
+    """A kind of mistake. `says` contains the diagnoses that name it; `never` is a pattern for false statements.
 
-    `also` are the diagnoses of its consequences, which are true but do not name it.
+    `also` contains the diagnoses of its consequences, which are true but do not name it.
     """
 
     name: str
@@ -63,7 +63,7 @@ def edited(package: Package, file: str, new: str, *lines: int) -> Change:
 
 
 def line_at(text: str, place: int) -> int:
-    """Return the number of the line with this character, counted from 1."""
+    """Return the number of the line that contains this character index, counted from 1."""
     return text.count("\n", 0, place) + 1
 
 
@@ -97,7 +97,7 @@ def anywhere(make: Make) -> Make:
 
 
 def remove_line(pattern: str, *, file: str = "") -> Make:
-    """Return an operator that removes a line with the pattern; `pass` or nothing replaces a statement."""
+    """Return an operator that removes a line that matches the pattern. `pass` may replace a statement."""
     is_code = not file
 
     def make(package: Package, draw: Random) -> Change | None:
@@ -116,7 +116,7 @@ def remove_line(pattern: str, *, file: str = "") -> Make:
 
 
 def misspelt(word: str, draw: Random) -> str:
-    """Return the word with two letters swapped, or one letter missing."""
+    """Return the word with two letters swapped or one letter removed."""
     pairs = [at for at in range(1, len(word) - 1) if word[at] != word[at + 1] and word[at].isalpha()]
     if not pairs:
         return word[:-1]

@@ -32,7 +32,7 @@ def _source(name: str, pattern: str, by: Replacement, *says: Diagnosis, never: s
 
 
 def _misspells(name: str, pattern: str, *says: Diagnosis) -> Operator:
-    """Misspell the group `word` of one match."""
+    """Return an operator that misspells the group `word` of one match."""
 
     def make(package: Package, draw: Random) -> Change | None:
         def by(match: re.Match[str]) -> str:

@@ -1,4 +1,4 @@
-"""Mistakes in topics, values, periods and log lines: the node runs, but does something wrong."""
+"""Mistakes in topics, values, periods and log lines: the node runs, but its behaviour is wrong."""
 
 from __future__ import annotations
 

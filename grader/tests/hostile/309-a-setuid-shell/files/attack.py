@@ -1,4 +1,4 @@
-"""setup.py leaves a setuid shell that gives its rights to every user."""
+"""setup.py leaves a setuid shell behind, which gives every user the rights of its owner."""
 
 import os
 import shutil

@@ -1,4 +1,4 @@
-"""setup.py keeps making empty files."""
+"""setup.py keeps creating empty files."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""setup.py takes all pages of pipes that its user may have, and keeps them while others are graded."""
+"""setup.py uses up the pipe pages of its user while other submissions are graded."""
 
 import fcntl
 import os

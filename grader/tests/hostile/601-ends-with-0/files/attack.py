@@ -1,4 +1,4 @@
-"""setup.py ends at once with exit code 0."""
+"""setup.py exits at once with code 0."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""It reads the hidden checks."""
+"""The node reads the hidden checks."""
 
 import sys
 from pathlib import Path

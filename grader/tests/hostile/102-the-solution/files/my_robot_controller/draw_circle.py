@@ -1,4 +1,4 @@
-"""It reads the solution."""
+"""The node reads the solution."""
 
 import sys
 from pathlib import Path

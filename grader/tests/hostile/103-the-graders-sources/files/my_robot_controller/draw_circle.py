@@ -1,4 +1,4 @@
-"""It reads the grader's sources."""
+"""The node reads the grader's sources."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""It reads the submissions of others."""
+"""The node reads the submissions of other students."""
 
 from pathlib import Path
 

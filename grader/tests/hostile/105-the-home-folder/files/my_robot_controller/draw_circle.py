@@ -1,4 +1,4 @@
-"""It reads a secret in the caller's home folder."""
+"""The node reads a secret in the caller's home folder."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""It reads a secret in the environment of the user who started the grader."""
+"""The node reads a secret in the environment of the user who started the grader."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""It looks for the grader among the processes."""
+"""The node searches the process list for the grader."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""It opens the simulator's memory."""
+"""The node opens the simulator's memory."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""It looks for files that other processes have open."""
+"""The node searches for open files of other processes."""
 
 import os
 from pathlib import Path

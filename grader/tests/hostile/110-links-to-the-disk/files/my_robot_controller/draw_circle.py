@@ -1,4 +1,4 @@
-"""It reaches the disk through the root folder of another process."""
+"""The node reaches the disk through the root folder of another process."""
 
 from pathlib import Path
 

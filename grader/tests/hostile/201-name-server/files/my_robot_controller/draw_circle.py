@@ -1,4 +1,4 @@
-"""It queries a name server, so it could send any data out."""
+"""The node queries a name server, through which it could send data out."""
 
 import socket
 

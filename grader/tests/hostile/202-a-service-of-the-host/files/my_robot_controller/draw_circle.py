@@ -1,4 +1,4 @@
-"""It connects to a service that listens on the host's loopback."""
+"""The node connects to a service that listens on the host's loopback."""
 
 import socket
 

@@ -1,4 +1,4 @@
-"""It connects to an abstract socket, which needs no file."""
+"""The node connects to an abstract socket, which needs no file."""
 
 import socket
 

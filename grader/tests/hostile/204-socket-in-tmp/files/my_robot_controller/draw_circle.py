@@ -1,4 +1,4 @@
-"""It connects to a socket in /tmp."""
+"""The node connects to a socket in /tmp."""
 
 import socket
 

@@ -1,4 +1,4 @@
-"""It makes a socket that leads out of a virtual machine."""
+"""The node creates a socket that connects to the host of a virtual machine."""
 
 import socket
 

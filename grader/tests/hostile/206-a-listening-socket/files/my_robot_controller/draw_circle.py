@@ -1,4 +1,4 @@
-"""It leaves a process behind that listens on a port."""
+"""The node leaves a process behind that listens on a port."""
 
 import socket
 

@@ -1,4 +1,4 @@
-"""A process waits for the report and writes another one."""
+"""A process waits for the report and replaces it."""
 
 import os
 import time

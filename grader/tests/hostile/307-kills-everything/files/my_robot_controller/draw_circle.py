@@ -1,4 +1,4 @@
-"""It kills every process that it can."""
+"""The node kills every process that it can."""
 
 import os
 import signal

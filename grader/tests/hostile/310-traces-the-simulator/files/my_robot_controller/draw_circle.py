@@ -1,4 +1,4 @@
-"""It attaches to the simulator like a debugger."""
+"""The node attaches to the simulator like a debugger."""
 
 import ctypes
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""It leaves a key in the caller's session."""
+"""The node leaves a key in the caller's session."""
 
 import ctypes
 

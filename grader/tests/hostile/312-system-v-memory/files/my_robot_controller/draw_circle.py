@@ -1,4 +1,4 @@
-"""It allocates shared memory that no limit counts and that stays when its process ends."""
+"""The node allocates shared memory that no limit counts and that stays when its process ends."""
 
 import ctypes
 

@@ -1,4 +1,4 @@
-"""It makes files in memory that are not on a disk."""
+"""The node creates files in memory that are not on a disk."""
 
 import ctypes
 

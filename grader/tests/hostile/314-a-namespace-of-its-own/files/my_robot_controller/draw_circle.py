@@ -1,4 +1,4 @@
-"""It becomes root in its own namespace, where the kernel has the most security holes."""
+"""The node becomes root in its own namespace, where the kernel has the most vulnerabilities."""
 
 import ctypes
 

@@ -1,4 +1,4 @@
-"""It uses io_uring to avoid the filter of system calls."""
+"""The node uses io_uring to avoid the filter of system calls."""
 
 import ctypes
 

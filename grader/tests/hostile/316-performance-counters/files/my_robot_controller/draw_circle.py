@@ -1,4 +1,4 @@
-"""It measures other processes."""
+"""The node opens performance counters of other processes."""
 
 import ctypes
 

@@ -1,4 +1,4 @@
-"""It reads the memory of another process in one call."""
+"""The node reads the memory of another process in one call."""
 
 import ctypes
 

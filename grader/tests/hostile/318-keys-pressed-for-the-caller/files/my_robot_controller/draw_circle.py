@@ -1,4 +1,4 @@
-"""It types into the terminal of the user who started the grader."""
+"""The node types into the terminal of the user who started the grader."""
 
 import fcntl
 import os

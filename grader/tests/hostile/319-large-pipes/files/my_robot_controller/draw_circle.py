@@ -1,4 +1,4 @@
-"""It uses up the pipe pages of its user, so that other pipes are small."""
+"""The node uses up the pipe pages of its user, so that other pipes are small."""
 
 import fcntl
 import os

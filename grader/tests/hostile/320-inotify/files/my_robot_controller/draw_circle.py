@@ -1,4 +1,4 @@
-"""It uses up the inotify instances of its user."""
+"""The node uses up the inotify instances of its user."""
 
 import ctypes
 

@@ -1,4 +1,4 @@
-"""It uses up the pending signals and timers of its user."""
+"""The node uses up the pending signals and timers of its user."""
 
 import ctypes
 

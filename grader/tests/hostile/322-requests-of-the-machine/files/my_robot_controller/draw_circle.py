@@ -1,4 +1,4 @@
-"""It uses up the asynchronous I/O requests that all users of the machine share."""
+"""The node uses up the asynchronous I/O requests that all users of the machine share."""
 
 import ctypes
 

@@ -1,4 +1,4 @@
-"""It wants to crash with a core dump, which the kernel may pass to a program of the machine that runs as root.
+"""The node crashes with a core dump, which the kernel may pass to a program that runs as root.
 
 The kernel passes it on whatever the limit is, unless the limit is 1: core(5), "Piping core dumps to a program".
 """

@@ -1,4 +1,4 @@
-"""It makes the machine write its disks, again and again, so that everything else waits for them."""
+"""The node flushes the machine's disks again and again, so that all other programs wait for them."""
 
 import ctypes
 import os

@@ -1,4 +1,4 @@
-"""It opens sockets of rare protocols, for which the kernel loads modules that have had many security holes."""
+"""The node opens sockets of rare protocols, whose kernel modules have had many vulnerabilities."""
 
 import socket
 

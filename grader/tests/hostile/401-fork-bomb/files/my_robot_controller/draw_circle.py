@@ -1,4 +1,4 @@
-"""It keeps starting processes."""
+"""The node keeps starting processes."""
 
 import os
 

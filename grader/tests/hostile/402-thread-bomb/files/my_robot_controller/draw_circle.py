@@ -1,4 +1,4 @@
-"""It keeps starting threads."""
+"""The node keeps starting threads."""
 
 import threading
 

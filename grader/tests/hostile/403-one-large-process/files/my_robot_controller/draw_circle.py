@@ -1,4 +1,4 @@
-"""It allocates more memory than the limit."""
+"""The node allocates more memory than the limit."""
 
 import mmap
 

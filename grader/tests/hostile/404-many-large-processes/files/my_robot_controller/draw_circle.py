@@ -1,4 +1,4 @@
-"""Each of its processes is below the limit, but their total is not."""
+"""Each process uses less memory than the limit, but their total is larger."""
 
 import os
 import time

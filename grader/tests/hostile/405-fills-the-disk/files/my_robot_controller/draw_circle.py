@@ -1,4 +1,4 @@
-"""It fills the disk."""
+"""The node fills the disk."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""It keeps making empty files."""
+"""The node keeps creating empty files."""
 
 import os
 

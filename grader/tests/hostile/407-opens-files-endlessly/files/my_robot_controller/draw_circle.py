@@ -1,4 +1,4 @@
-"""It keeps opening files."""
+"""The node keeps opening files."""
 
 import os
 import resource

@@ -1,4 +1,4 @@
-"""It makes a file that is larger than the disk."""
+"""The node creates a file that is larger than the disk."""
 
 import os
 

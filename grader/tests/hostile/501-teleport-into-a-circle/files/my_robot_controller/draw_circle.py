@@ -1,4 +1,4 @@
-"""It teleports the turtle along a circle and does not drive."""
+"""The node teleports the turtle along a circle and does not drive."""
 
 import math
 

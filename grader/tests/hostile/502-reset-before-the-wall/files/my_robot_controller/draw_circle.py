@@ -1,4 +1,4 @@
-"""It drives straight ahead and resets the turtle before each wall."""
+"""The node drives straight ahead and resets the turtle before each wall."""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,4 @@
-"""It removes the turtle and puts another one in its place."""
+"""The node removes the turtle and spawns another one with the same name."""
 
 import rclpy
 from geometry_msgs.msg import Twist

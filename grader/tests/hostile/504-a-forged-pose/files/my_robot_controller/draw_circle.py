@@ -1,4 +1,4 @@
-"""It publishes false poses of a turtle that drives a circle."""
+"""The node publishes false poses of a turtle that drives a circle."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""It publishes a faster clock."""
+"""The node publishes a faster clock."""
 
 import rclpy
 from geometry_msgs.msg import Twist

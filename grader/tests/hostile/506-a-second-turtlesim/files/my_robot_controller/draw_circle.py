@@ -1,4 +1,4 @@
-"""It starts a node named turtlesim, whose messages look like those of the simulator."""
+"""The node starts a node named turtlesim, whose messages look like those of the simulator."""
 
 import rclpy
 from geometry_msgs.msg import Twist

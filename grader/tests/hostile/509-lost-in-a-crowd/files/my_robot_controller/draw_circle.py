@@ -1,4 +1,4 @@
-"""A hundred and twenty topics hide the wrong one."""
+"""The node creates 120 topics to hide the wrong one."""
 
 import rclpy
 from geometry_msgs.msg import Twist

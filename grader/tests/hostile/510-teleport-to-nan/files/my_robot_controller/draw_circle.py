@@ -1,4 +1,4 @@
-"""It teleports the turtle to coordinates that are not numbers."""
+"""The node teleports the turtle to coordinates that are not numbers."""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,4 @@
-"""It spawns turtles at coordinates that are not numbers, with invalid names."""
+"""The node spawns turtles at coordinates that are not numbers, with invalid names."""
 
 import rclpy
 from geometry_msgs.msg import Twist

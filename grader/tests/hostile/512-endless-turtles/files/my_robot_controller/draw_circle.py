@@ -1,4 +1,4 @@
-"""It keeps spawning turtles."""
+"""The node keeps spawning turtles."""
 
 import rclpy
 from geometry_msgs.msg import Twist

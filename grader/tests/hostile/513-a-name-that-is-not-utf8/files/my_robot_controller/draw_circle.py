@@ -1,4 +1,4 @@
-"""It calls a service with a name that is not valid UTF-8."""
+"""The node calls a service with a name that is not valid UTF-8."""
 
 import ctypes
 

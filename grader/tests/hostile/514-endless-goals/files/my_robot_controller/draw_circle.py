@@ -1,4 +1,4 @@
-"""It keeps sending goals to rotate the turtle."""
+"""The node keeps sending goals to rotate the turtle."""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,4 @@
-"""It keeps setting the simulator's parameters."""
+"""The node keeps setting the simulator's parameters."""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,4 @@
-"""It sends a new request after every response of the simulator, so that no time passes."""
+"""The node sends a new request after every response of the simulator, so that no time passes."""
 
 import rclpy
 from geometry_msgs.msg import Twist

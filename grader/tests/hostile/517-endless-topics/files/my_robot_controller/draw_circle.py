@@ -1,4 +1,4 @@
-"""It keeps making topics."""
+"""The node keeps creating topics."""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,4 @@
-"""It keeps making nodes."""
+"""The node keeps creating nodes."""
 
 import rclpy
 from geometry_msgs.msg import Twist

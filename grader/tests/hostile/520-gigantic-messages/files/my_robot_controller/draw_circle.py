@@ -1,4 +1,4 @@
-"""It publishes messages of sixty megabytes."""
+"""The node publishes messages of sixty megabytes."""
 
 import rclpy
 from geometry_msgs.msg import Twist

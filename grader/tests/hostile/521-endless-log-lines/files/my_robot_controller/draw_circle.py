@@ -1,4 +1,4 @@
-"""It keeps logging long lines."""
+"""The node keeps logging long lines."""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,4 @@
-"""It sends random bytes to all discovery ports."""
+"""The node sends random bytes to all discovery ports."""
 
 import os
 import socket

@@ -1,4 +1,4 @@
-"""It publishes bytes that are not a valid Twist."""
+"""The node publishes bytes that are not a valid Twist."""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,4 @@
-"""Its processes use all processors at each command, so that arrival times are not reliable."""
+"""The node's processes use all processors at each command, so that arrival times are not reliable."""
 
 import os
 import time

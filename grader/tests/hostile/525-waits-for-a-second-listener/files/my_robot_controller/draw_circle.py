@@ -1,4 +1,4 @@
-"""It drives only while another node than the turtle subscribes."""
+"""The node drives only while a node other than turtlesim subscribes."""
 
 import rclpy
 from geometry_msgs.msg import Twist

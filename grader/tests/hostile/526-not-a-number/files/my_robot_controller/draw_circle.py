@@ -1,4 +1,4 @@
-"""Its commands are NaN, for which every comparison is false."""
+"""The commands contain NaN, for which every comparison is false."""
 
 import rclpy
 from geometry_msgs.msg import Twist

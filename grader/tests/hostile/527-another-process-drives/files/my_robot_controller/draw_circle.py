@@ -1,4 +1,4 @@
-"""Another process publishes, and the node itself does nothing."""
+"""Another process publishes the commands instead of the node."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""A second simulator with the same names answers instead of the real one."""
+"""A second simulator with the same names replaces the real one."""
 
 import rclpy
 from geometry_msgs.msg import Twist

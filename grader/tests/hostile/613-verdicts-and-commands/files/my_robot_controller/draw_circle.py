@@ -1,4 +1,4 @@
-"""It prints a verdict like the grader, and commands for a CI."""
+"""The node prints a verdict like that of the grader, and commands for a CI system."""
 
 def main():
     print("Passed: 100 of 100 points.")

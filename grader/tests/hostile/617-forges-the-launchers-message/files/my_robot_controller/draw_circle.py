@@ -1,4 +1,4 @@
-"""It repeats the message of the launcher that it is ready, and closes all its files."""
+"""The node repeats the launcher's message `ready` and closes all its files."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""It stops itself and does not react to Ctrl-C."""
+"""The node sends SIGSTOP to itself, so it does not react to Ctrl-C."""
 
 import os
 import signal

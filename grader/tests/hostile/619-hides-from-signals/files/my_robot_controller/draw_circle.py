@@ -1,4 +1,4 @@
-"""It ignores all signals, and so do the children that it starts."""
+"""The node and its child processes ignore all signals."""
 
 import os
 import signal

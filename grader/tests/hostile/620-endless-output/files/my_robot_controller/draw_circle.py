@@ -1,4 +1,4 @@
-"""It keeps writing and never reads."""
+"""The node keeps printing."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""It calls the simulator a thousand times, ten times a second, so that the machine seems too busy to measure a rate."""
+"""The node sends the simulator bursts of a thousand requests, so that the machine seems too busy to measure a rate."""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,4 @@
-"""A hundred and thirty publishers and as many topics hide a second type."""
+"""The node creates 130 publishers and topics to hide a second type."""
 
 import rclpy
 from geometry_msgs.msg import Twist

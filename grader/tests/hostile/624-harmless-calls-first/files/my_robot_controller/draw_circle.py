@@ -1,4 +1,4 @@
-"""It calls a harmless service more than a thousand times before it teleports the turtle."""
+"""The node calls a harmless service more than a thousand times before it teleports the turtle."""
 
 import rclpy
 from geometry_msgs.msg import Twist
