@@ -1,9 +1,9 @@
-"""The scores that count in nbgrader's gradebook: those that the grader has confirmed, and manual grades.
+"""The scores that count in nbgrader's gradebook: manual grades, and scores that the grader has confirmed.
 
-The output of an autograded cell comes from a kernel that runs student code, so its score is provisional. For such a
-cell, `autograde` writes 0 points and "needs manual grade" (unconfirmed.py). `grader gradebook sync` then replaces these
-with the grader's own score. A score without a result from the grader is withheld: it becomes 0 points, and a person has
-to review it. Manual grades and extra credit stay unchanged. So do assignments that are not exercises of this course.
+The output of an autograded cell comes from a kernel that runs student code, so its score is provisional. For these
+cells, `autograde` writes 0 points and "needs manual grade" (unconfirmed.py). `grader gradebook sync` replaces them
+with the grader's scores. A score without a result from the grader is withheld: it becomes 0 points, and a person has
+to review it. Manual grades, extra credit and assignments of other courses stay unchanged.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Name = tuple[str, str]
 
 @dataclass(frozen=True)
 class Unconfirmed:
-    """Cells of one submission that are worth 0 points until a person grades them, and the reason."""
+    """The cells of a submission that are worth 0 points until a person grades them, with the reason."""
 
     student: str
     step: str
@@ -40,7 +40,7 @@ class Unconfirmed:
 
 
 def withhold(grade: Any) -> None:  # noqa: ANN401 - nbgrader's Grade
-    """Set a cell to 0 points until it is confirmed or graded by hand.
+    """Set a cell to 0 points until the score is confirmed or a person grades it.
 
     A manual grade and extra credit stay unchanged.
     """

@@ -1,4 +1,4 @@
-"""Run a program for `ros2 run`. The program uses the same terminal, and it is terminated if the command exits."""
+"""Run a program for `ros2 run`. The program uses the same terminal and ends if the command exits."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _PASSED_ON = (signal.SIGTERM, signal.SIGHUP)
 
 
 def run_child(command: Sequence[str]) -> int:
-    """Run a program until it exits; return its exit code, which is negative if it was terminated by a signal.
+    """Run a program until it exits. Return its exit code, which is negative if a signal terminated the program.
 
-    The terminal sends Ctrl-C to the program directly. SIGTERM and SIGHUP are passed on to the program.
+    The terminal sends Ctrl-C to the program directly. This function forwards SIGTERM and SIGHUP.
 
     Raises:
         Ros2Error: the program cannot be started.
@@ -39,7 +39,7 @@ def run_child(command: Sequence[str]) -> int:
             os._exit(1)
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # Block the signals until there is a program to pass them on to.
+    # Block the signals until the program has started and can receive them.
     before = signal.pthread_sigmask(signal.SIG_BLOCK, _PASSED_ON)
     try:
         process = subprocess.Popen(command, preexec_fn=prepare)

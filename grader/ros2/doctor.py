@@ -1,4 +1,4 @@
-"""`ros2 doctor` and `ros2 wtf`: check why nodes may be unable to communicate, or print reports about the machine."""
+"""`ros2 doctor` and `ros2 wtf`: check for problems that prevent communication, or print reports about the machine."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     group = parser.add_mutually_exclusive_group()
     group.add_argument("--report", "-r", action="store_true", help="print all reports instead of the checks")
-    group.add_argument("--report-failed", "-rf", action="store_true", help="print the reports about what failed")
-    parser.add_argument("--exclude-packages", "-ep", action="store_true", help="leave out the packages")
+    group.add_argument("--report-failed", "-rf", action="store_true", help="print only the reports of failed checks")
+    parser.add_argument("--exclude-packages", "-ep", action="store_true", help="exclude the packages")
     parser.add_argument(
         "--include-warnings",
         "-iw",
         action="store_true",
-        help="let a check with a warning fail",
+        help="count a warning as a failure",
     )
 
 
@@ -89,7 +89,7 @@ def _check_topics(node: Node) -> Examination:
 
 
 def _pairs(node: Node) -> Iterator[tuple[str, Any, Any, Any, str]]:
-    """Yield topic, publisher, subscription, the compatibility of their QoS, and the reason if it is not compatible."""
+    """Yield the topic, publisher, subscription, QoS compatibility, and the reason if the QoS is not compatible."""
     from rclpy.qos import qos_check_compatible
 
     for topic in _topics(node):

@@ -13,13 +13,15 @@ if TYPE_CHECKING:
 
 def add_form(parser: argparse.ArgumentParser) -> None:
     """Add the options for the format, except `--csv`."""
-    parser.add_argument("--full-length", "-f", action="store_true", help="print long arrays, bytes and strings whole")
+    parser.add_argument(
+        "--full-length", "-f", action="store_true", help="print long arrays, bytes and strings completely"
+    )
     parser.add_argument(
         "--truncate-length",
         "-l",
         type=unsigned_int,
         default=TRUNCATED_AT,
-        help=f"cut arrays, bytes and strings after this many elements (default: {TRUNCATED_AT})",
+        help=f"truncate arrays, bytes and strings to this number of elements (default: {TRUNCATED_AT})",
     )
     parser.add_argument("--no-arr", action="store_true", help="print the type of arrays, not their values")
     parser.add_argument("--no-str", action="store_true", help="print the length of strings, not their value")

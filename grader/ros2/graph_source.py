@@ -1,4 +1,4 @@
-"""How verbs look at the graph: through the daemon, or with their own node."""
+"""Get the graph for a verb, from the daemon or from a node in this process."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def look(args: argparse.Namespace) -> Look:
     """Return the current graph, either from the daemon or from a node in this process.
 
-    If no daemon is running, start one for the next command. With `args.no_daemon`, never use or start the daemon.
+    If no daemon is running, start one for the next command. With `args.no_daemon`, do not use or start a daemon.
 
     Raises:
         Ros2Error: the node could not be created.

@@ -1,4 +1,4 @@
-"""The groups and verbs of `ros2`, each with one line of help. The modules of the verbs are not imported."""
+"""The groups and verbs of `ros2` with one line of help each. The modules of the verbs are not imported."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 class Group:
     """A command group, which is the word after `ros2`.
 
-    `verbs` maps the words that may follow the group to their help. A group without verbs is itself a command. `flags`
+    `verbs` maps the words that may follow the group to their help. A group without verbs is a command. `flags`
     maps options that may come before the verb to their help. With `runs_itself`, the group also works without a verb.
     """
 

@@ -1,6 +1,6 @@
-"""The command `ros2`: run the `ros2` of a sourced ROS 2 if there is one, or else set up and run a verb.
+"""The command `ros2`: run the `ros2` of a sourced ROS 2 if it has one, or else run a verb of ours.
 
-This module imports little. A verb imports the parts of rclpy that it needs when it runs.
+This module imports little. A verb imports parts of rclpy only when it runs.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def main() -> NoReturn:
     code = run()
     with suppress(OSError):
         sys.stderr.flush()
-    # The verb has cleaned up, and its node has left the graph. A normal exit of Python and rclpy would take as long as
+    # The verb has finished, and its node has left the graph. A normal exit of Python and rclpy would take as long as
     # their import.
     os._exit(code & 0xFF)
 
@@ -48,7 +48,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
     try:
         hand_over("ros2", "ros2cli")
         see_to_environment({"rclpy", "turtlesim"})
-        # With this setting, an invalid value causes an error that names the field before the message is sent.
+        # With this setting, an invalid value raises an error that names the field before the message is sent.
         os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
         code = _run_verb(sys.argv[1:] if arguments is None else list(arguments))
         sys.stdout.flush()
@@ -59,10 +59,10 @@ def run(arguments: Sequence[str] | None = None) -> int:
         return error.exit_code
     except KeyboardInterrupt as error:
         _forget_the_terminal()
-        # The exit code is that of the real ros2: 2 after Ctrl-C, 15 after SIGTERM.
+        # Exit with the code of the real ros2: 2 after Ctrl-C, 15 after SIGTERM.
         return error.number if isinstance(error, _EndedError) else signal.SIGINT
     except BrokenPipeError:
-        # The program that reads the output has exited, as in `ros2 topic echo | head`.
+        # The reader of the output has exited, as in `ros2 topic echo | head`.
         _forget_the_terminal()
         return 0
     except Exception as error:
@@ -70,7 +70,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
             raise
         _forget_the_terminal()
         fault = f"ros2: an error in the course's ros2, not in your code: {type(error).__name__}: {error}"
-        more = "Type GRADER_DEBUG=1 before the command to see where it is, and please report it."
+        more = "Please report it. GRADER_DEBUG=1 before the command shows the traceback."
         print(refusal(error) or f"{fault}\n{more}", file=sys.stderr)
         return 3
     return code
@@ -81,7 +81,7 @@ def _run_verb(words: list[str]) -> int:
         _complete()
     args = make_parser(words).parse_args(words)
     if not args.use_python_default_buffering and isinstance(sys.stdout, io.TextIOWrapper):
-        # As with the real ros2, output that is piped into another program arrives line by line.
+        # As in the real ros2, output to a pipe is flushed after each line.
         sys.stdout.reconfigure(line_buffering=True)
     code: int = args.run(args)
     return code
@@ -104,12 +104,12 @@ def _end(number: int, _: FrameType | None) -> None:
 
 
 def _forget_the_terminal() -> None:
-    """Discard the remaining output in the buffer if nobody reads it anymore."""
+    """Discard the remaining output in the buffer, since the reader has exited."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         sys.stdout.flush()
     except OSError:
-        with suppress(OSError):  # it may be impossible to open any file
+        with suppress(OSError):  # opening a file may be impossible
             os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 

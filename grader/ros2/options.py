@@ -1,4 +1,4 @@
-"""Options that many verbs share, and functions that check their values."""
+"""Options of many verbs, and functions that check their values."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ import argparse
 
 
 def add_spin(parser: argparse.ArgumentParser) -> None:
-    """Add the options of a verb that creates its own node."""
+    """Add the options of a verb that creates a node."""
     parser.add_argument(
-        "--spin-time", type=float, help="wait at most this many seconds until the graph is known (without a daemon)"
+        "--spin-time", type=float, help="wait at most this number of seconds for the graph (without a daemon)"
     )
-    parser.add_argument("-s", "--use-sim-time", action="store_true", help="take the time from the topic /clock")
+    parser.add_argument("-s", "--use-sim-time", action="store_true", help="use the time from the topic /clock")
 
 
 def add_look(parser: argparse.ArgumentParser) -> None:
-    """Add the options of a verb that looks at the graph."""
+    """Add the options of a verb that reads the graph."""
     add_spin(parser)
     parser.add_argument("--no-daemon", action="store_true", help="do not use or start the daemon")
 

@@ -1,6 +1,6 @@
-"""The parsers of `ros2`, with usage, help and error messages in the format of the real command.
+"""The parsers of `ros2`, with usage, help and error messages as in the real command.
 
-Only the module of the verb on the command line is imported, and it imports rclpy only when it runs.
+Only the module of the verb on the command line is imported, and that module imports rclpy only when it runs.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ MODULES = {
     **dict.fromkeys(("launch", "security", "doctor.hello", "wtf.hello"), "unsupported"),
     **dict.fromkeys(("component.load", "component.standalone", "component.unload"), "unsupported"),
 }
-"""The modules of groups and verbs, where their names differ from those of the groups and verbs."""
+"""The names of modules that differ from the names of their groups or verbs."""
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
 
 
@@ -53,7 +53,7 @@ def make_parser(words: Sequence[str]) -> Parser:
     root.add_argument(
         "--use-python-default-buffering",
         action="store_true",
-        help="write standard output as Python does: in blocks if it is not a terminal, instead of line by line",
+        help="use Python's buffering of standard output: in a pipe, write blocks instead of lines",
     )
     root.set_defaults(run=_help_of(root))
     _add_words(root, "command", {name: group.about for name, group in GROUPS.items()}, group, _add_group(verb))
@@ -73,7 +73,7 @@ def _add_words(
         title="Commands",
         description="".join(f"{name.ljust(width)}  {text}\n" for name, text in sorted(about.items())),
         metavar=f"Call `{parser.prog} <command> -h` for more detailed usage.",
-        # The real ros2 uses the same name, which no option can have.
+        # The real ros2 uses the same name, which cannot be the name of an option.
         dest=f" {kind}",
         parser_class=Parser,
     )
@@ -106,7 +106,7 @@ def _add_group(verb: str | None) -> Callable[[argparse.ArgumentParser, str], Non
 
 
 def _add_verb(parser: argparse.ArgumentParser, name: str) -> None:
-    """Add the arguments of a verb. The module of the verb has the functions `add(parser)` and `run(args)`."""
+    """Add the arguments of a verb. The verb's module has the functions `add(parser)` and `run(args)`."""
     module = importlib.import_module(f"grader.ros2.{MODULES.get(name, name)}")
     module.add(parser)
     parser.set_defaults(run=module.run)

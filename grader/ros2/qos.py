@@ -1,4 +1,4 @@
-"""The QoS options of the verbs that publish or subscribe, and the profile that these options describe."""
+"""The QoS options of verbs that publish or subscribe, and the resulting profile."""
 
 from __future__ import annotations
 
@@ -25,30 +25,33 @@ POLICIES = {
     "durability": ("system_default", "transient_local", "volatile", "unknown", "best_available"),
     "liveliness": ("system_default", "automatic", "manual_by_topic", "unknown", "best_available"),
 }
-"""The names of rclpy's policies."""
+"""The names of the policies in rclpy."""
 
 
 def add_qos(parser: argparse.ArgumentParser, default: str) -> None:
-    """Add the options. `default` is the preset profile that is used if no option is given."""
+    """Add the options. `default` is the default preset profile."""
     parser.add_argument(
-        "--qos-profile", choices=PROFILES, default=default, help=f"preset profile to start from (default: {default})"
+        "--qos-profile",
+        choices=PROFILES,
+        default=default,
+        help=f"preset profile, which other options change (default: {default})",
     )
-    parser.add_argument("--qos-depth", metavar="N", type=int, help="size of the queue, instead of the profile's")
+    parser.add_argument("--qos-depth", metavar="N", type=int, help="size of the queue (default: as in the profile)")
     for policy, choices in POLICIES.items():
-        parser.add_argument(f"--qos-{policy}", choices=choices, help=f"{policy} policy, instead of the profile's")
+        parser.add_argument(f"--qos-{policy}", choices=choices, help=f"{policy} policy (default: as in the profile)")
     parser.add_argument(
         "--qos-liveliness-lease-duration-seconds", type=float, help="liveliness lease duration in seconds"
     )
 
 
 def is_chosen(args: argparse.Namespace) -> bool:
-    """Return whether the user set any option other than the preset profile."""
+    """Return whether the user has set an option other than the preset profile."""
     names = ("depth", *POLICIES, "liveliness_lease_duration_seconds")
     return any(getattr(args, f"qos_{name}") is not None for name in names)
 
 
 def profile(args: argparse.Namespace) -> Any:  # noqa: ANN401
-    """Return the rclpy.qos.QoSProfile that the options describe."""
+    """Return the rclpy.qos.QoSProfile that the options specify."""
     from rclpy import qos
     from rclpy.duration import Duration
 

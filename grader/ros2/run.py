@@ -1,4 +1,4 @@
-"""The verb `run`: start an executable in a package, and return its exit code."""
+"""The verb `run`: start an executable of a package, and return its exit code."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _QUOTED = re.compile(r'#!"([^"]+)"(.*)')
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    parser.add_argument("--prefix", help="a command to start it with: --prefix 'gdb -ex run --args'")
+    parser.add_argument("--prefix", help="a command that starts the executable, as in --prefix 'gdb -ex run --args'")
     completes(parser.add_argument("package_name", help="name of the package, as in turtlesim"), packages)
     completes(parser.add_argument("executable_name", help="name of the executable"), _executables)
     parser.add_argument("argv", nargs="...", help="arguments of the executable, as in --ros-args -p name:=value")
@@ -36,7 +36,7 @@ def run(args: argparse.Namespace) -> int:
     """Start the executable and wait until it exits. Return its exit code, which is negative after a signal.
 
     Raises:
-        Ros2Error: there is no such package or executable, or the executable cannot be started.
+        Ros2Error: the package or the executable does not exist, or the executable cannot be started.
     """
     from grader.ros2.child import run_child
 
@@ -65,14 +65,14 @@ def _path(args: argparse.Namespace) -> Path:
     if not found:
         names = [path.name for path in all_of_them]
         hint = did_you_mean(args.executable_name, names, "No executable found")
-        have = ", ".join(names) if names else "none; they are the entry_points in its setup.py"
+        have = ", ".join(names) if names else "none; entry_points in its setup.py defines them"
         message = f"{hint}\nExecutables of {args.package_name}: {have}"
         raise Ros2Error(message)
     return found[0]
 
 
 def _program(path: Path) -> list[str]:
-    """Return the command for a script. Setuptools quotes interpreters with spaces, which Linux does not support."""
+    """Return the command for a script. setuptools quotes interpreter paths with spaces, but Linux cannot run these."""
     try:
         with path.open("rb") as file:
             quoted = _QUOTED.match(file.readline(4096).decode("utf-8", "replace"))

@@ -1,4 +1,4 @@
-"""Hints for packages that `ros2` does not find because they have been built but not sourced, or not even built."""
+"""Hints for packages that `ros2` does not find because they are not sourced or not built."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ _MOST = 2000
 
 
 def where_it_is(package: str) -> str:
-    """Return a hint that says where the package is and what to type, or "" if no workspace contains the package."""
+    """Return a hint with the place of the package and what to type, or "" if no workspace contains the package."""
     for workspace in _workspaces():
         for built in (workspace / "install" / package, workspace / "install"):
             if (built / "share" / package / "package.xml").is_file():
                 setup = _shown(workspace / "install/setup.bash")
-                return f"It is built, but not sourced in this terminal. Type: source {setup}"
+                return f"The package is built, but not sourced in this terminal. Type: source {setup}"
     for workspace in _workspaces():
         for manifest in _manifests(workspace / "src"):
             if _name(manifest) == package:
                 typed = f"cd {_shown(workspace)} && colcon build && source install/setup.bash"
-                return f"It is in {_shown(manifest.parent)}, but not built. Type: {typed}"
+                return f"The package is in {_shown(manifest.parent)}, but not built. Type: {typed}"
     return ""
 
 
 def _workspaces() -> Iterator[Path]:
-    """Yield folders that look like workspaces: the current folder, its parents, and the workspace of the tutorials."""
+    """Yield possible workspaces: the current folder, its parents, and the workspace of the ROS 2 tutorials."""
     cwd = Path.cwd()
     for folder in dict.fromkeys([cwd, *cwd.parents, Path.home() / "ros2_ws"]):
         if folder != folder.parent and any((folder / name).is_dir() for name in ("install", "src")):

@@ -1,4 +1,4 @@
-"""Verbs of `ros2` that need a full ROS 2. Each of them prints a message that says so and suggests an alternative."""
+"""Verbs of `ros2` that need a full ROS 2. They print a message with an alternative."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ if TYPE_CHECKING:
     from typing import NoReturn
 
 INSTEAD = {
-    "launch": "Start each node in a terminal of its own with: ros2 run PACKAGE EXECUTABLE",
+    "launch": "Start each node in a separate terminal with: ros2 run PACKAGE EXECUTABLE",
     "security": "The nodes of this course communicate only on this machine, so they need no keys.",
     "hello": "The nodes of this course communicate only on this machine. Use: ros2 doctor",
-    "load": "Start a node alone with: ros2 run PACKAGE EXECUTABLE",
-    "unload": "End a node with Ctrl-C in its terminal.",
-    "standalone": "Start a node alone with: ros2 run PACKAGE EXECUTABLE",
+    "load": "Start a single node with: ros2 run PACKAGE EXECUTABLE",
+    "unload": "Stop a node with Ctrl-C in its terminal.",
+    "standalone": "Start a single node with: ros2 run PACKAGE EXECUTABLE",
 }
-"""For each verb, what to do instead."""
+"""The alternative for each verb."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:

@@ -1,4 +1,4 @@
-"""The verb `action find`: the actions of a type."""
+"""The verb `action find`: find the actions of a type."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     kind = parser.add_argument("action_type", help="full type, as in turtlesim/action/RotateAbsolute")
     completes(kind, all_action_types)
-    parser.add_argument("-c", "--count-actions", action="store_true", help="print only how many actions there are")
+    parser.add_argument("-c", "--count-actions", action="store_true", help="print only the number of actions")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the sorted names of the actions. Return 0 even if there are none."""
+    """Print the sorted names of the actions. Return 0 even if no action has the type."""
     found = look(args).actions
     names = [name for name, types in found if args.action_type in types]
     print(len(names)) if args.count_actions else [print(name) for name in names]

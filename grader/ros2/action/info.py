@@ -1,4 +1,4 @@
-"""The verb `action info`: which nodes offer an action, and which use it."""
+"""The verb `action info`: print the nodes that offer or use an action."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     completes(parser.add_argument("action_name", help="name, as in /turtle1/rotate_absolute"), actions)
-    parser.add_argument("-t", "--show-types", action="store_true", help="print the type of the action too")
-    parser.add_argument("-c", "--count", action="store_true", help="print only how many nodes there are")
+    parser.add_argument("-t", "--show-types", action="store_true", help="also print the type of the action")
+    parser.add_argument("-c", "--count", action="store_true", help="print only the number of nodes")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the nodes. For an action that nobody offers or uses, both counts are 0."""
+    """Print the nodes. If no node offers or uses the action, print two counts of 0."""
     from grader.graph.names import absolute
 
     graph = look(args)

@@ -1,4 +1,4 @@
-"""The verb `action list`: the names of all actions."""
+"""The verb `action list`: print the names of all actions."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    parser.add_argument("-t", "--show-types", action="store_true", help="print the type of each action too")
-    parser.add_argument("-c", "--count-actions", action="store_true", help="print only how many actions there are")
+    parser.add_argument("-t", "--show-types", action="store_true", help="also print the type of each action")
+    parser.add_argument("-c", "--count-actions", action="store_true", help="print only the number of actions")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _CANCEL_S = 2.0
 _POLL_S = 0.02
 _STATUS = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED")
-"""The names of the statuses, indexed by their numbers in action_msgs/msg/GoalStatus."""
+"""The names of the goal statuses, indexed by their numbers in action_msgs/msg/GoalStatus."""
 _WHOLE = Form(limit=None)
 
 
@@ -29,7 +29,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     completes(kind, action_types)
     source = parser.add_mutually_exclusive_group()
     given = source.add_argument(
-        "goal", nargs="?", default="{}", help='the goal, as in "{theta: 1.57}"; without it all values are zero'
+        "goal", nargs="?", default="{}", help='the goal, as in "{theta: 1.57}"; by default, all values are zero'
     )
     completes(given, prototype("action_type", "action", "Goal"))
     source.add_argument("--stdin", action="store_true", help="read the goal from standard input")

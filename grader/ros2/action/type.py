@@ -1,4 +1,4 @@
-"""The verb `action type`: the type of an action."""
+"""The verb `action type`: print the type of an action."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the type. If the nodes disagree about it, print each type on a separate line.
+    """Print the type. If nodes use different types, print each type on a separate line.
 
     Raises:
-        Ros2Error: there is no such action.
+        Ros2Error: the action does not exist.
     """
     found = look(args).actions
     types = types_of(found, args.action_name)

@@ -1,4 +1,4 @@
-"""The keys that control a recording and a playback."""
+"""The keys that control recording and playback."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def pressed(*, enabled: bool) -> Iterator[Callable[[float], str]]:
         def key(timeout_s: float) -> str:
             sent = read(max(0.0, timeout_s))
             if sent == b"":
-                # The terminal has been closed. The process continues without it.
+                # The terminal was closed. Continue without it.
                 time.sleep(max(0.0, timeout_s))
             return _BYTES.get(sent or b"", "")
 

@@ -1,4 +1,4 @@
-"""The node that plays a bag. It publishes the messages at the pace at which they were recorded."""
+"""The node that plays a bag. It publishes the messages at their recorded rate."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosbags.rosbag2 import Reader
 
 _ACKNOWLEDGED_S = 2.0
-"""How long the node waits at the end for the last messages to arrive."""
+"""The time that the node waits at the end until the last messages have arrived (s)."""
 _STEP_S = 0.1
 
 
@@ -64,7 +64,7 @@ class Player:
                 self._log.info("Press CURSOR_RIGHT for Play Next Message")
                 self._log.info("Press CURSOR_UP for Increase Rate 10%")
                 self._log.info("Press CURSOR_DOWN for Decrease Rate 10%")
-            # Subscriptions that already exist should receive the first message, too.
+            # Existing subscriptions should also receive the first message.
             settle(self._node)
             self._log.info(f"Playback until timestamp: {self._until() or -1}")
             while True:
@@ -93,7 +93,7 @@ class Player:
         return made
 
     def _until(self) -> int | None:
-        """Return the stamp (ns) at which to stop, or None if the options do not set one."""
+        """Return the stamp (ns) at which to stop, or None if the options set no end."""
         ends = []
         if self._args.playback_duration >= 0:
             ends.append(self._begin() + round(self._args.playback_duration * 1e9))
@@ -105,7 +105,7 @@ class Player:
         return int(self._reader.start_time) + round(float(self._args.start_offset) * 1e9)
 
     def _play(self, key: Callable[[float], str]) -> bool:
-        """Publish all messages once, starting at the offset; return whether there were any."""
+        """Publish all messages once, starting at the offset. Return whether there were any messages."""
         any_of_them = False
         played, until = self._begin(), self._until()
         found = messages(self._reader, self._args.bag_path, set(self._publishers), self._begin())
@@ -118,7 +118,7 @@ class Player:
         return any_of_them
 
     def _wait(self, key: Callable[[float], str], played: int, stamp: int) -> int:
-        """Wait while the time of the recording advances from `played` to `stamp` (ns); return `stamp`."""
+        """Wait while the time of the recording advances from `played` to `stamp` (ns). Return `stamp`."""
         if self._burst > 0:
             self._burst -= 1
             return stamp
@@ -135,7 +135,7 @@ class Player:
         return stamp
 
     def _press(self, name: str) -> bool:
-        """Handle a key; return whether to publish the next message immediately."""
+        """Handle a key. Return whether to publish the next message immediately."""
         if name == bag_keys.SPACE:
             self._paused = not self._paused
             self._log.info("Pausing play." if self._paused else "Resuming play.")
@@ -161,7 +161,7 @@ class Clock:
         self._last = 0.0
 
     def publish(self, stamp_ns: int) -> None:
-        """Publish a time (ns), unless the previous one was published less than one period ago."""
+        """Publish a time (ns), unless less than one period has passed since the last one."""
         if time.monotonic() - self._last < self.period_s:
             return
         self._last = time.monotonic()

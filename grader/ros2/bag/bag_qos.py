@@ -1,4 +1,4 @@
-"""QoS of recorded topics: the publishers' QoS in the format of rosbags, and suitable QoS for recording and playing."""
+"""The QoS of recorded topics: conversion to the format of rosbags, and profiles for recording and playing."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def offered(publishers: Sequence[Any]) -> list[Qos]:
 
 
 def adapted(publishers: Sequence[Any]) -> QoSProfile:
-    """Return a profile that matches every publisher, which is as strict as the least strict publisher."""
+    """Return a profile that is compatible with every publisher: as strict as the least strict one."""
     profiles = [publisher.qos_profile for publisher in publishers]
     return _common(
         [profile.reliability == QoSReliabilityPolicy.RELIABLE for profile in profiles],
@@ -32,7 +32,7 @@ def adapted(publishers: Sequence[Any]) -> QoSProfile:
 
 
 def to_play(recorded: Sequence[Qos]) -> QoSProfile:
-    """Return a profile that matches every subscription that matched the recorded publishers."""
+    """Return a profile that is compatible with every subscription that matched the recorded publishers."""
     return _common(
         [profile.reliability is QosReliability.RELIABLE for profile in recorded],
         [profile.durability is QosDurability.TRANSIENT_LOCAL for profile in recorded],
@@ -50,7 +50,7 @@ def _common(reliable: list[bool], kept: list[bool]) -> QoSProfile:
 
 def _stored(profile: QoSProfile) -> Qos:
     return Qos(
-        # The history setting of another process is unknown, since DDS does not announce it.
+        # DDS does not announce the history setting of other processes.
         history=QosHistory.UNKNOWN,
         depth=0,
         reliability=QosReliability[profile.reliability.name],

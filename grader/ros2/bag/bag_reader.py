@@ -1,4 +1,4 @@
-"""Read a bag in any storage format, whether it was recorded by rosbag2 or by the course's `ros2 bag`."""
+"""Read bags in all storage formats, recorded by rosbag2 or by the course's `ros2 bag`."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def open_bag(path: Path) -> Iterator[Reader]:
 def messages(
     reader: Reader, path: Path, topics: set[str], start: int | None = None
 ) -> Iterator[tuple[str, int, bytes]]:
-    """Yield topic, stamp (ns since the epoch) and data of each message on `topics` in order, beginning at `start`.
+    """Yield topic, stamp (ns since the epoch) and data of each message on `topics` in order, starting at `start`.
 
     Raises:
         Ros2Error: the bag is damaged.
@@ -66,7 +66,7 @@ def messages(
 
 
 def _without_index(path: Path, topics: set[str], start: int | None) -> Iterator[tuple[str, int, bytes]]:
-    """Yield the messages of an MCAP bag without chunks, which rosbags does not find.
+    """Yield the messages of an MCAP bag without chunks, which rosbags cannot read.
 
     rosbag2 writes such bags with `--storage-preset-profile fastwrite`.
     """

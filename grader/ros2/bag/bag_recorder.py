@@ -1,4 +1,4 @@
-"""The node that records a bag. It subscribes to topics when they appear, and writes the messages unchanged."""
+"""The node that records a bag. It subscribes to topics as they appear, and writes the messages unchanged."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Recorder:
                 self._record(key)
                 self._drain()
         if self._full is not None:
-            text = f"[ERROR] [ros2bag]: {self._writer.folder}: {self._full.strerror}. The recording stopped there."
+            text = f"[ERROR] [ros2bag]: {self._writer.folder}: {self._full.strerror}. The recording stopped."
             raise Ros2Error(text) from self._full
         self._log.info("Recording stopped")
 
@@ -142,10 +142,10 @@ class Recorder:
             self._full = error
 
     def _drain(self) -> None:
-        """Write the messages that arrived before the end but have not been handled yet.
+        """Write the messages that arrived before the end but were not handled.
 
-        They are taken directly from the subscriptions, since an executor handles ready callbacks in any order. The
-        number of waiting messages is limited by the depth of the queue.
+        They are read directly from the subscriptions, since an executor handles ready callbacks in any order. The
+        depth of the queue limits the number of waiting messages.
         """
         for subscription in self._node.subscriptions:
             for _ in range(bag_qos.DEPTH):
@@ -160,9 +160,9 @@ class Recorder:
 
 @contextmanager
 def _ending(end: Callable[[], None]) -> Iterator[None]:
-    """Let Ctrl-C and SIGTERM call `end` instead of raising an exception, which could truncate a message.
+    """Call `end` on Ctrl-C and SIGTERM instead of raising an exception, which could truncate a message.
 
-    Later signals have no further effect, so that the bag can be completed.
+    Later signals have no effect, so that the bag can be completed.
     """
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, lambda *_: end())

@@ -1,4 +1,4 @@
-"""Write a bag as rosbag2 does, so that the bag can be recovered even if the writer was killed."""
+"""Write a bag in the format of rosbag2. The bag can be recovered even if the writer is killed."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 _VERSION: Literal[9] = 9
 """The version of rosbag2's metadata that Jazzy reads and writes."""
 INFORMATION = "rosbag2_bagfile_information"
-"""The only key of metadata.yaml."""
+"""The only top-level key of metadata.yaml."""
 _KEEP_S = 1.0
-"""The interval at which messages are written to the file. A killed recorder loses at most this much of a recording."""
+"""The interval at which messages are flushed to the file (s). A killed recorder loses at most these messages."""
 _NO_HASH = f"RIHS01_{64 * '0'}"
-"""Stands for the hash of a type that is not installed, because the hash cannot be computed from its name."""
+"""The hash of a type that is not installed, since the hash cannot be computed from the type's name."""
 _ENDINGS = {"mcap": ".mcap", "sqlite3": ".db3"}
 
 
@@ -66,10 +66,10 @@ class BagWriter:
     def add_topic(self, topic: str, kind: str, offered: Sequence[Qos] = (), definition: str | None = None) -> None:
         """Add a topic, so that its messages can be written.
 
-        `definition` is that of the type in another bag. It is used if the type is not installed, and may be empty.
+        `definition` is the definition of the type in another bag, used if the type is not installed. It may be empty.
 
         Raises:
-            Ros2Error: the type of the topic is not installed, and there is no definition.
+            Ros2Error: the type of the topic is not installed, and `definition` is None.
         """
         register(self._types, kind, index.prefixes())
         profiles = list(offered)
@@ -99,7 +99,7 @@ class BagWriter:
         self._writer.write(self._connections[topic, kind], stamp_ns, data)
 
     def keep(self) -> None:
-        """Flush the messages to the file, at most once per second, so that they survive if this process is killed."""
+        """Flush the messages to the file, at most once per second, so that they remain if this process is killed."""
         if time.monotonic() - self._kept_at < _KEEP_S:
             return
         self._kept_at = time.monotonic()
@@ -122,14 +122,16 @@ class BagWriter:
             _as_rosbag2_names_it(self.folder, _ENDINGS[self._storage])
         except OSError as failure:
             text = f"[ERROR] [ros2bag]: {self.folder}: {failure.strerror}."
-            text += f"\nThe earlier messages are in it. When there is disk space, type: ros2 bag reindex {self.folder}"
+            text += (
+                f"\nThe bag contains the earlier messages. Free disk space, then type: ros2 bag reindex {self.folder}"
+            )
             raise Ros2Error(text) from failure
 
 
 def _as_rosbag2_names_it(folder: Path, ending: str) -> None:
-    """Name the file and the distribution as rosbag2 does: bag/bag_0.mcap, jazzy.
+    """Rename the file and the distribution as in rosbag2: bag/bag_0.mcap, jazzy.
 
-    The metadata is replaced last. If it is missing, `ros2 bag reindex` writes it again.
+    The metadata is replaced last. If it is missing, `ros2 bag reindex` restores it.
     """
     metadata = folder / "metadata.yaml"
     data = yaml.safe_load(metadata.read_text("utf-8"))

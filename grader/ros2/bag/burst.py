@@ -1,4 +1,4 @@
-"""The verb `bag burst`: publish the messages of a bag as fast as possible, and then pause."""
+"""The verb `bag burst`: publish messages of a bag as fast as possible, and then pause."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--topics", default=[], metavar="topic", nargs="+", help="publish only these topics")
     parser.add_argument("--remap", "-m", default=[], nargs="+", help="publish on other topics: /old:=/new")
     parser.add_argument(
-        "--start-offset", type=not_negative, default=0.0, help="leave out the first seconds of the recording"
+        "--start-offset", type=not_negative, default=0.0, help="skip the first seconds of the recording"
     )
     parser.add_argument(
         "-n",
         "--num-messages",
         type=not_negative,
         default=0,
-        help="pause after so many messages; SPACE goes on (default: 0, all messages)",
+        help="pause after this number of messages; SPACE resumes (default: 0, all messages)",
     )
     add_log_level(parser)
-    # What `bag play` lets its user choose.
+    # The other options of `bag play`.
     parser.set_defaults(
         rate=1.0,
         regex="",
@@ -42,10 +42,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Publish the messages, until the end of the bag or Ctrl-C.
+    """Publish the messages until the end of the bag or Ctrl-C.
 
     Raises:
-        Ros2Error: the path is not a bag, the bag is damaged, or none of its topics can be published here.
+        Ros2Error: the path is not a bag, the bag is damaged, or none of its topics can be published.
     """
     from grader.ros2.bag.play import play
 

@@ -26,7 +26,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         action="append",
         nargs="+",
         metavar=("uri", "storage_id"),
-        help="a bag to read, and how it is stored; may be given several times",
+        help="a bag to read, and its storage format; may be repeated",
     )
     parser.add_argument(
         "-o",
@@ -110,7 +110,7 @@ def _compression(options: dict[str, Any]) -> str:
 
 
 def _chosen(options: dict[str, Any], topic: str) -> bool:
-    """Return whether a new bag gets a topic. Without any selection, it gets all topics."""
+    """Return whether the options select a topic for a new bag. Without a selection, all topics are selected."""
     topics, regex = absolute(options.get("topics") or []), options.get("regex") or ""
     if topic in absolute(options.get("exclude_topics") or []) or contains(topic, options.get("exclude_regex") or ""):
         return False

@@ -1,4 +1,4 @@
-"""Print messages of the recorder and the player on standard error, in the format of rclcpp's logger."""
+"""Print messages of the recorder and the player to standard error, in the format of rclcpp's logger."""
 
 from __future__ import annotations
 
@@ -42,6 +42,6 @@ class Logger:
         seconds, nanoseconds = divmod(time.time_ns(), 10**9)
         line = f"[{level}] [{seconds}.{nanoseconds:09}] [{self.name}]: {text}"
         colour = _COLOURS.get(level, "") if sys.stderr.isatty() else ""
-        # The bag must be completed even if nobody reads the messages anymore.
+        # The bag must be completed even if the reader of the messages has exited.
         with suppress(BrokenPipeError):
             print(f"{colour}{line}\033[0m" if colour else line, file=sys.stderr, flush=True)

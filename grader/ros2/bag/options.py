@@ -1,4 +1,4 @@
-"""Options and checks that several verbs of `ros2 bag` share."""
+"""Options of several verbs of `ros2 bag`, and checks of their values."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def add_bag(parser: argparse.ArgumentParser) -> None:
         "--storage",
         default="",
         choices=STORAGES,
-        help="how the bag is stored; found out by itself if it is not named",
+        help="the storage format of the bag (default: detected)",
     )
 
 
@@ -71,15 +71,15 @@ def _number(text: str) -> float:
 
 
 def absolute(names: Iterable[str]) -> list[str]:
-    """Return the names of topics with a slash at the beginning."""
+    """Return the names of topics, each with a slash at the beginning."""
     return [name if name.startswith("/") else f"/{name}" for name in names]
 
 
 def contains(topic: str, pattern: str) -> bool:
-    """Return whether a topic contains a regular expression. An empty one is in no topic.
+    """Return whether the name of a topic matches a regular expression in some place. An empty one matches no topic.
 
     Raises:
-        Ros2Error: it is not a regular expression.
+        Ros2Error: the pattern is not a regular expression.
     """
     try:
         return bool(pattern and re.search(pattern, topic))

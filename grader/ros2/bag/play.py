@@ -1,4 +1,4 @@
-"""The verb `bag play`: publish the messages of a bag at the times at which they were recorded."""
+"""The verb `bag play`: publish the messages of a bag at the recorded times."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_bag(parser)
     parser.add_argument("--read-ahead-queue-size", type=int, default=1000, help=argparse.SUPPRESS)
-    parser.add_argument("-r", "--rate", type=above_zero, default=1.0, help="play so many times as fast (default: 1.0)")
+    parser.add_argument(
+        "-r", "--rate", type=above_zero, default=1.0, help="multiply the speed by this factor (default: 1.0)"
+    )
     parser.add_argument("--topics", default=[], metavar="topic", nargs="+", help="play only these topics")
     parser.add_argument("-e", "--regex", default="", help="play only topics that contain this regular expression")
-    parser.add_argument(
-        "-x", "--exclude-regex", default="", help="leave out topics that contain this regular expression"
-    )
-    parser.add_argument("--exclude-topics", default=[], metavar="topic", nargs="+", help="leave out these topics")
+    parser.add_argument("-x", "--exclude-regex", default="", help="exclude topics that contain this regular expression")
+    parser.add_argument("--exclude-topics", default=[], metavar="topic", nargs="+", help="exclude these topics")
     parser.add_argument(
         "-l",
         "--loop",
         action="store_true",
-        help="begin again at the end, until Ctrl-C",
+        help="restart at the end, until Ctrl-C",
     )
     parser.add_argument(
         "--remap",
@@ -42,16 +42,16 @@ def add(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         const=40.0,
         default=0.0,
-        help="publish the time of the recording on /clock, so many times per second (40 if no number is given)",
+        help="publish the time of the recording on /clock, at this rate in Hz (40 if no number is given)",
     )
     parser.add_argument(
-        "-d", "--delay", type=above_zero, default=0.0, help="wait so many seconds before each time it is played"
+        "-d", "--delay", type=above_zero, default=0.0, help="wait this number of seconds before each playback"
     )
     parser.add_argument(
         "--playback-duration",
         type=float,
         default=-1.0,
-        help="play only so many seconds of the recording",
+        help="play only this number of seconds of the recording",
     )
     parser.add_argument(
         "--playback-until-sec",
@@ -59,23 +59,23 @@ def add(parser: argparse.ArgumentParser) -> None:
         default=-1.0,
         help="play until this time (seconds since 1970)",
     )
-    parser.add_argument("--disable-keyboard-controls", action="store_true", help="do not listen to the keyboard")
-    parser.add_argument("-p", "--start-paused", action="store_true", help="begin paused; SPACE goes on")
+    parser.add_argument("--disable-keyboard-controls", action="store_true", help="ignore the keyboard")
+    parser.add_argument("-p", "--start-paused", action="store_true", help="start paused; SPACE resumes")
     parser.add_argument(
         "--start-offset",
         type=not_negative,
         default=0.0,
-        help="leave out the first seconds of the recording",
+        help="skip the first seconds of the recording",
     )
     parser.add_argument("--wait-for-all-acked", type=int, default=-1, metavar="TIMEOUT", help=argparse.SUPPRESS)
     add_log_level(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Play the bag to its end, or until Ctrl-C.
+    """Play the bag until its end or Ctrl-C.
 
     Raises:
-        Ros2Error: the path is not a bag, the bag is damaged, or none of its topics can be published here.
+        Ros2Error: the path is not a bag, the bag is damaged, or none of its topics can be published.
     """
     return play(args)
 
@@ -84,7 +84,7 @@ def play(args: argparse.Namespace, *, burst: float = 0) -> int:
     """Play the bag with these options. The first `burst` messages are published without waiting, even if it is paused.
 
     Raises:
-        Ros2Error: the path is not a bag, the bag is damaged, or none of its topics can be published here.
+        Ros2Error: the path is not a bag, the bag is damaged, or none of its topics can be published.
     """
     rules = remapping(args.remap)
     from grader.graph.discovery import cli_node

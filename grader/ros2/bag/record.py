@@ -1,4 +1,4 @@
-"""The verb `bag record`: write the messages on topics to a new bag."""
+"""The verb `bag record`: record the messages on topics in a new bag."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 _SELECTS = ("all", "all_topics", "topic_types", "regex")
 _PROFILES = {"none": "none", "fastwrite": "none", "zstd_fast": "storage", "zstd_small": "storage"}
-"""The preset profiles of the MCAP storage, and the compression mode of each."""
+"""The preset profiles of the MCAP storage, each with its compression mode."""
 NOT_HERE = (
     "services",
     "all_services",
@@ -29,7 +29,7 @@ NOT_HERE = (
     "qos_profile_overrides_path",
     "custom_data",
 )
-"""Options that are not supported here. docs/ros2-differences.md explains why."""
+"""The options that are not supported here. docs/ros2-differences.md gives the reasons."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -37,39 +37,39 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o",
         "--output",
-        help="the new folder (default: rosbag2_ and the time, in the current folder)",
+        help="the new folder (default: rosbag2_ and the time in the current folder)",
     )
     parser.add_argument(
-        "-s", "--storage", default="mcap", choices=STORAGES, help="how the bag is stored (default: mcap)"
+        "-s", "--storage", default="mcap", choices=STORAGES, help="storage format of the bag (default: mcap)"
     )
     _add_topics(parser)
     _add_discovery(parser)
     parser.add_argument("-f", "--serialization-format", default="", choices=("", "cdr"), help=argparse.SUPPRESS)
     _add_splitting(parser)
-    parser.add_argument("--start-paused", action="store_true", help="begin paused; SPACE starts the recording")
+    parser.add_argument("--start-paused", action="store_true", help="start paused; SPACE starts the recording")
     parser.add_argument(
         "--use-sim-time",
         action="store_true",
-        help="stamp messages with the time from /clock; before its first message, nothing is recorded",
+        help="stamp messages with the time from /clock; nothing is recorded before its first message",
     )
     parser.add_argument(
         "--node-name", default="rosbag2_recorder", help="name of the recording node (default: rosbag2_recorder)"
     )
-    parser.add_argument("--disable-keyboard-controls", action="store_true", help="do not listen to the keyboard")
+    parser.add_argument("--disable-keyboard-controls", action="store_true", help="ignore the keyboard")
     add_log_level(parser)
     parser.add_argument(
         "--storage-preset-profile",
         default="none",
         choices=sorted(_PROFILES),
-        help="how the file is written (default: none)",
+        help="settings for writing the file (default: none)",
     )
     parser.add_argument(
         "--compression-mode",
         default="none",
         choices=("none", "file", "message"),
-        help="what is compressed (default: none)",
+        help="unit of compression (default: none)",
     )
-    parser.add_argument("--compression-format", default="", choices=("", "zstd"), help="how it is compressed")
+    parser.add_argument("--compression-format", default="", choices=("", "zstd"), help="compression format")
     for name in NOT_HERE:
         parser.add_argument(f"--{name.replace('_', '-')}", nargs="*", help=argparse.SUPPRESS)
 
@@ -98,23 +98,23 @@ def _add_topics(parser: argparse.ArgumentParser) -> None:
         ),
         message_types,
     )
-    parser.add_argument("-a", "--all", action="store_true", help="record all topics but hidden ones")
-    parser.add_argument("--all-topics", action="store_true", help="record all topics but hidden ones")
+    parser.add_argument("-a", "--all", action="store_true", help="record all topics except hidden ones")
+    parser.add_argument("--all-topics", action="store_true", help="record all topics except hidden ones")
     parser.add_argument("-e", "--regex", default="", help="record the topics that contain this regular expression")
-    parser.add_argument("--exclude-regex", default="", help="leave out topics that contain this regular expression")
+    parser.add_argument("--exclude-regex", default="", help="exclude topics that contain this regular expression")
     parser.add_argument(
         "--exclude-topic-types",
         default=[],
         metavar="ExcludeTopicTypes",
         nargs="+",
-        help="leave out topics of these types",
+        help="exclude topics of these types",
     )
     parser.add_argument(
         "--exclude-topics",
         default=[],
         metavar="Topic",
         nargs="+",
-        help="leave out these topics",
+        help="exclude these topics",
     )
 
 
@@ -124,14 +124,14 @@ def _add_splitting(parser: argparse.ArgumentParser) -> None:
         "--max-bag-size",
         type=int,
         default=0,
-        help="begin a new file before the messages of one take more bytes (default: 0, only one file)",
+        help="maximum total size of the messages in a file, in bytes (default: 0, only one file)",
     )
     parser.add_argument(
         "-d",
         "--max-bag-duration",
         type=int,
         default=0,
-        help="begin a new file after so many seconds (default: 0, only one file)",
+        help="start a new file after this number of seconds (default: 0, only one file)",
     )
 
 
@@ -139,22 +139,22 @@ def _add_discovery(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--include-unpublished-topics",
         action="store_true",
-        help="record topics without a publisher, too",
+        help="also record topics without a publisher",
     )
-    parser.add_argument("--include-hidden-topics", action="store_true", help="record hidden topics, too")
+    parser.add_argument("--include-hidden-topics", action="store_true", help="also record hidden topics")
     parser.add_argument(
         "--no-discovery",
         action="store_true",
-        help="record only the topics that are there at the start",
+        help="record only the topics that exist at the start",
     )
     parser.add_argument(
         "-p",
         "--polling-interval",
         type=int,
         default=100,
-        help="look for new topics every so many milliseconds (default: 100)",
+        help="interval of looking for new topics, in milliseconds (default: 100)",
     )
-    parser.add_argument("--ignore-leaf-topics", action="store_true", help="leave out topics that nobody subscribes to")
+    parser.add_argument("--ignore-leaf-topics", action="store_true", help="exclude topics without subscriptions")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -189,7 +189,7 @@ def _writer(folder: Path, args: argparse.Namespace, compression: str) -> BagWrit
 
 
 def wanted(args: argparse.Namespace) -> Callable[[str, str], bool]:
-    """Return a function that tells whether the options select a topic with a given type.
+    """Return a function that returns whether the options select a topic with a given type.
 
     Raises:
         Ros2Error: a regular expression is invalid.
@@ -209,7 +209,7 @@ def wanted(args: argparse.Namespace) -> Callable[[str, str], bool]:
 
 
 def _validate(args: argparse.Namespace, folder: Path) -> None:
-    """Raise Ros2Error with the message of the real `ros2` if options cannot be combined."""
+    """Raise Ros2Error with the message of the real `ros2` if the options cannot be combined."""
     selects = any(getattr(args, name) for name in _SELECTS)
     unknown = " ".join(f"--{name.replace('_', '-')}" for name in NOT_HERE if getattr(args, name) is not None)
     rules: dict[str, object] = {
@@ -228,7 +228,7 @@ def _validate(args: argparse.Namespace, folder: Path) -> None:
         "discovered to record with sim time.": args.use_sim_time and args.no_discovery,
         "Invalid choice: Cannot specify compression format without a compression mode.": args.compression_format
         and args.compression_mode == "none",
-        "The storage sqlite3 has no such preset profile; use --compression-mode": args.storage == "sqlite3"
+        "The storage sqlite3 does not have this preset profile; use --compression-mode": args.storage == "sqlite3"
         and _PROFILES[args.storage_preset_profile] == "storage",
     }
     wrong = next((text for text, holds in rules.items() if holds), None)

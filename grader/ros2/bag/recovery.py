@@ -1,4 +1,4 @@
-"""Recover a bag whose recorder was killed: write everything that can still be read to a complete bag."""
+"""Recover a bag whose recorder was killed: write all readable messages to a complete bag."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Saved(NamedTuple):
     type: str
     data: bytes
     definition: str
-    """The definition of the type. It is empty if the file has none."""
+    """The definition of the type, or an empty string if the file has none."""
 
 
 def recover(folder: Path) -> None:
@@ -39,9 +39,9 @@ def recover(folder: Path) -> None:
     The old files are kept until the new ones are complete.
 
     Raises:
-        Ros2Error: the folder has no files of a bag, or they cannot be read.
+        Ros2Error: the folder contains no files of a bag, or they cannot be read.
     """
-    # The last file of a split bag is in a folder of its own until it is complete (split_writer.py).
+    # The last file of a split bag is in a separate folder until it is complete (split_writer.py).
     part = f"{glob.escape(folder.resolve().name)}_[0-9]*"
     found = (*folder.iterdir(), *folder.glob(f"{part}/{part}"))
     files = sorted(file for file in found if file.suffix in (".mcap", ".db3"))
@@ -60,8 +60,8 @@ def recover(folder: Path) -> None:
                     writer.add_topic(saved.topic, saved.type, definition=saved.definition)
                     known.add((saved.topic, saved.type))
                 writer.write(saved.topic, saved.type, saved.stamp_ns, saved.data)
-        # The new data come first, so that nothing is lost if this is killed. The metadata come last: a bag without them
-        # can be reindexed again.
+        # Move the new data first, so that nothing is lost if this process is killed. Move the metadata last: a bag
+        # without metadata can be reindexed again.
         data = [path for path in made.iterdir() if path.name != "metadata.yaml"]
         for path in data:
             path.replace(folder / path.name)
@@ -76,7 +76,7 @@ def recover(folder: Path) -> None:
 
 
 def saved_messages(file: Path) -> Iterator[Saved]:
-    """Return all readable messages of a file in order, without the help of its index."""
+    """Yield all readable messages of a file in order, without using its index."""
     return iter(sorted(_mcap(file) if file.suffix == ".mcap" else _sqlite(file), key=lambda saved: saved.stamp_ns))
 
 

@@ -1,4 +1,4 @@
-"""The verb `bag reindex`: make a bag readable after an interrupted recording."""
+"""The verb `bag reindex`: restore a bag after an interrupted recording."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Write a bag that consists of several files: a new one begins when the last one is large or long enough."""
+"""Write a bag that consists of several files. A new file begins at a maximum size or duration."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ if TYPE_CHECKING:
     from rosbags.interfaces import Qos
 
 _RECORD_BYTES = 31
-"""What a message takes in an MCAP file besides its data (bytes)."""
+"""The size of a message in an MCAP file without its data (bytes)."""
 _METADATA = "metadata.yaml"
 
 
 class SplitWriter:
-    """A new bag with several files as a context manager. It is used as a BagWriter.
+    """A new bag with several files, as a context manager with the methods of BagWriter.
 
-    The metadata are written after each file, so that all complete files can be read if the recorder is killed. The
-    file that is being written is in a folder of its own until it is complete; `ros2 bag reindex` finds it there.
+    The metadata is written after each file, so that all complete files can be read if the recorder is killed. The
+    current file is in a separate folder until it is complete; `ros2 bag reindex` finds it there.
 
     Args:
         folder: The folder of the bag, which must not exist.
         storage: "mcap" or "sqlite3".
-        compression: As of a BagWriter.
-        most_bytes: A new file begins before the messages of a file take more than that. 0 for no limit.
-        most_s: A new file begins before the messages of a file are further apart than that (s). 0 for no limit.
+        compression: As for BagWriter.
+        most_bytes: The maximum total size of the messages in a file (bytes). 0 for no limit.
+        most_s: The maximum duration of the messages in a file (s). 0 for no limit.
 
     Raises:
         Ros2Error: the folder cannot be created.
@@ -56,12 +56,12 @@ class SplitWriter:
         self._begun_ns: int | None = None
 
     def add_topic(self, topic: str, kind: str, offered: Sequence[Qos] = ()) -> None:
-        """Add a topic, as `BagWriter.add_topic` does, to this file and the following ones."""
+        """Add a topic to this file and the following ones, as `BagWriter.add_topic` does."""
         self._part.add_topic(topic, kind, offered)
         self._topics.append((topic, kind, offered))
 
     def write(self, topic: str, kind: str, stamp_ns: int, data: bytes) -> None:
-        """Write a message, as `BagWriter.write` does, into a new file if this one is full."""
+        """Write a message to this file, or to a new one if this file is full. See `BagWriter.write`."""
         size = len(data) + _RECORD_BYTES
         begun_ns = stamp_ns if self._begun_ns is None else self._begun_ns
         large = self._most_bytes and self._bytes and self._bytes + size > self._most_bytes
@@ -74,7 +74,7 @@ class SplitWriter:
         self._part.write(topic, kind, stamp_ns, data)
 
     def keep(self) -> None:
-        """Flush the messages to the file, as `BagWriter.keep` does."""
+        """Flush the messages to the file. See `BagWriter.keep`."""
         self._part.keep()
 
     def __enter__(self) -> Self:
@@ -92,7 +92,7 @@ class SplitWriter:
         return part
 
     def _end(self) -> None:
-        """Complete the file, and move it and its metadata to those of the earlier files."""
+        """Complete the file. Move the file and its metadata to the earlier files."""
         self._part.__exit__(None, None, None)
         part = self._part.folder
         try:
@@ -113,7 +113,7 @@ class SplitWriter:
 
 
 def joined(earlier: dict[str, Any], later: dict[str, Any]) -> dict[str, Any]:
-    """Return the metadata of a bag with the files of both. `earlier` may be empty."""
+    """Return the metadata of a bag that contains the files of both. `earlier` may be empty."""
     if not earlier:
         return later
     both = [one for one in (earlier, later) if one["message_count"]] or [later]

@@ -1,4 +1,4 @@
-"""The verb `component list`: the running containers. Only a full ROS 2 can list their components."""
+"""The verb `component list`: print the running containers. Only a full ROS 2 can list their components."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def run(args: argparse.Namespace) -> int:
     """Print the containers.
 
     Raises:
-        Ros2Error: there is no such container, or the user asked for its components.
+        Ros2Error: the container does not exist, or its components were requested.
     """
     graph = look(args)
     names = sorted(set(graph.node_names()))

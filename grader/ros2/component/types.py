@@ -1,4 +1,4 @@
-"""The verb `component types`: the installed components, from the ament index."""
+"""The verb `component types`: print the installed components, from the ament index."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    text = "name of the package; without it, all packages are looked through"
+    text = "name of the package (default: all packages)"
     completes(parser.add_argument("package_name", nargs="?", help=text), packages)
 
 
@@ -22,7 +22,7 @@ def run(args: argparse.Namespace) -> int:
     """Print the components.
 
     Raises:
-        Ros2Error: there is no such package.
+        Ros2Error: the package is not installed.
     """
     known = index.packages()
     if args.package_name is not None and args.package_name not in known:

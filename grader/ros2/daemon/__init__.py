@@ -1,1 +1,1 @@
-"""The daemon: a process that knows the graph, so that a verb does not have to wait for discovery."""
+"""The daemon: a process that observes the graph, so that verbs do not have to wait for discovery."""

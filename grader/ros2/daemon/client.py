@@ -13,12 +13,12 @@ from grader.common.interpreter import interpreter
 from grader.ros2.daemon import socket_path
 
 ANSWER_S = 8.0
-"""How long to wait for an answer. This is longer than the daemon waits for nodes that exist but send nothing."""
+"""The maximum time to wait for an answer (s). It exceeds the time that the daemon waits for silent nodes."""
 _POLL_S = 0.02
 
 
 def request(call: str) -> dict[str, Any] | None:
-    """Return the daemon's answer to "look", "ping" or "stop", or None if there is no daemon."""
+    """Return the daemon's answer to "look", "ping" or "stop", or None if no daemon is running."""
     folder = socket_path.folder()
     if folder is None:
         return None
@@ -45,7 +45,7 @@ def is_running() -> bool:
 
 
 def start(*, debug: bool = False) -> None:
-    """Start a daemon, which exits immediately if one is already running. With `debug`, it logs to this terminal."""
+    """Start a daemon, which exits immediately if another one is running. With `debug`, it logs to this terminal."""
     target = None if debug else subprocess.DEVNULL
     server = interpreter("-m", "grader.ros2.daemon.server", *(["--debug"] if debug else []), searches=True)
     subprocess.Popen(
@@ -67,7 +67,7 @@ def start_for_later() -> None:
 
 
 def wait_until_ended(timeout_s: float) -> bool:
-    """Wait until the daemon's process has exited; return False if the timeout expires first."""
+    """Wait until the daemon's process has exited. Return False if the timeout expires first."""
     folder = socket_path.folder()
     if folder is None:
         return True

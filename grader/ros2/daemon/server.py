@@ -1,4 +1,4 @@
-"""The daemon's process: a node that watches the graph, and a socket on which the user's commands can query it.
+"""The daemon's process: a node that observes the graph, and a socket that answers the user's commands.
 
 The daemon exits after a long idle time, on request, or when its socket has been removed.
 """
@@ -29,11 +29,11 @@ if TYPE_CHECKING:
 IDLE_S = float(os.environ.get("GRADER_ROS2_DAEMON_IDLE_S", "1800"))
 TICK_S = 1.0
 _REQUEST_S = 2.0
-"""How long to wait for a connected client to send its request."""
+"""The maximum time to wait for the request of a connected client (s)."""
 
 
 def main() -> int:
-    """Run the daemon; return 0, or 1 if there is no folder for the socket. Exit early if another daemon is running."""
+    """Run the daemon. Return 0, or 1 if the socket has no folder. Return early if another daemon is running."""
     for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
         signal.signal(number, _end)
     folder = socket_path.folder()
@@ -57,12 +57,12 @@ def _end(*_: int | FrameType | None) -> None:
 
 
 def _serve(folder: Path, name: str, debug: IO[str] | None) -> None:
-    # Import rclpy only now, so that a second daemon finds out quickly that it is not needed.
+    # Import rclpy only now, so that a second daemon exits quickly.
     from grader.graph.discovery import Settling, cli_node
 
     file = folder / f"{name}.socket"
     with cli_node(f"_ros2cli_daemon_{socket_path.domain()}_{uuid.uuid4().hex}", patient=True) as node:
-        # This process holds the lock, so the process that left the file behind has exited.
+        # This process has the lock, so the process that created the file has exited.
         file.unlink(missing_ok=True)
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as listening:
             before = os.umask(0o077)
@@ -93,7 +93,7 @@ def _answer_all(listening: socket.socket, node: Node, settling: Settling, wanted
     with selectors.DefaultSelector() as selector:
         selector.register(listening, selectors.EVENT_READ)
         while wanted() and time.monotonic() - used < IDLE_S:
-            # The daemon looks regularly, so it knows how long the graph has not changed, and can answer immediately.
+            # Check the graph regularly, so that the daemon can answer immediately if the graph has not changed.
             settling.observe()
             if not selector.select(TICK_S):
                 continue
@@ -106,7 +106,7 @@ def _answer_all(listening: socket.socket, node: Node, settling: Settling, wanted
 
 
 def _answer(connection: socket.socket, node: Node, settling: Settling, debug: IO[str] | None) -> bool:
-    """Answer one request; return False if it was the request to stop."""
+    """Answer a request. Return False if it is the request to stop."""
     from grader.graph.snapshot import snapshot
 
     connection.settimeout(_REQUEST_S)

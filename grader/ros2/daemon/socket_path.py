@@ -1,7 +1,7 @@
-"""The address of the daemon for this user, this domain and this network.
+"""The address of the daemon for a user, a domain and a network.
 
-The socket is in a folder that nobody else can access. Its name depends on everything that determines which graph a
-node sees.
+The socket is in a folder that only this user can access. Its name depends on everything that determines which graph a
+node discovers.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 PROTOCOL = 1
-"""A version number in the name of the socket, so that another version of this code starts its own daemon."""
+"""A version number in the name of the socket. Each version of this code starts a separate daemon."""
 _DECIDE = (
     "FASTDDS_BUILTIN_TRANSPORTS",
     "FASTDDS_DEFAULT_PROFILES_FILE",
@@ -33,16 +33,16 @@ _DECIDE = (
     "ROS_SECURITY_KEYSTORE",
     "ROS_STATIC_PEERS",
 )
-"""The environment variables that determine which graph a node sees."""
+"""The environment variables that determine which graph a node discovers."""
 
 
 def domain() -> str:
-    """Return the domain id as the user wrote it."""
+    """Return the domain id as text, as set by the user."""
     return os.environ.get("ROS_DOMAIN_ID") or "0"
 
 
 def name() -> str:
-    """Return the name of the socket, which is the same for all commands that see the same graph."""
+    """Return the name of the socket, which is equal for all commands with the same graph."""
     network = Path("/proc/self/ns/net").stat().st_ino
     decisive = [str(PROTOCOL), str(os.getuid()), str(network), domain()]
     decisive += [f"{variable}={os.environ.get(variable, '')}" for variable in _DECIDE]
@@ -50,7 +50,7 @@ def name() -> str:
 
 
 def folder() -> Path | None:
-    """Return the folder of the socket, and create it if necessary. Return None if no private folder can be created."""
+    """Return the folder of the socket, created if necessary, or None if no private folder can be created."""
     runtime = os.environ.get("XDG_RUNTIME_DIR", "")
     for place in ([Path(runtime, "grader")] if runtime.startswith("/") else []) + [xdg.cache() / "daemon"]:
         try:
@@ -65,7 +65,7 @@ def folder() -> Path | None:
 
 @contextmanager
 def address(where: Path, which: str) -> Iterator[str]:
-    """Yield a short path to the socket. An address has at most 108 bytes, but the path of a home folder may be long."""
+    """Yield a short path to the socket. An address has at most 108 bytes, but a home folder may have a longer path."""
     descriptor = os.open(where, os.O_PATH | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
         yield f"/proc/self/fd/{descriptor}/{which}"
@@ -74,7 +74,7 @@ def address(where: Path, which: str) -> Iterator[str]:
 
 
 def lock(file: IO[str]) -> bool:
-    """Try to acquire the lock that a daemon holds while it runs; return whether the lock was free."""
+    """Try to acquire the lock of the daemon. Return whether the lock was free."""
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

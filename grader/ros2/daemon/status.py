@@ -1,4 +1,4 @@
-"""The verb `daemon status`: whether the daemon is running."""
+"""The verb `daemon status`: print whether the daemon is running."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ if TYPE_CHECKING:
 
 
 def add(_: argparse.ArgumentParser) -> None:
-    """Add no arguments, since the verb has none."""
+    """Add nothing, since the verb has no arguments."""
 
 
 def run(_: argparse.Namespace) -> int:
-    """Print whether the daemon is running; return 0 in both cases."""
+    """Print whether the daemon is running. Return 0 in both cases."""
     from grader.ros2.daemon import client
 
     print("The daemon is running" if client.is_running() else "The daemon is not running")

@@ -13,7 +13,7 @@ _ENDED_S = 10.0
 
 
 def add(_: argparse.ArgumentParser) -> None:
-    """Add no arguments, since the verb has none."""
+    """Add nothing, since the verb has no arguments."""
 
 
 def run(_: argparse.Namespace) -> int:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 _FIELD = re.compile(r"\s*([A-Za-z][\w/]*)(<=\d+)?(\[[^\]]*\])?\s+[A-Za-z]")
 _PRIMITIVE = re.compile(r"bool|byte|char|float(32|64)|u?int(8|16|32|64)|w?string")
 _DEEPEST = 20
-"""The maximum depth of nested types, because a damaged file could define a type that contains itself."""
+"""The maximum depth of nested types, because a type in a damaged file could contain itself."""
 
 
 def lines(name: str, *, comments: bool = True, nested_comments: bool = False, depth: int = 0) -> Iterator[str]:
@@ -39,7 +39,7 @@ def lines(name: str, *, comments: bool = True, nested_comments: bool = False, de
 
 
 def _strip_comment(line: str) -> str:
-    """Return the line as `--no-comments` prints it. Like the real `ros2`, keep a # that is followed by a space."""
+    """Return the line as `--no-comments` prints it. Like the real `ros2`, keep a # that a space follows."""
     before = _without_comment(line)
     behind = line[len(before) :]
     if not before.strip() or not behind:
@@ -57,7 +57,7 @@ def _type_of(line: str, package: str) -> str | None:
 
 
 def _without_comment(line: str) -> str:
-    """Return the line without its comment. A # inside the default value of a string does not begin a comment."""
+    """Return the line without its comment. A # in the default value of a string does not start a comment."""
     quote = ""
     for place, char in enumerate(line):
         if quote:

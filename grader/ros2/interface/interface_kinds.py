@@ -17,5 +17,5 @@ def add_kinds(parser: argparse.ArgumentParser) -> None:
 
 
 def chosen(args: argparse.Namespace) -> list[str]:
-    """Return the kinds that the user asked for ("msg", "srv", "action"). An empty list means all kinds."""
+    """Return the selected kinds ("msg", "srv", "action"). An empty list means all kinds."""
     return [kind for kind, name in _NAMES.items() if getattr(args, f"only_{name}")]

@@ -1,4 +1,4 @@
-"""The verb `interface list`: all interfaces, grouped by kind."""
+"""The verb `interface list`: print all interfaces, grouped by kind."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The verb `interface package`: the interfaces of one package."""
+"""The verb `interface package`: print the interfaces of one package."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the interfaces, sorted. For a package without interfaces, print nothing."""
+    """Print the interfaces, sorted. Print nothing for a package without interfaces."""
     kinds = chosen(args) or index.KINDS
     for name in index.interfaces(args.package_name):
         if name.split("/")[1] in kinds:

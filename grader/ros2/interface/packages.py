@@ -1,4 +1,4 @@
-"""The verb `interface packages`: the packages that have interfaces."""
+"""The verb `interface packages`: print the packages that have interfaces."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the packages, sorted. If several kinds are given, only the first of them has an effect."""
+    """Print the packages, sorted. If several kinds are given, use only the first one."""
     kinds = chosen(args)[:1]
     for package in index.interface_packages():
         if not kinds or any(name.split("/")[1] in kinds for name in index.interfaces(package)):

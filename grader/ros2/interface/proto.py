@@ -1,4 +1,4 @@
-"""The verb `interface proto`: a template with all fields of an interface and their default values."""
+"""The verb `interface proto`: print a template with all fields of an interface and their default values."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ if TYPE_CHECKING:
     import argparse
 
 _PARTS = {"msg": "", "srv": "Request", "action": "Goal"}
-"""For each kind of interface, the part that a user fills in."""
+"""The part of each kind of interface that a user fills in."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     completes(parser.add_argument("type", help="full name, as in geometry_msgs/msg/Twist"), interfaces)
-    parser.add_argument("--no-quotes", action="store_true", help="print it without quotes around it")
+    parser.add_argument("--no-quotes", action="store_true", help="print the template without quotes")
 
 
 def run(args: argparse.Namespace) -> int:

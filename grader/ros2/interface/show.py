@@ -1,4 +1,4 @@
-"""The verb `interface show`: the definition of an interface."""
+"""The verb `interface show`: print the definition of an interface."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ class _FromInput(argparse.Action):
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     comments = parser.add_mutually_exclusive_group()
-    comments.add_argument("--all-comments", action="store_true", help="print the comments of nested types too")
-    comments.add_argument("--no-comments", action="store_true", help="print neither comments nor empty lines")
+    comments.add_argument("--all-comments", action="store_true", help="also print the comments of nested types")
+    comments.add_argument("--no-comments", action="store_true", help="do not print comments and empty lines")
     kind = parser.add_argument(
-        "type", action=_FromInput, help="full name, as in geometry_msgs/msg/Twist; - reads it from standard input"
+        "type", action=_FromInput, help="full name, as in geometry_msgs/msg/Twist; - reads the type from standard input"
     )
     completes(kind, interfaces)
 

@@ -1,4 +1,4 @@
-"""The verb `lifecycle get`: the state of a lifecycle node, or of all lifecycle nodes."""
+"""The verb `lifecycle get`: print the state of a lifecycle node, or of all lifecycle nodes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    text = "name of the node; without it, all nodes are asked"
+    text = "name of the node (default: all nodes)"
     lifecycle_client.add_node(parser, "?", text)
 
 
@@ -22,7 +22,7 @@ def run(args: argparse.Namespace) -> int:
     """Print the state.
 
     Raises:
-        Ros2Error: there is no such node, or it does not respond.
+        Ros2Error: the node does not exist or does not respond.
     """
     from grader.graph.discovery import cli_node
 

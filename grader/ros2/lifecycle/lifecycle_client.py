@@ -19,7 +19,7 @@ _GET_STATE = "lifecycle_msgs/srv/GetState"
 
 
 def add_node(parser: argparse.ArgumentParser, nargs: str | None = None, text: str = "name of the node") -> None:
-    """Add the arguments of a verb that concerns one node."""
+    """Add the arguments of a verb for one node."""
     add_look(parser)
     completes(
         parser.add_argument("node_name", nargs=nargs, help=text),
@@ -38,10 +38,10 @@ def lifecycle_nodes(args: argparse.Namespace, *, hidden: bool) -> list[str]:
 
 
 def chosen(args: argparse.Namespace) -> str:
-    """Return the full name of the node that the user asked for.
+    """Return the full name of the node on the command line.
 
     Raises:
-        Ros2Error: there is no lifecycle node with this name.
+        Ros2Error: no lifecycle node has this name.
     """
     name = args.node_name if args.node_name.startswith("/") else f"/{args.node_name}"
     known = lifecycle_nodes(args, hidden=args.include_hidden_nodes)
@@ -51,7 +51,7 @@ def chosen(args: argparse.Namespace) -> str:
 
 
 def call(node: Node, kind: str, service: str, request: Any = None) -> Any:  # noqa: ANN401
-    """Call a service with a type from lifecycle_msgs, and return the response.
+    """Call a service whose type is in lifecycle_msgs, and return the response.
 
     Raises:
         Ros2Error: the node does not respond.

@@ -1,4 +1,4 @@
-"""The verb `lifecycle list`: the transitions that a node can make."""
+"""The verb `lifecycle list`: print the available transitions of a node."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def run(args: argparse.Namespace) -> int:
     """Print the transitions.
 
     Raises:
-        Ros2Error: there is no such node, or it does not respond.
+        Ros2Error: the node does not exist or does not respond.
     """
     from grader.graph.discovery import cli_node
 

@@ -22,7 +22,7 @@ def run(args: argparse.Namespace) -> int:
     """Request the transition, and print whether it was successful.
 
     Raises:
-        Ros2Error: there is no such node, it does not respond, or the transition is not available now.
+        Ros2Error: the node does not exist or does not respond, or the transition is not available.
     """
     from grader.graph.discovery import cli_node
 

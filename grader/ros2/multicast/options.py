@@ -1,4 +1,4 @@
-"""The options for the multicast group and the port, which both verbs of `ros2 multicast` have."""
+"""The options of both verbs of `ros2 multicast`: the multicast group and the port."""
 
 from __future__ import annotations
 

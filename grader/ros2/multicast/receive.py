@@ -24,7 +24,7 @@ def run(args: argparse.Namespace) -> int:
     """Wait for a packet and print it.
 
     Raises:
-        Ros2Error: the network does not allow listening.
+        Ros2Error: the port cannot be opened.
     """
     print("Waiting for UDP multicast datagram...", flush=True)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM, socket.IPPROTO_UDP) as receiver:

@@ -1,4 +1,4 @@
-"""The verb `node info`: what a node offers and uses."""
+"""The verb `node info`: print the topics, services and actions of a node."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def run(args: argparse.Namespace) -> int:
     """Print the topics, services and actions of the node.
 
     Raises:
-        Ros2Error: there is no such node.
+        Ros2Error: the node does not exist.
     """
     name = args.node_name
     graph = look(args)
@@ -47,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
         ("Action Clients", node.action_clients),
     ):
         print(f"  {title}:")
-        # An empty line follows an empty section.
+        # The real ros2 prints an empty line after an empty section.
         visible = shown(found, all_of_them=args.include_hidden)
         print("\n".join(f"    {one}: {', '.join(types)}" for one, types in visible))
     return 0

@@ -1,4 +1,4 @@
-"""The verb `node list`: the names of all nodes."""
+"""The verb `node list`: print the names of all nodes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
     parser.add_argument("-a", "--all", action="store_true", help="include hidden nodes, whose names start with _")
-    parser.add_argument("-c", "--count-nodes", action="store_true", help="print only how many nodes there are")
+    parser.add_argument("-c", "--count-nodes", action="store_true", help="print only the number of nodes")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -1,4 +1,4 @@
-"""The verb `param delete`: delete a parameter, if the node allows it."""
+"""The verb `param delete`: delete a parameter if the node allows this."""
 
 from __future__ import annotations
 

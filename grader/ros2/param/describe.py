@@ -1,4 +1,4 @@
-"""The verb `param describe`: the descriptions of parameters and their allowed values."""
+"""The verb `param describe`: print the descriptions of parameters and their allowed values."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the descriptions. Return 0 even if the node does not know a parameter and therefore describes none."""
+    """Print the descriptions. Return 0 even if the node has not declared one of the parameters and describes none."""
     from grader.ros2.param.parameter_client import parameters_of
 
     with parameters_of(args) as parameters:

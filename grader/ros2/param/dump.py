@@ -1,4 +1,4 @@
-"""The verb `param dump`: all parameters of a node as a parameter file."""
+"""The verb `param dump`: print all parameters of a node as a parameter file."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def dumped(node_name: str, values: dict[str, Any]) -> str:
-    """Return the values in the format of a parameter file. Each dot in a name begins a new level."""
+    """Return the values in the format of a parameter file. Each dot in a name starts a new level."""
     import yaml
 
     tree: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""The verb `param get`: the value of a parameter."""
+"""The verb `param get`: print the value of a parameter."""
 
 from __future__ import annotations
 

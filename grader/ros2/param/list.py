@@ -1,4 +1,4 @@
-"""The verb `param list`: the names of the parameters of one node or of all nodes."""
+"""The verb `param list`: print the names of the parameters of one node or of all nodes."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
-    completes(parser.add_argument("node_name", nargs="?", help="name of a node; without it: all nodes"), nodes)
+    completes(parser.add_argument("node_name", nargs="?", help="name of a node (default: all nodes)"), nodes)
     parser.add_argument(
         "--filter", nargs=1, help="only parameters whose names begin with a match of this regular expression"
     )
     parser.add_argument("--include-hidden-nodes", action="store_true", help="include nodes whose names start with _")
-    parser.add_argument("--param-prefixes", nargs="+", default=[], help="only parameters below these prefixes")
-    parser.add_argument("--param-type", action="store_true", help="print the types too")
+    parser.add_argument("--param-prefixes", nargs="+", default=[], help="only parameters with these prefixes")
+    parser.add_argument("--param-type", action="store_true", help="also print the types")
 
 
 def run(args: argparse.Namespace) -> int:
     """Print the names of the parameters, sorted.
 
     Raises:
-        Ros2Error: there is no such node.
+        Ros2Error: the node does not exist.
     """
     from grader.graph.discovery import cli_node, settle
     from grader.ros2.param.parameter_client import Parameters, parameters_of, with_parameters

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_node(parser)
-    parser.add_argument("parameter_file", help="a file as `ros2 param dump` prints it")
+    parser.add_argument("parameter_file", help="a file in the format of `ros2 param dump`")
     parser.add_argument(
-        "--no-use-wildcard", action="store_true", help="ignore the parameters under '/**', which are for every node"
+        "--no-use-wildcard", action="store_true", help="ignore the parameters under '/**', which apply to every node"
     )
     add_timeout(parser)
 

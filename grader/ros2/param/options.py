@@ -1,4 +1,4 @@
-"""Options that the verbs of `param` share."""
+"""Options of several verbs of `param`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def add_node(parser: argparse.ArgumentParser) -> None:
 
 
 def add_timeout(parser: argparse.ArgumentParser) -> None:
-    """Add the option that sets how long to wait for the node."""
+    """Add the option for the maximum time to wait for the node."""
     parser.add_argument(
         "--timeout", metavar="N", type=int, default=1, help="wait N seconds for the node to appear (default: 1)"
     )

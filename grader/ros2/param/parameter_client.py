@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 ANSWER_S = 5.0
-"""How long to wait for a response from a busy node."""
+"""The maximum time to wait for a response from a busy node (s)."""
 _POLL_S = 0.02
 _TYPES = {
     ParameterType.PARAMETER_NOT_SET: ("not set", "Parameter not set."),
@@ -41,7 +41,7 @@ class Parameters:
     """The parameters of one node. Every method raises Ros2Error if the node does not respond."""
 
     def __init__(self, node: Node, node_name: str) -> None:
-        """Access the parameters of the node with the full name `node_name`, using clients of `node`."""
+        """Access the parameters of the node with the full name `node_name`, through clients of `node`."""
         self._node = node
         self.node_name = node_name
 
@@ -53,35 +53,35 @@ class Parameters:
                 raise Ros2Error(message)
             future = client.call_async(request)
             if not spin_until(self._node, future.done, ANSWER_S):
-                message = f"The node {self.node_name} did not answer within {ANSWER_S:.0f} s: is it busy?"
+                message = f"The node {self.node_name} did not respond within {ANSWER_S:.0f} s. It may be busy."
                 raise Ros2Error(message)
             return future.result()
         finally:
             self._node.destroy_client(client)
 
     def names(self, prefixes: Sequence[str] = ()) -> list[str]:
-        """Return the sorted names of the parameters, or only of those under `prefixes` if there are any."""
+        """Return the sorted names of the parameters, or only of those with `prefixes` if any are given."""
         answer = self._call(ListParameters, "list_parameters", ListParameters.Request(prefixes=list(prefixes)))
         return sorted(answer.result.names)
 
     def get(self, name: str) -> ParameterValue | None:
-        """Return the value of a parameter, or None if the node does not know the name."""
+        """Return the value of a parameter, or None if the node has not declared the parameter."""
         found = self._call(GetParameters, "get_parameters", GetParameters.Request(names=[name])).values
         return found[0] if found else None
 
     def all_values(self) -> dict[str, Any]:
-        """Return all values, with the names as keys."""
+        """Return all values by name."""
         names = self.names()
         found = self._call(GetParameters, "get_parameters", GetParameters.Request(names=names)).values
         return {name: parameter_value_to_python(value) for name, value in zip(names, found, strict=False)}
 
     def set(self, parameters: Sequence[Parameter]) -> list[Any]:
-        """Set parameters; return a SetParametersResult for each."""
+        """Set parameters. Return a SetParametersResult for each."""
         request = SetParameters.Request(parameters=list(parameters))
         return list(self._call(SetParameters, "set_parameters", request).results)
 
     def describe(self, names: Sequence[str]) -> list[Any]:
-        """Return the descriptor of each parameter, or an empty list if the node does not know one of the names."""
+        """Return the descriptor of each parameter, or an empty list if the node has not declared one of them."""
         request = DescribeParameters.Request(names=list(names))
         return list(self._call(DescribeParameters, "describe_parameters", request).descriptors)
 
@@ -91,7 +91,7 @@ def parameters_of(args: argparse.Namespace) -> Iterator[Parameters]:
     """Create a node, and yield the parameters of the node `args.node_name`.
 
     Raises:
-        Ros2Error: there is no such node.
+        Ros2Error: the node does not exist.
     """
     with cli_node(use_sim_time=getattr(args, "use_sim_time", False)) as node:
         yield Parameters(node, _found(node, args))
@@ -122,7 +122,7 @@ def with_parameters(node: Node, *, all_of_them: bool) -> list[str]:
 
 
 def type_name(kind: int) -> str:
-    """Return the type of a parameter in words, such as "integer" or "string array"."""
+    """Return the name of a parameter type, such as "integer" or "string array"."""
     return _TYPES.get(kind, ("unknown", ""))[0]
 
 
@@ -136,5 +136,5 @@ def value_text(value: ParameterValue, *, hide_type: bool) -> str:
 
 
 def not_set(name: str) -> Parameter:
-    """Return a Parameter that deletes the parameter with this name when it is set."""
+    """Return a Parameter that deletes the parameter of this name when it is set."""
     return Parameter(name=name, value=ParameterValue(type=ParameterType.PARAMETER_NOT_SET))

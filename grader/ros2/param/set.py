@@ -33,7 +33,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def value_of(text: str) -> Any:  # noqa: ANN401
-    """Convert a string in YAML to a ParameterValue.
+    """Convert a YAML string to a ParameterValue.
 
     Raises:
         Ros2Error: the string is not valid YAML.
@@ -49,7 +49,7 @@ def value_of(text: str) -> Any:  # noqa: ANN401
 
 
 def report(parameters: Any, wanted: Any, done: str, failed: str) -> None:  # noqa: ANN401
-    """Set one parameter. Print `done`, or `failed` on standard error, followed by the reason that the node gives."""
+    """Set a parameter. Print `done`, or `failed` to standard error, followed by the node's reason."""
     result = parameters.set([wanted])[0]
     reason = f": {result.reason}" if result.reason else ""
     if result.successful:

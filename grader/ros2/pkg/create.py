@@ -34,19 +34,19 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--license",
         default="TODO: License declaration",
-        help="any string; for the licenses that '?' lists, a LICENSE file is created",
+        help="any string; a LICENSE file is created for the licenses that '?' lists",
     )
     parser.add_argument("--destination-directory", default=".", help="create the package in this directory")
     parser.add_argument(
         "--build-type",
         default="ament_cmake",
         choices=["cmake", "ament_cmake", "ament_python"],
-        help="ament_python for a package in Python (default: ament_cmake)",
+        help="use ament_python for a Python package (default: ament_cmake)",
     )
     needed = parser.add_argument("--dependencies", nargs="+", default=[], help="packages that the new package uses")
     completes(needed, packages)
-    parser.add_argument("--maintainer-email", help="default: the address from git's settings")
-    parser.add_argument("--maintainer-name", default=getpass.getuser(), help="default: the user's name")
+    parser.add_argument("--maintainer-email", help="default: the address in git's settings")
+    parser.add_argument("--maintainer-name", default=getpass.getuser(), help="default: the user name")
     parser.add_argument("--node-name", help="also create an executable with this name")
     parser.add_argument("--library-name", help="also create a library with this name")
 
@@ -69,7 +69,7 @@ def run(args: argparse.Namespace) -> int:
         package_files.write(wanted)
         licensed = licenses.write(wanted.license, wanted.folder / "LICENSE", wanted.maintainer)
     except BrokenPipeError:
-        raise  # the program that reads the output has exited, and the folder is not at fault
+        raise  # the reader of the output has exited, so this is not an error of the folder
     except OSError as error:
         message = f"\nAborted!\n{error.filename or wanted.folder} could not be written: {error.strerror}"
         raise Ros2Error(message) from error
@@ -81,7 +81,10 @@ def run(args: argparse.Namespace) -> int:
         )
     sys.stdout.flush()
     if wanted.license in licenses.KNOWN and not licensed:
-        print(f"The text of the license '{wanted.license}' is not on this machine: no LICENSE file.", file=sys.stderr)
+        print(
+            f"This machine does not have the text of the license '{wanted.license}', so no LICENSE file was created.",
+            file=sys.stderr,
+        )
     for advice in _advice(wanted):
         print(advice, file=sys.stderr)
     return 0
@@ -127,19 +130,19 @@ def _check(wanted: NewPackage) -> None:
 
 
 def _advice(wanted: NewPackage) -> list[str]:
-    """Return warnings about choices that will cause problems later."""
+    """Return warnings about choices that will cause problems."""
     advice = []
     names = (("package", wanted.name), ("node", wanted.node), ("library", wanted.library))
     odd = [f"{what} name '{value}'" for what, value in names if value is not None and not _PYTHON_NAME.fullmatch(value)]
     if odd:
         advice.append(
-            f"The {' and the '.join(odd)} will cause trouble: use lower-case letters, digits and _, a letter first. "
+            f"The {' and the '.join(odd)} will cause problems. Use lower-case letters, digits and _, first a letter. "
             "Python cannot import other names, and colcon warns about them."
         )
     if wanted.build_type != "ament_python":
         advice.append(
             f"A package of build type {wanted.build_type} is written in C++. To build it, you need CMake and a C++ "
-            "compiler, and a node in it needs rclcpp, which is part of a full ROS 2. For Python use --build-type "
+            "compiler. A node in C++ also needs rclcpp, which is part of a full ROS 2. For Python, use --build-type "
             "ament_python."
         )
     return advice

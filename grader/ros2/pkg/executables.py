@@ -1,4 +1,4 @@
-"""The verb `pkg executables`: the executables in all packages or in one package that `ros2 run` can start."""
+"""The verb `pkg executables`: print the executables that `ros2 run` can start, in all packages or in one package."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    completes(parser.add_argument("package_name", nargs="?", help="name of a package; without it: all"), packages)
+    completes(parser.add_argument("package_name", nargs="?", help="name of a package (default: all)"), packages)
     parser.add_argument("--full-path", action="store_true", help="print paths instead of names")
 
 

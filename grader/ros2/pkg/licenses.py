@@ -1,4 +1,4 @@
-"""The licenses that `pkg create` knows by name, and their texts if they are available on this machine."""
+"""The licenses that `pkg create` accepts by name, and their texts if this machine has them."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ KNOWN = (
     *("Apache-2.0", "BSL-1.0", "BSD-2.0", "BSD-2-Clause", "BSD-3-Clause"),
     *("GPL-3.0-only", "LGPL-3.0-only", "MIT", "MIT-0"),
 )
-"""The names that the tools of ROS 2 know."""
+"""The license names of the ROS 2 tools."""
 _TEMPLATES = Path(__file__).parents[1] / "templates"
 _SYSTEM = Path("/usr/share/common-licenses")
 _SYSTEMS_NAMES = {"Apache-2.0": "Apache-2.0", "GPL-3.0-only": "GPL-3", "LGPL-3.0-only": "LGPL-3"}
 
 
 def write(name: str, file: Path, holder: str) -> bool:
-    """Write the text of a license; return whether the text is available on this machine."""
+    """Write the text of a license. Return whether this machine has the text."""
     system = _SYSTEM / _SYSTEMS_NAMES.get(name, "")
     own = _TEMPLATES / f"{name}.in"
     if name in _SYSTEMS_NAMES and system.is_file():

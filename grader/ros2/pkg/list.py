@@ -1,4 +1,4 @@
-"""The verb `pkg list`: all packages."""
+"""The verb `pkg list`: print all packages."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def add(_: argparse.ArgumentParser) -> None:
-    """Add no arguments, since the verb has none."""
+    """Add nothing, since the verb has no arguments."""
 
 
 def run(_: argparse.Namespace) -> int:

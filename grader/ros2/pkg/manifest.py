@@ -1,4 +1,4 @@
-"""The verb `pkg xml`: the manifest of a package (package.xml), or one of its tags."""
+"""The verb `pkg xml`: print the manifest of a package (package.xml), or one of its tags."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def run(args: argparse.Namespace) -> int:
     """Print the manifest or the tag.
 
     Raises:
-        Ros2Error: there is no such package or tag, or the manifest cannot be read.
+        Ros2Error: the package or the tag does not exist, or the manifest cannot be read.
     """
     from xml.etree import ElementTree as ET
 

@@ -1,4 +1,4 @@
-"""The package that `pkg create` is to create."""
+"""The properties of the package that `pkg create` creates."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class NewPackage:
     name: str
     folder: Path
     shown: str
-    """The folder as it appears in messages, for example "./my_package"."""
+    """The folder in messages, for example "./my_package"."""
     build_type: str
     package_format: int
     description: str

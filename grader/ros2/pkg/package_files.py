@@ -1,4 +1,4 @@
-"""Create the files of a new package from templates/, and report each file on standard output."""
+"""Create the files of a new package from templates/, and print the name of each file."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class _Files:
 
 
 def _macro(name: str) -> str:
-    """Convert a name to the name of a C++ macro."""
+    """Convert a name to a C++ macro name."""
     return "".join(char if char.isalnum() else "_" for char in name).upper()
 
 
@@ -110,7 +110,7 @@ def _write_cmake(wanted: NewPackage, made: _Files) -> None:
 
 
 def _cmake_lists(wanted: NewPackage) -> str:
-    """Return the content of CMakeLists.txt, with its parts in the order that CMake requires."""
+    """Return the content of CMakeLists.txt. The parts are in the order that CMake requires."""
     ament = wanted.build_type == "ament_cmake"
     tools = (["ament_cmake", "ament_cmake_ros"] if wanted.library else ["ament_cmake"]) if ament else []
     filled = {

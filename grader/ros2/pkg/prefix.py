@@ -1,4 +1,4 @@
-"""The verb `pkg prefix`: the folder in which a package is installed."""
+"""The verb `pkg prefix`: print the folder in which a package is installed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     completes(parser.add_argument("package_name", help="name of the package"), packages)
-    parser.add_argument("--share", action="store_true", help="print its share folder instead")
+    parser.add_argument("--share", action="store_true", help="print the share folder of the package instead")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -25,11 +25,11 @@ def add(parser: argparse.ArgumentParser) -> None:
     completes(parser.add_argument("service_type", help="its type, as in turtlesim/srv/Spawn"), service_types)
     source = parser.add_mutually_exclusive_group()
     given = source.add_argument(
-        "values", nargs="?", default="{}", help='the request, as in "{x: 2.0}"; without it all values are zero'
+        "values", nargs="?", default="{}", help='the request, as in "{x: 2.0}"; by default, all values are zero'
     )
     completes(given, prototype("service_type", "srv", "Request"))
     source.add_argument("--stdin", action="store_true", help="read the request from standard input")
-    parser.add_argument("-r", "--rate", metavar="N", type=float, help="call again and again, N times per second")
+    parser.add_argument("-r", "--rate", metavar="N", type=float, help="call the service repeatedly, N times per second")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -72,9 +72,9 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _say_why(node: Node, name: str, requested: str) -> None:
-    """Print a hint if there is no such service, because its type or its name may be wrong."""
+    """Print a hint if the service does not exist with this type, because the type or the name may be wrong."""
     found: dict[str, Any] = {name: types for name, types in node.get_service_names_and_types() if not hidden(name)}
-    # Our own client also announces a type.
+    # Our client also announces a type.
     others = [kind for kind in found.pop(name, []) if kind != requested]
     hint = f"The service {name} has the type {', '.join(others)}." if others else did_you_mean(name, found)
     if hint:

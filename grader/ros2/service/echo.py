@@ -1,4 +1,4 @@
-"""The verb `service echo`: print the requests and responses of a service for which introspection is enabled."""
+"""The verb `service echo`: print the requests and responses of a service with introspection enabled."""
 
 from __future__ import annotations
 
@@ -22,8 +22,12 @@ _EVENTS = ("REQUEST_SENT", "REQUEST_RECEIVED", "RESPONSE_SENT", "RESPONSE_RECEIV
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     completes(parser.add_argument("service_name", help="name of the service, as in /spawn"), services)
-    completes(parser.add_argument("service_type", nargs="?", help="its type, if nobody offers it yet"), service_types)
-    parser.add_argument("--csv", action="store_true", help="print each event on one line, with commas between")
+    completes(
+        parser.add_argument("service_type", nargs="?", help="its type, required if no server is running"), service_types
+    )
+    parser.add_argument(
+        "--csv", action="store_true", help="print each event on one line, with commas between the values"
+    )
     add_form(parser)
 
 

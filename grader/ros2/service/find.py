@@ -1,4 +1,4 @@
-"""The verb `service find`: the services of a type."""
+"""The verb `service find`: find the services of a type."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     completes(parser.add_argument("service_type", help="full type, as in std_srvs/srv/Empty"), all_service_types)
-    parser.add_argument("-c", "--count-services", action="store_true", help="print only how many services there are")
+    parser.add_argument("-c", "--count-services", action="store_true", help="print only the number of services")
     parser.add_argument("--include-hidden-services", action="store_true", help="include hidden services")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the sorted names of the services. Return 0 even if there are none."""
+    """Print the sorted names of the services. Return 0 even if no service has the type."""
     found = shown(look(args).services, all_of_them=args.include_hidden_services)
     names = [name for name, types in found if args.service_type in types]
     print(len(names)) if args.count_services else [print(name) for name in names]

@@ -1,4 +1,4 @@
-"""The verb `service info`: the type of a service, and how many nodes offer and use it."""
+"""The verb `service info`: print the type of a service, and the numbers of its clients and servers."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def run(args: argparse.Namespace) -> int:
     """Print the type and the counts.
 
     Raises:
-        Ros2Error: there is no such service.
+        Ros2Error: the service does not exist.
     """
     graph = look(args)
     name = args.service_name

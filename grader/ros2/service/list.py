@@ -1,4 +1,4 @@
-"""The verb `service list`: the names of all services."""
+"""The verb `service list`: print the names of all services."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
-    parser.add_argument("-t", "--show-types", action="store_true", help="print the type of each service too")
-    parser.add_argument("-c", "--count-services", action="store_true", help="print only how many services there are")
+    parser.add_argument("-t", "--show-types", action="store_true", help="also print the type of each service")
+    parser.add_argument("-c", "--count-services", action="store_true", help="print only the number of services")
     parser.add_argument("--include-hidden-services", action="store_true", help="include hidden services")
 
 

@@ -1,4 +1,4 @@
-"""The verb `service type`: the type of a service."""
+"""The verb `service type`: print the type of a service."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the type. If the nodes disagree about it, print each type on a separate line.
+    """Print the type. If nodes use different types, print each type on a separate line.
 
     Raises:
-        Ros2Error: there is no such service.
+        Ros2Error: the service does not exist.
     """
     graph = look(args)
     types = types_of(tuple(shown(graph.services, all_of_them=args.include_hidden_services)), args.service_name)

@@ -1,4 +1,4 @@
-"""The verb `topic bw`: how many bytes arrive on a topic each second."""
+"""The verb `topic bw`: print the bandwidth of a topic in bytes per second."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Bandwidth:
         )
 
     def _amount(self, value: float) -> str:
-        """Return a value in the unit that is suitable for `per_second`, so that all values have the same unit."""
+        """Return a value in the unit of `per_second`, so that all values have the same unit."""
         if self.per_second < 1000:
             return f"{value:.0f} B"
         if self.per_second < 1_000_000:
@@ -61,13 +61,13 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=positive_int,
         default=WINDOW,
         metavar="WINDOW",
-        help=f"measure over this many messages at most (default: {WINDOW})",
+        help=f"maximum number of messages in a measurement (default: {WINDOW})",
     )
     add_spin(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the bandwidth every second, until Ctrl-C."""
+    """Print the bandwidth every second until Ctrl-C."""
     import rclpy
     from rclpy.qos import qos_profile_sensor_data
 

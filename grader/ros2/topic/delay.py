@@ -1,4 +1,4 @@
-"""The verb `topic delay`: the age of messages when they arrive, according to the time stamp in their header."""
+"""The verb `topic delay`: print the delay between the time stamp in the header of messages and their arrival."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PRINTED_EVERY_S = 1.0
 
 
 def summary(delays_ns: Collection[int]) -> str:
-    """Return the statistics of the delays (ns) as text. There must be at least one delay."""
+    """Return the statistics of one or more delays (ns) as text."""
     mean = sum(delays_ns) / len(delays_ns)
     deviation = math.sqrt(math.fsum((delay - mean) ** 2 for delay in delays_ns) / len(delays_ns))
     return (
@@ -29,7 +29,7 @@ def summary(delays_ns: Collection[int]) -> str:
 
 
 class Delays:
-    """The delays of the last messages, measured with a clock that may be simulated and may be set back."""
+    """The delays of the last messages, measured with a clock that may be simulated and may jump back."""
 
     def __init__(self, window: int) -> None:
         self._delays_ns: deque[int] = deque(maxlen=window)
@@ -51,7 +51,7 @@ class Delays:
         self._news = True
 
     def report(self) -> str | None:
-        """Return the text to print every second, or None if there are no delays yet."""
+        """Return the text to print every second, or None before the first delay."""
         if not self._delays_ns:
             return None
         news, self._news = self._news, False
@@ -67,13 +67,13 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=positive_int,
         default=WINDOW,
         metavar="WINDOW",
-        help=f"measure over this many messages at most (default: {WINDOW})",
+        help=f"maximum number of messages in a measurement (default: {WINDOW})",
     )
     add_spin(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the delay every second, until Ctrl-C.
+    """Print the delay every second until Ctrl-C.
 
     Raises:
         Ros2Error: the messages have no header.

@@ -1,4 +1,4 @@
-"""The verb `topic echo`: print the messages that arrive on a topic."""
+"""The verb `topic echo`: print the messages on a topic."""
 
 from __future__ import annotations
 
@@ -24,25 +24,23 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
     completes(parser.add_argument("topic_name", help="name of the topic, as in /turtle1/pose"), topics)
-    kind = parser.add_argument("message_type", nargs="?", help="its type, if nobody publishes yet")
+    kind = parser.add_argument("message_type", nargs="?", help="its type, required if no publisher is running")
     completes(kind, topic_types)
     qos.add_qos(parser, "sensor_data")
     parser.add_argument(
         "--csv", action="store_true", help="print each message on one line, with commas between the values"
     )
-    parser.add_argument(
-        "--field", action="append", help="print only this part, as in linear.x; may be given several times"
-    )
+    parser.add_argument("--field", action="append", help="print only this part, as in linear.x; may be repeated")
     add_form(parser)
     parser.add_argument("--no-lost-messages", action="store_true", help="do not report lost messages")
     parser.add_argument("--raw", action="store_true", help="print the bytes of the messages")
     parser.add_argument(
         "--filter", dest="filter_expr", help="print only the messages m for which this Python expression is true"
     )
-    parser.add_argument("--once", action="store_true", help="print one message and end")
-    parser.add_argument("--timeout", metavar="N", type=positive_float, help="end after N seconds")
+    parser.add_argument("--once", action="store_true", help="print one message and exit")
+    parser.add_argument("--timeout", metavar="N", type=positive_float, help="exit after N seconds")
     parser.add_argument(
-        "--include-message-info", "-i", action="store_true", help="print time stamps and sequence numbers too"
+        "--include-message-info", "-i", action="store_true", help="also print time stamps and sequence numbers"
     )
 
 
@@ -50,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
     """Print messages until Ctrl-C, or until a limit set by the options is reached.
 
     Raises:
-        Ros2Error: the type of the topic cannot be determined, or the type has no such field.
+        Ros2Error: the type of the topic cannot be determined, or the type does not have the field.
     """
     from grader.graph.discovery import cli_node, spin_until
     from grader.ros2.topic import topic_lookup
@@ -111,7 +109,7 @@ def matching(expression: str) -> Callable[[Any], bool]:
 
 
 class Printer:
-    """Prints messages in the way that the options describe. `printed` is the number of messages printed so far."""
+    """Prints messages as specified by the options. `printed` is the number of printed messages."""
 
     def __init__(self, args: argparse.Namespace) -> None:
         self.printed = 0

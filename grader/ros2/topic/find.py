@@ -1,4 +1,4 @@
-"""The verb `topic find`: the topics of a type."""
+"""The verb `topic find`: find the topics of a type."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
     completes(parser.add_argument("topic_type", help="full type, as in geometry_msgs/msg/Twist"), message_types)
-    parser.add_argument("-c", "--count-topics", action="store_true", help="print only how many topics there are")
+    parser.add_argument("-c", "--count-topics", action="store_true", help="print only the number of topics")
     parser.add_argument("--include-hidden-topics", action="store_true", help="include hidden topics")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the sorted names of the topics. Return 0 even if there are none."""
+    """Print the sorted names of the topics. Return 0 even if no topic has the type."""
     found = shown(look(args).topics, all_of_them=args.include_hidden_topics)
     names = [name for name, types in found if args.topic_type in types]
     print(len(names)) if args.count_topics else [print(name) for name in names]

@@ -1,4 +1,4 @@
-"""The verb `topic hz`: the rate at which messages arrive."""
+"""The verb `topic hz`: print the rate of messages on a topic."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def rate(gaps_ns: Collection[int]) -> Rate:
 
 
 class Arrivals:
-    """The intervals between the last messages, measured with a clock that may be simulated and may be set back."""
+    """The intervals between the last messages, measured with a clock that may be simulated and may jump back."""
 
     def __init__(self, window: int) -> None:
         self._gaps_ns: deque[int] = deque(maxlen=window)
@@ -74,7 +74,7 @@ class Arrivals:
         return self._last_ns >= self._reported_ns + PRINTED_EVERY_NS
 
     def news(self) -> Rate:
-        """Return the current rate, and note that it has been reported. Call it only if `have_news` returns true."""
+        """Return the current rate, and record that it was reported. Call this only if `have_news` returns True."""
         self._reported_ns = self._last_ns
         return rate(self._gaps_ns)
 
@@ -88,7 +88,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=positive_int,
         default=WINDOW,
         metavar="WINDOW",
-        help=f"measure over this many messages at most (default: {WINDOW})",
+        help=f"maximum number of messages in a measurement (default: {WINDOW})",
     )
     parser.add_argument(
         "--filter",
@@ -96,14 +96,12 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="EXPR",
         help="count only the messages m for which this Python expression is true",
     )
-    parser.add_argument(
-        "--wall-time", action="store_true", help="measure in real time, even if there is simulated time"
-    )
+    parser.add_argument("--wall-time", action="store_true", help="measure in wall time, even if simulated time is used")
     add_spin(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the rate for every second in which messages arrived, until Ctrl-C."""
+    """Print the rate every second in which messages arrived, until Ctrl-C."""
     import rclpy
     from rclpy.clock import Clock
     from rclpy.clock_type import ClockType
@@ -125,7 +123,7 @@ def run(args: argparse.Namespace) -> int:
             if wanted is None or wanted(message):
                 arrivals.add(clock.now().nanoseconds)
 
-        # Without a filter, the content of the messages is irrelevant, and decoding them would take time.
+        # Without a filter, the messages do not have to be decoded.
         node.create_subscription(made, topic, count, qos_profile_sensor_data, raw=wanted is None)
         while rclpy.ok():
             spin_until(node, arrivals.have_news)

@@ -1,4 +1,4 @@
-"""The verb `topic info`: the type of a topic, and its publishers and subscribers."""
+"""The verb `topic info`: print the type of a topic, and its publishers and subscriptions."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the type, and the publishers and subscribers.
+    """Print the type, the publishers and the subscriptions.
 
     Raises:
-        Ros2Error: there is no such topic.
+        Ros2Error: the topic does not exist.
     """
     graph = look(args)
     name = args.topic_name

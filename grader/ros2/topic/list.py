@@ -1,4 +1,4 @@
-"""The verb `topic list`: the names of all topics."""
+"""The verb `topic list`: print the names of all topics."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
-    parser.add_argument("-t", "--show-types", action="store_true", help="print the type of each topic too")
-    parser.add_argument("-c", "--count-topics", action="store_true", help="print only how many topics there are")
+    parser.add_argument("-t", "--show-types", action="store_true", help="also print the type of each topic")
+    parser.add_argument("-c", "--count-topics", action="store_true", help="print only the number of topics")
     parser.add_argument("--include-hidden-topics", action="store_true", help="include hidden topics")
     parser.add_argument(
-        "-v", "--verbose", action="store_true", help="print how many publishers and subscribers each topic has"
+        "-v", "--verbose", action="store_true", help="print the numbers of publishers and subscribers of each topic"
     )
 
 

@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 _REPORTED_EVERY_S = 1.0
 _ACKNOWLEDGED_S = 1.0
-"""The maximum wait for acknowledgements. It is short, because Ctrl-C has no effect during the wait."""
+"""The maximum time to wait for acknowledgements (s). It is short, because Ctrl-C has no effect during the wait."""
 _POLL_S = 0.01
 
 
 def nonnegative_int(text: str) -> int:
-    """Convert an argument to a non-negative integer. The error message of argparse contains this function's name."""
+    """Convert an argument to a non-negative integer. argparse prints the name of this function in an error message."""
     value = int(text)
     if value < 0:
         raise ValueError
@@ -38,7 +38,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     completes(parser.add_argument("message_type", help="its type, as in geometry_msgs/msg/Twist"), topic_types)
     source = parser.add_mutually_exclusive_group()
     given = source.add_argument(
-        "values", nargs="?", default="{}", help='the values, as in "{linear: {x: 2.0}}"; without them all are zero'
+        "values", nargs="?", default="{}", help='the values, as in "{linear: {x: 2.0}}"; by default, all are zero'
     )
     completes(given, prototype("message_type", "msg"))
     source.add_argument("--stdin", action="store_true", help="read the values from standard input")
@@ -49,16 +49,20 @@ def add(parser: argparse.ArgumentParser) -> None:
         "-p", "--print", metavar="N", type=int, default=1, help="print only every N-th message (default: 1)"
     )
     times = parser.add_mutually_exclusive_group()
-    times.add_argument("-1", "--once", action="store_true", help="publish one message and end")
-    times.add_argument("-t", "--times", type=nonnegative_int, default=0, help="publish this many messages and end")
+    times.add_argument("-1", "--once", action="store_true", help="publish one message and exit")
+    times.add_argument(
+        "-t", "--times", type=nonnegative_int, default=0, help="publish this number of messages and exit"
+    )
     parser.add_argument(
         "-w",
         "--wait-matching-subscriptions",
         type=nonnegative_int,
-        help="wait for this many subscriptions first (default: 1 with --once or --times, else 0)",
+        help="wait for this number of subscriptions first (default: 1 with --once or --times, or else 0)",
     )
     parser.add_argument(
-        "--max-wait-time-secs", type=positive_float, help="wait at most this many seconds for them (default: for ever)"
+        "--max-wait-time-secs",
+        type=positive_float,
+        help="wait at most this number of seconds for subscriptions (default: forever)",
     )
     parser.add_argument(
         "--keep-alive",
@@ -73,7 +77,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Publish until Ctrl-C, or as many times as the options specify.
+    """Publish until Ctrl-C, or the number of times that the options specify.
 
     Raises:
         Ros2Error: the type is not installed, a value does not match its field, or the subscriptions do not appear.
@@ -97,7 +101,7 @@ def run(args: argparse.Namespace) -> int:
         except Exception as error:
             wrong = f"The topic '{args.topic_name}' cannot be published on: {str(error).splitlines()[0]}"
             raise Ros2Error(wrong) from error
-        # Subscriptions that already exist should receive the first message, too.
+        # Existing subscriptions should also receive the first message.
         settle(node, lambda: publisher.get_subscription_count() >= max(wanted, 1), args.spin_time)
         if wanted:
             _wait_for_subscriptions(node, publisher, topic, wanted, args.max_wait_time_secs)
@@ -114,7 +118,7 @@ def _publish(
     times: int,
     args: argparse.Namespace,
 ) -> None:
-    """Publish `times` messages, or publish forever if it is 0. Then give the last message time to arrive."""
+    """Publish `times` messages, or publish forever if it is 0. Finally, wait until the last message has been sent."""
     from rclpy.duration import Duration
 
     from grader.graph.discovery import nap, spin_until
@@ -123,7 +127,7 @@ def _publish(
     sent = 0
     while not times or sent < times:
         left = begun + sent / args.rate - time.monotonic()
-        # Spin the node with simulated time, so that its clock is updated.
+        # Spin the node to update its clock if simulated time is used.
         spin_until(node, lambda: False, left) if args.use_sim_time else nap(left)
         now = node.get_clock().now().to_msg()
         for stamp in stamps:

@@ -37,12 +37,12 @@ def expanded(node: Node, name: str) -> str:
 
 
 def find(node: Node, topic: str, args: argparse.Namespace) -> None:
-    """Wait until the node has discovered the publishers of a topic, or knows that there are none."""
+    """Wait until the node has discovered the publishers of a topic, or until discovery has ended."""
     settle(node, lambda: published(node, topic), getattr(args, "spin_time", None))
 
 
 def type_of(node: Node, topic: str, requested: str) -> Any | None:  # noqa: ANN401
-    """Return the class of a topic's messages, or None if there is no such topic. `requested` is what was typed.
+    """Return the class of a topic's messages, or None if the topic does not exist. `requested` is its typed name.
 
     Raises:
         Ros2Error: nodes disagree about the type of the topic, or the type is not installed.

@@ -1,4 +1,4 @@
-"""The verb `topic type`: the type of a topic."""
+"""The verb `topic type`: print the type of a topic."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the type. If the nodes disagree about it, print each type on a separate line.
+    """Print the type. If nodes use different types, print each type on a separate line.
 
     Raises:
-        Ros2Error: there is no such topic.
+        Ros2Error: the topic does not exist.
     """
     graph = look(args)
     types = types_of(tuple(shown(graph.topics, all_of_them=args.include_hidden_topics)), args.topic_name)

@@ -1,4 +1,4 @@
-"""nbgrader with folders and notebooks that attack it: it reads only what was accepted, and the others are graded."""
+"""nbgrader refuses folders and notebooks that attack it, and grades the others."""
 
 from __future__ import annotations
 

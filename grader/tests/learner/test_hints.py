@@ -20,7 +20,7 @@ LAST = "07-challenges"
 
 @pytest.fixture(autouse=True)
 def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A learner with a progress file of their own."""
+    """Create a learner with a separate progress file."""
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.delenv("XDG_STATE_HOME", raising=False)
     monkeypatch.delenv("ROS2_WORKSPACE", raising=False)
@@ -28,7 +28,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def verdict(step: str, *, failed: tuple[str, ...] = (), done: tuple[str, ...] = (), passed: bool = False) -> None:
-    """Store a verdict in the learner's progress."""
+    """Store a report in the learner's progress."""
 
     def change(before: progress.Progress) -> progress.Progress:
         known = replace(before.step(step), failed=failed, done=done, passed=passed)
@@ -38,7 +38,7 @@ def verdict(step: str, *, failed: tuple[str, ...] = (), done: tuple[str, ...] = 
 
 
 def texts(step: str, check: str) -> list[str]:
-    """Return the hints that help with a check."""
+    """Return the hints for a check."""
     return [" ".join(hint.text.split()) for hint in find_exercise(step).hints if check in hint.checks]
 
 

@@ -1,4 +1,4 @@
-"""`ros2 bag`: the bag has all messages and can be played again, however the recorder ended."""
+"""`ros2 bag`: a bag contains all messages and can be played again, however its recorder ended."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ rclpy.spin(node)
 
 @pytest.fixture
 def quiet(tmp_path: Path) -> Iterator[World]:
-    """A domain without nodes. The home folder has two programs."""
+    """Create a domain without nodes. The home folder contains two programs."""
     for made in world(tmp_path):
         made.home.joinpath("talker.py").write_text(TALKER)
         made.home.joinpath("listener.py").write_text(LISTENER)
@@ -60,14 +60,14 @@ def quiet(tmp_path: Path) -> Iterator[World]:
 
 
 def record(here: World, options: str = "/count", count: int = 300) -> Running:
-    """Start a recording of this many messages. Return the recorder when it has received all of them."""
+    """Start to record this number of messages. Return the recorder when it has received all of them."""
     recorder = here.start(f"ros2 bag record -o bag {options}", "Recording...")
     here.start(f"python3 talker.py {count}", "sent")
     return recorder
 
 
 def numbers(folder: Path) -> list[int]:
-    """Return the content of a bag. Another library reads it than the one that wrote it."""
+    """Return the values in a bag. They are read by another library than the one that wrote them."""
     (file,) = folder.glob("*.mcap")
     with file.open("rb") as stream:
         found = list(make_reader(stream).iter_messages())
@@ -114,7 +114,7 @@ def test_a_burst_does_not_wait_and_pauses_after_so_many_messages(quiet: World) -
 def test_a_killed_recording_is_made_whole(quiet: World, storage: str, ending: str) -> None:
     recorder = record(quiet, f"-s {storage} /count")
     recorder.wait_for("All requested topics are subscribed")
-    # Messages that were given to the file one second ago are in it, even if the recorder dies.
+    # The file contains all messages that are older than one second, even if the recorder is killed.
     quiet.run("while [ $(stat -c %s bag/bag* | sort -n | tail -1) -lt 10000 ]; do sleep 0.1; done")
     quiet.run("sleep 2")
     recorder.stop(signal.SIGKILL)
@@ -127,7 +127,7 @@ def test_a_killed_recording_is_made_whole(quiet: World, storage: str, ending: st
 
 
 def test_a_disk_that_is_full_is_reported_and_the_bag_can_be_read(quiet: World) -> None:
-    # A limit on the file size causes the same error as a full disk, and needs no disk.
+    # A limit on the file size causes the same error as a full disk.
     recorder = quiet.start("bash -c 'ulimit -f 8; exec ros2 bag record -o bag /count'", "Recording...")
     quiet.start("python3 talker.py 3000", "sent")
     assert recorder.process.wait(HANG_S) == 1
@@ -168,7 +168,7 @@ def test_space_pauses_and_the_right_arrow_steps(quiet: World) -> None:
 
 def test_a_loop_over_nothing_ends_and_a_wrong_regular_expression_is_reported(quiet: World) -> None:
     record(quiet, count=2).stop()
-    # After the end, there is nothing to repeat.
+    # The bag has no messages after its end.
     assert quiet.run("ros2 bag play bag --loop --start-offset 1000").code == 0
     quiet.home.joinpath("options.yaml").write_text("output_bags:\n- {uri: new, regex: '('}\n")
     for command in ("play bag --regex '('", "play bag -x '('", "convert -i bag -o options.yaml"):

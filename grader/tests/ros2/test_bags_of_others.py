@@ -1,4 +1,4 @@
-"""Bags that rosbag2 records and the course's recorder does not: of types that are not installed, and without chunks."""
+"""Bags of rosbag2 that the course's recorder does not create: with types that are not installed, and without chunks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The commands without recordings: how they start, how they pass on signals, how they end, and their options."""
+"""Commands without recordings: their start, their options, the signals that they forward, and their end."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture(scope="module")
 def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """turtlesim without a node that drives."""
+    """Create a world with turtlesim, but without a node that drives."""
     for made in world(tmp_path_factory.mktemp("still")):
         made.turtlesim()
         yield made
@@ -39,7 +39,7 @@ signal.pause()
 
 
 def package(prefix: Path, name: str, **executables: str) -> None:
-    """Install a package with executables by hand, with the same files as in a colcon workspace."""
+    """Install a package with executables, with the same files as colcon."""
     marker = prefix / "share/ament_index/resource_index/packages" / name
     marker.parent.mkdir(parents=True)
     marker.touch()
@@ -52,7 +52,7 @@ def package(prefix: Path, name: str, **executables: str) -> None:
 
 @pytest.fixture
 def tools(still: World, tmp_path: Path) -> World:
-    """The same world with one more package."""
+    """Return the same world with an additional package."""
     said = '#!/bin/sh\nprintf "%s|" "$@"\necho\nexit 7\n'
     waits = "#!/bin/sh\necho waits\nexec sleep 600\n"
     package(tmp_path / "tools", "tools", say=said, wait=waits, broken="#!/no/such\n")
@@ -140,13 +140,13 @@ def test_where_ros2cli_is_installed_its_ros2_is_used(first: bool, still: World, 
         ("ros2 topic pub -r 50 /chatter std_msgs/msg/String '{data: hi}'", "publishing #3"),
         ("ros2 topic pub --once /nobody std_msgs/msg/String", "Waiting for at least 1"),
         ("ros2 service call -r 20 /clear std_srvs/srv/Empty", "response:"),
-        # No turn reaches this angle, so the goal never ends by itself.
+        # No turn reaches this angle, so the goal never ends.
         (f"ros2 action send_goal --feedback {ROTATE} '{{theta: .nan}}'", "Feedback:"),
     ],
 )
 def test_ctrl_c_ends_a_verb_quietly(command: str, ready: str | None, still: World) -> None:
     running = still.start(command, ready)
-    if ready is None:  # it prints nothing; it runs when others see its node
+    if ready is None:  # it prints nothing, but it runs when its node is in the graph
         while "_ros2cli" not in still.run("ros2 node list -a").stdout.replace("\n/_ros2cli_x", ""):
             assert running.process.poll() is None
     assert running.stop() == 2
@@ -195,7 +195,7 @@ def test_what_is_published_arrives(still: World) -> None:
 
 
 def test_the_last_message_is_kept_for_who_comes_later(still: World) -> None:
-    # A publisher that keeps its last message sends it to a late subscription.
+    # A transient local publisher sends its last message to a late subscription.
     keeper = still.start(f"python3 -c '{KEEPS}'", "published")
     assert still.run("ros2 topic echo --once /kept").stdout == "data: old news\n---\n"
     keeper.stop()

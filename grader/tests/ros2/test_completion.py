@@ -27,9 +27,9 @@ def beside(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
 @pytest.fixture(scope="module")
 def shell(beside: World) -> Iterator[pexpect.spawn]:
     cache = os.environ.get("XDG_CACHE_HOME", str(Path.home() / ".cache"))
-    # The environment of a new terminal. ROS 2 comes from the sourced file.
+    # Use the environment of a new terminal. The sourced file adds ROS 2.
     kept = {name: beside.env[name] for name in ("PATH", "HOME", "LANG", "TERM", "GRADER_ROS2_DAEMON")}
-    # The terminal is wide, so that bash does not move the line.
+    # Use a wide terminal, so that bash does not scroll the line.
     size = (24, 500)
     bash = pexpect.spawn(
         "bash",

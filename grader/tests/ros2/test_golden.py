@@ -1,6 +1,6 @@
-"""Each recorded command of the real `ros2` is typed again and must give the same output, errors and exit code.
+"""Each recorded command of the real `ros2` is typed again and must have the same output, errors and exit code.
 
-Each comparison names what may differ, with the reason.
+Each comparison states the allowed differences with the reason.
 """
 
 from __future__ import annotations
@@ -89,13 +89,13 @@ OF_THEIR_OWN = {
 
 @pytest.fixture(scope="module")
 def empty(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """A domain without nodes."""
+    """Create a domain without nodes."""
     yield from world(tmp_path_factory.mktemp("empty"))
 
 
 @pytest.fixture(scope="module")
 def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """turtlesim without a node that drives."""
+    """Create a world with turtlesim, but without a node that drives."""
     for made in world(tmp_path_factory.mktemp("still")):
         made.turtlesim()
         yield made
@@ -109,7 +109,7 @@ def install(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def driving(tmp_path_factory: pytest.TempPathFactory, install: Path) -> Iterator[World]:
-    """turtlesim, and draw_circle at 2 Hz."""
+    """Create a world with turtlesim and draw_circle at 2 Hz."""
     for made in world(tmp_path_factory.mktemp("driving")):
         made.turtlesim()
         made.draw_circle(install)
@@ -118,19 +118,19 @@ def driving(tmp_path_factory: pytest.TempPathFactory, install: Path) -> Iterator
 
 @pytest.fixture
 def touched(tmp_path: Path) -> Iterator[World]:
-    """turtlesim, for one test that changes it."""
+    """Create a world with turtlesim for one test that changes it."""
     for made in world(tmp_path):
         made.turtlesim()
         yield made
 
 
 def heard_at_once(text: str) -> str:
-    """Remove the message of the real command that appears when it discovers a service a moment later."""
+    """Remove the message that the real command prints if it does not discover a service immediately."""
     return text.replace("waiting for service to become available...\n", "") if REAL_ROS2 else text
 
 
 def same(name: str, where: World, differs: Callable[[str], str] = lambda text: text) -> None:
-    """Type the recorded command. `differs` removes what may differ."""
+    """Type the recorded command. `differs` removes allowed differences."""
     expected = golden(name)
     done = where.run(expected.command)
     assert differs(done.stdout) == differs(expected.stdout)
@@ -162,7 +162,7 @@ def test_with_turtlesim_and_draw_circle(name: str, driving: World) -> None:
 
 
 def test_interfaces_of_a_package_come_in_another_order(empty: World) -> None:
-    # The real command keeps the order of the directory. Ours sorts.
+    # The real command keeps the order of the directory. Our command sorts.
     same("interface_package_turtlesim", empty, lambda text: "\n".join(sorted(text.splitlines())))
 
 
@@ -190,7 +190,7 @@ def test_verbose_list(driving: World) -> None:
 
 
 def test_a_name_without_its_slash_gets_a_hint_as_well(driving: World) -> None:
-    # The recording lacks the standard error of the real command. The nearest name is our addition.
+    # The recording does not contain standard error. Our command adds the nearest name.
     expected = golden("topic_info_no_slash")
     done = driving.run(expected.command)
     assert (done.stdout, done.code) == (expected.stdout, expected.code)
@@ -199,7 +199,7 @@ def test_a_name_without_its_slash_gets_a_hint_as_well(driving: World) -> None:
 
 
 def test_echo_of_a_moving_turtle(driving: World) -> None:
-    # The position of the turtle depends on the moment. Its velocity does not.
+    # The position of the turtle depends on the time, but its velocity does not.
     expected = golden("topic_echo_pose_once_moving")
     done = driving.run(expected.command)
     number = re.compile(r"^(x|y|theta): -?\d+\.\d+(e-\d+)?$", re.MULTILINE)
@@ -208,7 +208,7 @@ def test_echo_of_a_moving_turtle(driving: World) -> None:
 
 
 def test_echo_until_ctrl_c(driving: World) -> None:
-    # The number of messages before Ctrl-C depends on the moment.
+    # The number of messages before Ctrl-C varies.
     expected = golden("topic_echo_cmd_vel")
     message = expected.stdout[: expected.stdout.index("---\n") + 4]
     assert expected.stdout == message * 4
@@ -221,7 +221,7 @@ def test_echo_until_ctrl_c(driving: World) -> None:
 
 @pytest.mark.parametrize("name", ["topic_hz_cmd_vel", "topic_hz_pose"])
 def test_hz_until_ctrl_c(name: str, driving: World) -> None:
-    # Measured values differ from second to second.
+    # Measured values vary.
     expected = golden(name)
     running = driving.start(expected.command)
     running.wait_for("window:", times=2)

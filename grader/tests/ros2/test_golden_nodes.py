@@ -1,4 +1,4 @@
-"""Nodes log the same lines and end in the same way as in the recordings of the real ROS 2."""
+"""Nodes log the same lines and end with the same output as in the recordings of the real ROS 2."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def said(lines: list[str]) -> list[str]:
 
 def test_what_turtlesim_says(tmp_path: Path) -> None:
     expected = said((Path(__file__).parents[1] / "golden/ros2/node-turtlesim_node.stderr.txt").read_text().splitlines())
-    # The real program prints a line of rclcpp's handler of Ctrl-C. Ours has no rclcpp.
+    # The real program also prints a line of rclcpp's signal handler. Our program does not use rclcpp.
     assert expected.pop() == "INFO [rclcpp]: signal_handler(signum=2)"
     for where in world(tmp_path):
         turtlesim = where.turtlesim()
@@ -39,7 +39,7 @@ def test_what_turtlesim_says(tmp_path: Path) -> None:
 
 
 def test_ctrl_c_in_a_node_that_does_not_expect_it(tmp_path: Path) -> None:
-    # The frames of the traceback belong to rclpy and to the installed script. Their paths differ here.
+    # The frames of the traceback are in rclpy and in the installed script, whose paths differ here.
     real = (Path(__file__).parents[1] / "golden/ros2/node-draw_circle.stderr.txt").read_text().splitlines()
     for where in world(tmp_path):
         install = build(tmp_path, where.env)
@@ -47,7 +47,7 @@ def test_ctrl_c_in_a_node_that_does_not_expect_it(tmp_path: Path) -> None:
         as_many_write_it = module.read_text().replace("except (KeyboardInterrupt, ", "except (ZeroDivisionError, ")
         module.write_text(as_many_write_it)
         node = where.draw_circle(install)
-        # The program prints that it has started before it spins. When it publishes, it spins.
+        # The program prints its first line before it spins, so wait until it publishes.
         assert where.run("ros2 topic echo --once /turtle1/cmd_vel").code == 0
         assert node.stop() != 0
         started = [line for line in said(node.lines) if "started" in line]
@@ -55,5 +55,5 @@ def test_ctrl_c_in_a_node_that_does_not_expect_it(tmp_path: Path) -> None:
         assert "Traceback (most recent call last):" in node.lines
         assert any(line.strip() == "rclpy.spin(node)" for line in node.lines)
         assert node.lines[-2] == real[-1] == "KeyboardInterrupt"
-        # The recording has standard error only.
+        # The recording contains only standard error.
         assert node.lines[-1] == "[ros2run]: Interrupt"

@@ -1,4 +1,4 @@
-"""A new package of `ros2 pkg create` is the same as that of the real `ros2`."""
+"""A new package of `ros2 pkg create` has the same files as that of the real `ros2`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from grader.tests.ros2.world import World, environment, golden
 
 @pytest.fixture
 def src(tmp_path: Path) -> Path:
-    """The folder and the user with which the real packages were made."""
+    """Create the folder and the user name with which the real packages were created."""
     (tmp_path / ".gitconfig").write_text("[user]\nemail = student@example.com\n")
     folder = tmp_path / "ros2_ws/src"
     folder.mkdir(parents=True)
@@ -34,7 +34,7 @@ def test_create_a_package_and_again(src: Path) -> None:
 
 
 def tree(folder: Path) -> set[str]:
-    """Return kind, mode and name, and the size if it is 0. The texts are our own, so other sizes differ."""
+    """Return the kind, mode, name and empty size of each file. Other sizes differ, since the texts are our own."""
     lines = set()
     for path in [folder, *folder.rglob("*")]:
         mode = path.stat().st_mode
@@ -48,7 +48,7 @@ def test_what_is_in_new_packages(src: Path) -> None:
     parts = re.split(r"^##### (.*)\n", recorded, flags=re.MULTILINE)[1:]
     expected = dict(zip(parts[::2], parts[1::2], strict=True))
     assert create(src, golden("pkg_create_ament_python").command)[2] == 0
-    # The command of ROS 2's own tutorial. The other tree was made with it.
+    # The other tree was created with this command of the ROS 2 tutorial.
     book = "ros2 pkg create --build-type ament_python --license Apache-2.0 --node-name my_node my_package"
     assert create(src, book)[2] == 0
     for title, text in expected.items():

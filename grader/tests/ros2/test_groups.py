@@ -1,4 +1,4 @@
-"""The groups of `ros2` for special uses: doctor, lifecycle, multicast, component, and those that need a full ROS 2."""
+"""The other groups of `ros2`: doctor, lifecycle, multicast, component, and those that need a full ROS 2."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ rclpy.spin(node)
 
 @pytest.fixture(scope="module")
 def here(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """A domain with a node that has a lifecycle."""
+    """Create a domain with a lifecycle node."""
     for made in world(tmp_path_factory.mktemp("groups")):
         made.home.joinpath("managed.py").write_text(MANAGED)
         made.home.joinpath("deaf.py").write_text(DEAF)

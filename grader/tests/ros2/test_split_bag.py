@@ -1,4 +1,4 @@
-"""A bag that is split into several files: all messages are there once, and each complete file can be read."""
+"""A bag that is split into several files contains all messages once, and each complete file can be read."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_the_file_of_a_killed_recorder_is_found(tmp_path: Path) -> None:
     for stamp, data in SENT:
         writer.write(TOPIC, TYPE, stamp, data)
     writer._part._kept_at -= 10.0
-    writer.keep()  # what has been flushed is left by a recorder that is killed now
+    writer.keep()  # a recorder that is killed now leaves the flushed messages
     (folder / "another").mkdir()
     shutil.copyfile(folder / "bag_0.mcap", folder / "another/own.mcap")
     assert read(folder) == SENT[:60]

@@ -1,4 +1,4 @@
-"""The tutorial's commands, typed into a real shell on a terminal, with an empty home folder and only the wheels."""
+"""The commands of the tutorial, typed into a real shell, with an empty home folder and only the wheels."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ BIN = Path(sys.executable).parent
 
 
 class Terminal:
-    """A bash on a terminal, as a learner has it after `source .venv/bin/activate`."""
+    """A bash on a terminal, as after `source .venv/bin/activate`."""
 
     def __init__(self, home: Path, domain: int) -> None:
         cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
         env = {"HOME": str(home), "PATH": f"{BIN}:/usr/bin:/bin", "LANG": "C.UTF-8", "TERM": "dumb", "LOGNAME": "root"}
-        # A fresh home folder must not cause another build of the interfaces.
+        # Share the cache, so that an empty home folder does not cause another build of the interfaces.
         env |= {"XDG_CACHE_HOME": cache, "ROS_DOMAIN_ID": str(domain), "PS1": PROMPT, "GRADER_ROS2_DAEMON": "0"}
         self.shell = pexpect.spawn(
             "/bin/bash",
@@ -48,7 +48,7 @@ class Terminal:
         self.shell.expect_exact(PROMPT)
 
     def type(self, command: str) -> str:
-        """Type a command, wait until it has ended, and return what it printed."""
+        """Type a command, wait until it has ended, and return its output."""
         self.shell.sendline(command)
         self.shell.expect_exact(PROMPT)
         return (self.shell.before or "").replace("\r\n", "\n")
@@ -63,13 +63,13 @@ class Terminal:
         self.shell.expect_exact(ready)
 
     def ctrl_c(self) -> str:
-        """Press Ctrl-C and wait for the prompt. Return what was printed until then."""
+        """Press Ctrl-C and wait for the prompt. Return the output until then."""
         self.shell.sendintr()
         self.shell.expect_exact(PROMPT)
         return (self.shell.before or "").replace("\r\n", "\n")
 
     def close(self) -> None:
-        """Close the terminal as if the connection was lost."""
+        """Close the terminal as if the connection were lost."""
         with suppress(pexpect.ExceptionPexpect):
             self.shell.close(force=True)
 
@@ -89,7 +89,7 @@ def home(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def terminals(home: Path, domain: int) -> Iterator[list[Terminal]]:
-    """Three terminals, as on a learner's screen."""
+    """Open three terminals, as on a learner's screen."""
     opened = [Terminal(home, domain) for _ in range(3)]
     yield opened
     for terminal in opened:
@@ -120,7 +120,7 @@ def test_the_whole_path(home: Path, terminals: list[Terminal]) -> None:
     assert made == golden("pkg_create_ament_python").stdout.replace("/home/student", str(home))
     assert node.code() == 0
     package = home / "ros2_ws/src/my_robot_controller"
-    # The code that the tutorial lets a learner write.
+    # This is the code from the tutorial.
     shutil.copy(SOLUTION / "my_robot_controller/draw_circle.py", package / "my_robot_controller/draw_circle.py")
     manifest, setup = package / "package.xml", package / "setup.py"
     depends = "<depend>rclpy</depend>\n  <depend>geometry_msgs</depend>\n  <depend>turtlesim</depend>"
@@ -160,7 +160,7 @@ def test_a_workspace_alone_brings_ros_2_with_it(home: Path, terminals: list[Term
     first.type("source <(grader env) && mkdir -p ~/ros2_ws/src && cd ~/ros2_ws/src")
     first.type("ros2 pkg create --build-type ament_python --node-name my_node my_package && cd ..")
     assert "1 package finished" in first.type("colcon build")
-    # A new terminal. A book says no more than this.
+    # In a new terminal, a tutorial requires only this command.
     second.type("cd ~/ros2_ws && source install/setup.bash")
     assert second.type("ros2 run my_package my_node") == "Hi from my_package.\n"
     assert second.type("ros2 pkg prefix my_package") == f"{home}/ros2_ws/install/my_package\n"
@@ -191,7 +191,7 @@ def test_grader_shell(terminals: list[Terminal]) -> None:
 
 
 def process_ids(domain: int) -> set[str]:
-    """Return the running processes of this domain."""
+    """Return the ids of the running processes in this domain."""
     found = set()
     for folder in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):
@@ -208,7 +208,7 @@ def test_a_lost_terminal_leaves_no_process_behind(terminals: list[Terminal], dom
     echo.begin("ros2 topic echo /turtle1/pose", "---")
     pub.begin("ros2 topic pub /turtle1/cmd_vel geometry_msgs/msg/Twist", "publishing #1")
     there = process_ids(domain)
-    assert len(there) >= 6  # the three shells and the programs that each has started
+    assert len(there) >= 6  # the three shells and the programs that they have started
     for terminal in terminals:
         os.close(terminal.shell.child_fd)
     for terminal in terminals:

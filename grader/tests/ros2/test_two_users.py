@@ -1,4 +1,4 @@
-"""Two users of one machine: each has a turtle, and neither sees or drives the other's turtle."""
+"""Two users of one machine: each has a turtle, and neither discovers or drives the turtle of the other."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ START = "5.544444561004639,5.544444561004639,0.0,0.0,0.0\n"
 
 @pytest.fixture
 def users(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[list[World]]:
-    """The environments that `grader env` gives to two users without options."""
+    """Create the environments that `grader env` prints for two users."""
     ros = underlay.with_turtlesim(installation.find_ros())
     worlds = []
     for uid in UIDS:
@@ -58,17 +58,17 @@ def test_neither_drives_the_others_turtle(users: list[World]) -> None:
     assert one.env["ROS_DOMAIN_ID"] != other.env["ROS_DOMAIN_ID"]
     assert one.run("ros2 node list").stdout == other.run("ros2 node list").stdout == "/turtlesim\n"
     assert one.run(DRIVE).code == 0
-    # The last command counts for one second, and the turtle has moved. This cannot be undone.
+    # The last command is valid for one second, after which the turtle has moved.
     assert one.run(WHERE).stdout != START
     assert other.run(WHERE).stdout == START
-    # With the same domain they would share the turtle, so the number separates them.
+    # With the same domain, they would share the turtle.
     assert other.run(DRIVE.replace("2.0", "-2.0"), ROS_DOMAIN_ID=one.env["ROS_DOMAIN_ID"]).code == 0
     assert other.run(WHERE).stdout == START
 
 
 @pytest.fixture
 def everybodys_folder() -> Iterator[Path]:
-    """Other users cannot open pytest's own folders."""
+    """Create a folder that other users can open, unlike pytest's folders."""
     with tempfile.TemporaryDirectory() as name:
         Path(name).chmod(0o755)
         yield Path(name)
@@ -96,7 +96,7 @@ def test_two_real_users(everybodys_folder: Path) -> None:
             check=False,
         )
         if "Permission denied" in done.stderr and machine.closed_folder(sys.prefix):
-            pytest.skip("this Python lies where other users cannot enter")
+            pytest.skip("other users cannot access this Python")
         assert done.returncode == 0, done.stderr
         domain, topics = done.stdout.split()
         assert topics == "2"

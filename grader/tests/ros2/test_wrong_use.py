@@ -1,4 +1,4 @@
-"""The messages about wrong commands: the reason, the nearest name, an exit code; never a traceback."""
+"""Wrong commands print the reason, the nearest name and an exit code, but never a traceback."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture(scope="module")
 def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """turtlesim without a node that drives."""
+    """Create a world with turtlesim, but without a node that drives."""
     for made in world(tmp_path_factory.mktemp("still")):
         made.turtlesim()
         yield made
@@ -24,7 +24,7 @@ def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
 SPAWN = "ros2 service call /spawn turtlesim/srv/Spawn"
 PUB = "ros2 topic pub --once /turtle1/cmd_vel geometry_msgs/msg/Twist"
 FILES_ONLY = {
-    # command -> exit code, what is on standard error
+    # command -> exit code, parts of standard error
     "ros2 lst": (2, ["invalid choice: 'lst'"]),
     "ros2 topci list": (2, ["invalid choice: 'topci'", "Did you mean 'topic'?"]),
     "ros2 topic lst": (2, ["invalid choice: 'lst'", "Did you mean 'list'?"]),
@@ -167,7 +167,7 @@ def test_a_package_with_an_odd_name_is_made_and_warned_of(name: str, still: Worl
     create = f'ros2 pkg create --build-type ament_python --destination-directory {tmp_path} "{name}" --node-name a-b'
     done = still.run(create)
     assert done.code == 0
-    assert "a-b' will cause trouble" in done.stderr
+    assert "a-b' will cause problems" in done.stderr
     compile((tmp_path / name / "setup.py").read_text(), "setup.py", "exec")
 
 
@@ -219,7 +219,7 @@ def test_whoever_reads_us_may_go(still: World) -> None:
 
 
 def test_the_reader_of_pkg_create_may_exit(still: World, tmp_path: Path) -> None:
-    # The reader exits before anything is printed.
+    # The reader exits before the first line is printed.
     done = still.run(f"ros2 pkg create --build-type ament_python a --destination-directory {tmp_path} > >(exec true)")
     assert "Traceback" not in done.stderr
     assert "could not be written" not in done.stderr

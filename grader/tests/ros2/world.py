@@ -1,4 +1,4 @@
-"""A separate domain for tests of commands. Processes are started and commands are typed in bash, as a user does."""
+"""A separate domain for tests of commands. Processes are started and commands are typed in bash, as users do."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Done:
 
 @dataclass
 class Running:
-    """A process with the lines that it has written so far. Both streams are merged."""
+    """A process with the lines that it has written so far. Standard output and standard error are merged."""
 
     process: subprocess.Popen[str]
     lines: list[str] = field(default_factory=list)
@@ -43,7 +43,7 @@ class Running:
     _ended: threading.Event = field(default_factory=threading.Event)
 
     def read(self, stream: IO[str]) -> None:
-        """Collect its output in a separate thread."""
+        """Collect the lines of the output in a separate thread."""
         for line in stream:
             with self._news:
                 self.lines.append(line.rstrip("\n"))
@@ -56,17 +56,17 @@ class Running:
         return children(self.process.pid)[0]
 
     def wait_for(self, text: str, times: int = 1) -> None:
-        """Wait until this many lines contain `text`."""
+        """Wait until at least this number of lines contain `text`."""
         with self._news:
             there = self._news.wait_for(lambda: sum(text in line for line in self.lines) >= times, HANG_S)
-        assert there, f"no line with '{text}' came:\n" + "\n".join(self.lines)
+        assert there, f"no line contains '{text}':\n" + "\n".join(self.lines)
 
     def stop(self, number: int = signal.SIGINT) -> int:
-        """Send a signal to the process group, as a terminal does. Return the exit code when all lines are read."""
+        """Send a signal to the process group, as a terminal does. Return the exit code after all lines are read."""
         if self.process.poll() is None:
             os.killpg(self.process.pid, number)
         code = self.process.wait(HANG_S)
-        assert self._ended.wait(HANG_S), "something that it started goes on"
+        assert self._ended.wait(HANG_S), "a process that it started is still running"
         return code
 
 
@@ -98,7 +98,7 @@ class World:
         return Done(done.stdout, done.stderr, done.returncode)
 
     def start(self, command: str, ready: str | None = None, **env: str) -> Running:
-        """Start a command in a process group of its own, and wait for a line that contains `ready`."""
+        """Start a command in a separate process group, and wait for a line that contains `ready`."""
         process = subprocess.Popen(
             ["bash", "-c", f"exec {command}"],
             env={**self.env, **env},
@@ -128,7 +128,7 @@ class World:
         )
 
     def end(self) -> None:
-        """Stop everything that was started."""
+        """Stop all processes that were started."""
         for running in self.running:
             running.stop()
         if REAL_ROS2:
@@ -143,10 +143,10 @@ def environment(home: Path, domain: int | None = None) -> dict[str, str]:
     user = {
         **SOURCED_ENV,
         "HOME": str(home),
-        # A test that needs the daemon starts it.
+        # Tests that need the daemon start it.
         "GRADER_ROS2_DAEMON": "0",
         "PATH": f"{PATH}:{ours}" if SOURCED_ENV else f"{ours}:{PATH}",
-        # With this, the window of the real turtlesim needs no screen.
+        # The window of the real turtlesim then needs no screen.
         "QT_QPA_PLATFORM": "offscreen",
         "LANG": "C.UTF-8",
         "TERM": "dumb",
@@ -155,7 +155,7 @@ def environment(home: Path, domain: int | None = None) -> dict[str, str]:
 
 
 def world(home: Path) -> Iterator[World]:
-    """Yield a world for a fixture. It ends when the tests that use it have ended."""
+    """Yield a world for a fixture. Its processes end when the tests that use it have ended."""
     home.mkdir(parents=True, exist_ok=True)
     made = World(home, environment(home))
     try:
