@@ -27,7 +27,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "package-name": "the package name in package.xml or setup.py is not the one of the exercise",
         "package-folder": "no folder with Python files has the name of the package",
         "rejected-file": "the submission contains something other than normal files of the package",
-        "unreadable": "the grader cannot read the submission, or what the submission sends to it",
+        "unreadable": "the grader cannot read the submission, or the data that the submission sends",
     },
     "setup.py and the build": {
         "colcon-ignore": "a file in the package makes colcon ignore it",

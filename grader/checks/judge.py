@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Judgement:
-    """What the checks found so far.
+    """The findings of the checks so far.
 
     `findings` has a finding for every check. The findings in `settled` are final, because the evidence of their stage
     was complete. The others say that the node was not run, or that a check that they need has not passed yet.
@@ -88,7 +88,7 @@ def judge_so_far(evidence: Evidence, settled: Mapping[str, Finding]) -> Judgemen
 
 @dataclass(frozen=True)
 class Early:
-    """What is known before any code of the submission runs: failed outcomes, and ids of checks that cannot pass."""
+    """The results before any code of the submission runs: failed outcomes, and ids of checks that cannot pass."""
 
     failed: tuple[Outcome, ...]
     blocked: frozenset[str]

@@ -37,8 +37,8 @@ P = TypeVar("P")
 class Kind(Generic[P]):
     """A type of check. `check` is a pure function: the same evidence and parameters give the same finding.
 
-    `title` is what a student reads if exercise.toml sets no title. `about` tells the author of an exercise what is
-    checked (docs/kinds.md). A kind with `advice` is worth no points and never fails a submission.
+    `title` is what a student reads if exercise.toml sets no title. `about` describes the check for authors of exercises
+    (docs/kinds.md). A kind with `advice` is worth no points and never fails a submission.
     """
 
     name: str
@@ -53,7 +53,7 @@ class Kind(Generic[P]):
     drives: bool = False
     """Whether a node must send velocity commands to the turtle to pass."""
     requested: Callable[[Evidence, P], Requested | None] | None = None
-    """Return what the check requests, for a drawing, or None if the submission does not determine that."""
+    """Return the requirements of the check for a drawing, or None if the submission does not determine them."""
     radius_m: Callable[[P], float] | None = None
     """Return the radius (m) of a circle that must fit on either side of a randomly drawn start position."""
 
@@ -78,7 +78,7 @@ class Kind(Generic[P]):
         return None if self.early is None or isinstance(params, Finding) else self.early(evidence, params)
 
     def request(self, evidence: Evidence, values: Mapping[str, Param]) -> Requested | None:
-        """Return what a check with these parameter values requests, for a drawing, or None."""
+        """Return the requirements of a check with these parameter values for a drawing, or None."""
         params = self._params(evidence, values)
         return None if self.requested is None or isinstance(params, Finding) else self.requested(evidence, params)
 

@@ -17,7 +17,7 @@ SEARCHED = (
     *("PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH"),
     *("CMAKE_MODULE_PATH", "PKG_CONFIG_PATH", "PYTHONHOME", "PYTHONUSERBASE", "PYTHONPYCACHEPREFIX", "PYTHONSTARTUP"),
 )
-"""Variables that hold a path or a list of paths from which programs, libraries or modules are loaded."""
+"""Variables that contain a path or a list of paths from which programs, libraries or modules are loaded."""
 _CODE = "import sys; sys.path[:] = filter(None, sys.path)\n"
 """Python 3.11 has the option -P for this, but IPython then hides a notebook's folder from the notebook's cells."""
 _RUN = "import runpy; runpy.run_module(sys.argv[0], run_name='__main__', alter_sys=True)\n"
@@ -81,7 +81,7 @@ def clean(env: Mapping[str, str]) -> Dict[str, str]:
 
 
 def clean_own() -> None:
-    """Clean the environment of this process, and thereby that of the processes that it starts."""
+    """Clean the environment of this process, which its child processes inherit."""
     cleaned = clean(os.environ)
     for name in [name for name in os.environ if name not in cleaned]:
         del os.environ[name]

@@ -219,7 +219,7 @@ class Evidence:
         return self.build
 
     def place(self, *calls: str) -> Where | None:
-        """Return where the code calls the first of these functions that it calls at all, or else the node's file."""
+        """Return the place of the first call to one of these functions (in this order), or else the node's file."""
         for name in calls:
             found = self.code.calls(name)
             if found:

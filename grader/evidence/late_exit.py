@@ -1,7 +1,8 @@
-"""A node that crashed, but whose process took so long to exit that Ctrl-C came first.
+"""A node that crashed, but whose process took so long to exit that Ctrl-C was sent first.
 
 On a busy machine, a process may need longer to exit after an uncaught exception than a trial in simulated time lasts.
-The same submission must always get the same outcomes. So the outcome depends on the exception, not on what came first.
+The same submission must always get the same outcomes. So the outcome depends on the exception, not on the order of
+these events.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ TOP = re.compile(r'\s*File ".*", line \d+, in <module>')
 
 
 def with_crash_first(recording: Recording) -> Recording:
-    """Return the recording. If the node raised an uncaught exception before Ctrl-C, it has ended by itself."""
+    """Return the recording. If the node raised an uncaught exception before Ctrl-C, it exited on its own."""
     end, stderr = recording.end, recording.stderr
     if end.by == "itself" or end.out_of is not None:
         return recording

@@ -45,7 +45,8 @@ if TYPE_CHECKING:
 SCHEMA = 2
 OLDER = {
     1: "move `executable` and `node` out of [exercise], and all keys of [scenario], into a [[trial]] with an `id` of "
-    "its own; likewise the keys of [trial.scenario]; write [[trial.drive]] for [[scenario.drive]]; then schema = 2."
+    "its own; do the same with the keys of [trial.scenario], rename [[scenario.drive]] to [[trial.drive]], and set "
+    "schema = 2."
 }
 """How to update a file that has an older version of the format."""
 PART = re.compile(r"[a-z]")

@@ -46,7 +46,7 @@ def explain(
 ) -> Tries:
     """Try to fix the causes of the failed outcomes. `build_s` is the duration of the build (s).
 
-    Before each try, `give_up` may say that the result is no longer wanted.
+    `give_up` is called before each try. No more changes are tried once it returns true.
     """
     return _Explaining(evidence, outcomes, MOST_F * (build_s + BARE_NODE_S), regrade, give_up).run()
 
@@ -116,7 +116,7 @@ class _Explaining:
         return Tries(tuple(self.made), len(self.behind), stopped)
 
     def _share(self, target: Outcome, found: Mapping[str, Outcome], diff: str) -> set[Key]:
-        """Record the result for other checks with the same cause. Return the keys that need no try of their own."""
+        """Record the result for other checks with the same cause. Return the keys that need no separate try."""
         same = [
             each
             for each in self.outcomes

@@ -91,7 +91,7 @@ def explained(
 ) -> Graded:
     """Return the grading, with its causes proved by trying to fix them if that is possible.
 
-    Before each try, `give_up` may say that the result is no longer wanted. `build` has the last build.
+    `give_up` is called before each try. No more changes are tried once it returns true. `build` has the last build.
     """
     report, evidence = graded.report, graded.evidence
     if not can_be_explained(graded):
@@ -211,7 +211,7 @@ class _Grading:
 
 
 def _longest_first(evidence: Evidence) -> list[Evidence]:
-    """Return a view of the evidence per trial of a node, the longest first, so that it is not alone at the end."""
+    """Return a view of the evidence per trial of a node, the longest first, so that it does not run alone at last."""
     specs = evidence.exercise.trials
     views = [evidence.from_trial(spec.id) for spec in specs if spec.tests is None and not spec.beside]
     return sorted(views, key=lambda view: -view.trial.scenario.duration_s)

@@ -70,9 +70,8 @@ class Trials:
     def run(self, evidence: Evidence, settled: Mapping[str, Finding]) -> Attempt:
         """Run this trial. Return the evidence with the recording that counts, judged after the `settled` findings.
 
-        If a node brings the simulator down once, the machine may be at fault. If it happens twice, the node is the
-        cause. A node that kept the simulator busy for minutes does not get a second trial, because a class would have
-        to wait too long.
+        If the simulator fails once, the machine may be at fault. If it fails twice, the node is the cause. A node that
+        kept the simulator busy for minutes does not get a second trial, because a class would have to wait too long.
         """
         if evidence.trial.calls:
             return self._call(evidence, settled)
@@ -83,7 +82,7 @@ class Trials:
         except OverwhelmedError as error:
             if error.hung:
                 return self._overwhelmed(evidence, error, settled)
-            self._tell(f"The simulator was brought down ({printable(str(error))}): running the trial again")
+            self._tell(f"The simulator failed ({printable(str(error))}): running the trial again")
         try:
             with self._trial(evidence, clock.name) as trial:
                 return self._decide(evidence, trial, clock, settled)

@@ -1,7 +1,7 @@
 """Whether the cause of a failed check is a fact or a possibility.
 
-A fact is what the files, the build or an exception show by themselves, and what a try has proved: after the change, the
-check passes or the node gets further. Everything else is concluded from what the node did, and another cause may fit.
+A cause is a fact if the files, the build or an exception show it directly, or if a try has proved it: after the change,
+the check passes or the node gets further. All other causes are conclusions from the node's behaviour, and may be wrong.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ Piece = tuple[str, str]
 
 
 def coloured(text: str, language: str = "python") -> list[list[Piece]]:
-    """Return the pieces of each line. A language that pygments does not know has no colours."""
+    """Return the pieces of each line. Code in a language that pygments does not support has no colours."""
     from pygments.lexers import get_lexer_by_name
     from pygments.util import ClassNotFound
 

@@ -52,7 +52,7 @@ COLUMNS = (
 FORMULA = frozenset({"=", "+", "-", "@", "\N{MINUS SIGN}"})
 SEPARATORS = frozenset({";", "|", "\t", "\r", "\n"})
 BEFORE = frozenset({"", '"', "'", "`"})
-"""What may come before the first character of a formula: spaces, and quotes that a spreadsheet removes."""
+"""Characters that may precede a formula: spaces, and quotes that a spreadsheet removes."""
 
 
 def to_csv(rows: Iterable[tuple[str, Report, str, str, str]]) -> str:

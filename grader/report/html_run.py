@@ -1,4 +1,4 @@
-"""What a page shows for each trial: the canvas with its player, the charts, the graph, and a table of the commands."""
+"""The content of a page for each trial: the canvas with its player, the charts, the graph, the table of commands."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def _end(evidence: Evidence) -> str:
     # If a signal terminated the process, a shell reports 128 plus the signal's number as the exit code.
     code = end.exit_code if end.exit_code >= 0 else 128 - end.exit_code
     if end.by == "itself":
-        return f"The node ended by itself after {end.t_s:.1f} s, with exit code {code}."
+        return f"The node exited on its own after {end.t_s:.1f} s, with exit code {code}."
     when = {"SIGINT": "on Ctrl-C", "SIGTERM": "only on SIGTERM", "SIGKILL": "only when it was killed (SIGKILL)"}[end.by]
     return f"The node stopped {when}, with exit code {code}."
 

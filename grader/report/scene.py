@@ -46,7 +46,7 @@ class Scene:
 
 
 def scene_of(evidence: Evidence) -> Scene:
-    """Return what to draw for a run."""
+    """Return the scene of a run."""
     recording = evidence.run.recording
     if recording is None:
         return _without_recording(evidence)
@@ -101,7 +101,7 @@ def _without_recording(evidence: Evidence) -> Scene:
 
 
 def _bag_scene(evidence: Evidence) -> Scene | None:
-    """Return what to draw for a step in which students record a bag: the path in it. None for other steps."""
+    """Return the scene of a step in which students record a bag: the path in the bag. None for other steps."""
     folder = next((str(spec.params["bag"]) for spec in evidence.exercise.checks if "bag" in spec.params), None)
     if folder is None:
         return None

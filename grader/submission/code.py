@@ -25,7 +25,7 @@ MAX_NAME = 500
 """The maximum length of a module name (characters)."""
 
 SRC = "src/"
-"""The folder that holds the packages in many Python projects, with package_dir={"": "src"} in setup.py."""
+"""The folder that contains the packages in many Python projects, with package_dir={"": "src"} in setup.py."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Uses of functions, found by their last names, even if the source gives the functions other names.
 
 A search for calls of `sleep` does not find `from time import sleep as nap`, `nap = time.sleep`, `partial(time.sleep,
-1)` or `getattr(time, "sleep")`. Neither does it find a function in another file that calls `sleep` for the node. So
+1)` or `getattr(time, "sleep")`. It does not find a function in another file that calls `sleep` either. So
 every mention of such a function counts as a use, and names in other files that lead to one are followed.
 """
 

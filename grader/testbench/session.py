@@ -2,8 +2,8 @@
 
 This file runs as a separate script. It reads one line of JSON and the files of the package (a tar stream) from
 standard input, then one byte per run. It writes to standard output: READY as soon as it can run tests, and after each
-run the exit code of pytest, whether the time was over, the seconds, the size of the report, and the report. It does not
-know which node a run gets.
+run the exit code of pytest, whether the time limit was exceeded, the seconds, the size of the report, and the report.
+It does not know which node a run gets.
 
 Between two runs, it ends all processes of the cell and empties its disks. So a run finds no traces of earlier runs.
 """
@@ -155,7 +155,7 @@ def _run_tests(order: dict[str, Any], source: bytes) -> NoReturn:
 
 
 def _report(file: Path) -> bytes:
-    """Return the report of the run, or nothing if there is no regular file."""
+    """Return the report of the run, or empty bytes if there is no regular file."""
     try:
         descriptor = os.open(file, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError:

@@ -22,8 +22,9 @@ TOO_LATE = "too late"
 class Called:
     """The result of the call with this id.
 
-    `ended` is how the process ended: "exit 0", "signal 9", TOO_LATE, or an empty string if nothing is known of it.
-    A function returned `values`, if they are up to MOST_VALUES numbers, and something of the type `kind` in any case.
+    `ended` describes the end of the process: "exit 0", "signal 9", TOO_LATE, or an empty string if it is unknown.
+    `values` are the numbers that a function returned, if there are at most MOST_VALUES. `kind` is the type of its
+    result.
     """
 
     id: str

@@ -1,4 +1,4 @@
-"""Call a student's function or program in a cell, once with each input, each time in a process of its own.
+"""Call a student's function or program in a cell, once per input, in a separate process each time.
 
 This file runs as a separate script. It reads one line of JSON (`calls`, `script`, `function`, `python_path`, `env`,
 `install`, `files`) and then the install tree, a tar stream, from standard input. It writes one line of JSON for

@@ -59,7 +59,7 @@ SIMULATORS = ("/pose", "/color_sensor")
 
 
 class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grader
-    """The simulator failed because of what the node sent."""
+    """The simulator failed because of messages or requests from the node."""
 
 
 def main() -> None:

@@ -54,7 +54,7 @@ def enlarge(pipe: int) -> int:
 
 @dataclass
 class Stream:
-    """The output that has come through one pipe so far, and the time at which each line began (s)."""
+    """The output from one pipe so far, and the time at which each line began (s)."""
 
     fd: int
     kept: bytearray = field(default_factory=bytearray)
@@ -195,7 +195,7 @@ class NodeProcess:
             self._signal(signal.SIGINT)
 
     def escalate(self) -> None:
-        """Send SIGTERM and then SIGKILL when the time has come. Call this repeatedly after `interrupt`."""
+        """Send SIGTERM and then SIGKILL when their times are reached. Call this repeatedly after `interrupt`."""
         assert self._interrupted is not None
         passed = time.monotonic() - self._interrupted
         if passed > STOP_S + 1.0 and self._by != "SIGKILL":

@@ -245,7 +245,7 @@ def _participant(info: TopicEndpointInfo) -> bytes:
 
 
 def _matching(offers: list[TopicEndpointInfo]) -> QoSProfile:
-    # Like `ros2 bag record`, request everything that all publishers offer, and nothing more.
+    # Like `ros2 bag record`, request the strictest QoS that all publishers offer.
     reliable = bool(offers) and all(o.qos_profile.reliability == ReliabilityPolicy.RELIABLE for o in offers)
     local = bool(offers) and all(o.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for o in offers)
     return QoSProfile(

@@ -113,7 +113,7 @@ class Frames:
 
 @dataclass(frozen=True)
 class Output:
-    """What a process wrote to one stream, decoded with replacement. `dropped` bytes were over the limit and not kept.
+    """The text of one output stream, decoded with replacement. `dropped` bytes were over the limit and not kept.
 
     `times` are the arrival times of the lines of `text` on the trial's clock (s), one per line.
     """

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 DDS = "dds."
 """The prefix of the thread names of Fast DDS."""
 _DDS_TIMERS = "dds.ev"
-"""The thread for the timers of Fast DDS. It sends, but it receives nothing."""
+"""The thread for the timers of Fast DDS. It sends data but does not receive any."""
 _SLEEPING = ord("S")
 # The system calls that only wait for a time to pass, by their numbers on x86-64.
 _SLEEPS = {35: "nanosleep", 230: "clock_nanosleep"}
@@ -43,7 +43,7 @@ class GoneError(Exception):
 
 
 class DoubtError(Exception):
-    """The process may follow wall time, so the fact that it is idle means nothing. The message says why.
+    """The process may follow wall time, so its idleness proves nothing. The message says why.
 
     `by_chance` is true if another run of the same program may not raise it.
     """

@@ -190,7 +190,7 @@ class Simulation:
                 _handle_messages(subscription)
 
     def _handle_ready(self, timeout_s: float) -> list[object]:
-        """Handle what is ready within `timeout_s`, and any further messages on the same topics."""
+        """Handle everything that is ready within `timeout_s`, and any further messages on the same topics."""
         handled: list[object] = []
         with suppress(TimeoutException):
             while len(handled) < _MOST_AT_ONCE:

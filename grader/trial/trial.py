@@ -77,7 +77,7 @@ class WallTimeNeeded(Exception):  # noqa: N818 - not an error
 
 
 class OverwhelmedError(Exception):
-    """The node brought the simulator down, or kept the trial from finishing (`hung`). The message says how."""
+    """The node made the simulator fail, or kept the trial from finishing (`hung`). The message says how."""
 
     def __init__(self, how: str, *, hung: bool = False) -> None:
         super().__init__(how)

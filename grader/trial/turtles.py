@@ -26,7 +26,7 @@ class TurtleWatch:
         self._count = 0
 
     def look(self, now_s: float, world: World) -> None:
-        """Record what changed since the last frame."""
+        """Record all changes since the last frame."""
         for name, turtle in world.turtles.items():
             if self._pens.get(name) is not turtle.pen and len(self._changes) < MOST_CHANGES:
                 if name in self._pens:

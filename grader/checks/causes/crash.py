@@ -34,7 +34,7 @@ RCLPY_ERRORS = frozenset({"InvalidNodeNameException", "InvalidTopicNameException
 MEANINGS = {
     "AssertionError": "An assertion failed: something that the code or a message field requires was not true.",
     "AttributeError": "The object has no attribute or method with that name. Compare it letter by letter.",
-    "EOFError": "input() waits for keyboard input, but nobody types here. A node must not ask for input.",
+    "EOFError": "input() waits for the keyboard, but the grader does not type. A node must not ask for input.",
     "ImportError": "That name cannot be imported from this module. Compare it letter by letter.",
     "IndentationError": "All lines of a block must have the same indentation.",
     "IndexError": "The list has fewer items than this index needs.",
@@ -100,7 +100,7 @@ def ended_early(evidence: Evidence) -> str:
         return ""
     crash = crash_of(evidence)
     if crash is None:
-        return "The node ended by itself."
+        return "The node exited on its own."
     place = f" at {crash.where}" if crash.where is not None else ""
     return f"The node crashed: {crash.error}{place}."
 
@@ -112,7 +112,7 @@ def end_observed(evidence: Evidence) -> str:
         return ""
     when = "at startup" if ended_at_start(evidence.recording) else f"after {end.t_s:.1f} s"
     crash = crash_of(evidence)
-    return f"The node ended by itself {when}." if crash is None else f"The node crashed {when}: {crash.observed}."
+    return f"The node exited on its own {when}." if crash is None else f"The node crashed {when}: {crash.observed}."
 
 
 def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:

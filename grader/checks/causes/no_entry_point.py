@@ -1,4 +1,4 @@
-"""Why the executable of the exercise does not exist, and what setup.py has instead."""
+"""Why the executable of the exercise does not exist, and which similar entry setup.py has."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def no_entry_point(evidence: Evidence) -> Finding:
 
 
 def _is_another(evidence: Evidence, name: str) -> bool:
-    """Return whether an executable is a program of its own, and not this one with another name."""
+    """Return whether an executable is a separate program, and not this one under another name."""
     executable = evidence.trial.executable
     has_file = any(path.rpartition("/")[2] == f"{executable}.py" for path in evidence.submission.files)
     module = evidence.built.entry_points.get(name, "").partition(":")[0].strip()
@@ -120,9 +120,7 @@ def _missing(evidence: Evidence, points: tuple[EntryPoint, ...]) -> Cause:
     for point in points:
         file = module_file((point.target or "").partition(":")[0], files)
         if file is not None and file.rpartition("/")[2] == f"{executable}.py":
-            text = (
-                f"The entry point of {file} has another name, {shorten(point.name)}. The name stands before the = sign."
-            )
+            text = f"The entry point of {file} has another name, {shorten(point.name)}. The name is before the = sign."
             where = Where("setup.py", point.line)
             return Cause("entry-point-name", text, where).fixed_by(at(where, point.name, executable))
     file = evidence.node_file or _looks_like_a_node(evidence, [point.target for point in points])

@@ -191,7 +191,7 @@ def _of_none(scene: CrashScene, name: str) -> Cause | None:
 
 
 def _no_object(scene: CrashScene) -> Cause:
-    """Return the cause if rclpy.spin gets None: a function without return, if the node comes from one."""
+    """Return the cause if rclpy.spin gets None, for example from a function without return."""
     text = "rclpy.spin was called with None instead of a node."
     given = {dotted(call.args[0]) for call in scene.calls_on_line("spin") if call.args}
     for node in scene.nodes:

@@ -1,4 +1,4 @@
-"""Why a program exited by itself or ran without a node, according to its source code."""
+"""Why a program exited on its own or ran without a node, according to its source code."""
 
 from __future__ import annotations
 

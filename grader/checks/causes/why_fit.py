@@ -44,7 +44,7 @@ class Fit:
         return self.is_like(self.truth[:2])
 
     def is_like(self, other: Sequence[float], more: float = 0.0) -> bool:
-        """Return whether the values, or only the first ones, are within their tolerances and `more` of these."""
+        """Return whether the values differ from `other` (perhaps shorter) by at most their tolerances plus `more`."""
         return all(
             abs(value - one) <= width + more for value, one, width in zip(self.values, other, self.within, strict=False)
         )
@@ -71,8 +71,8 @@ RADIUS_OF_C: tuple[Diagnosis, str] = (
 )
 """Mistakes that give a wrong radius, or NaN, with the right centre."""
 _FIRST_TRY = (
-    "The equations are not right, or the circle is not what their solution says. Try it with four points of a circle "
-    "that you know."
+    "The equations or the computation of the circle from their solution are wrong. Test the function with four "
+    "points of a circle that you know."
 )
 
 

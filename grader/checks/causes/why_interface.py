@@ -13,12 +13,12 @@ if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
 WRAPPED = {"_FeedbackMessage": "feedback", "_GetResult_Response": "result"}
-"""The ending of a type in which an action client receives something -> the field with the content."""
+"""The ending of the type of a message from rclpy -> the field with the content."""
 OF_A_RESULT = ("status", "result")
 NO_OBJECT = re.compile(r"^(Action|Service) classes can not be instantiated")
 OF_AN_ACTION = re.compile(r"service type provided is not valid \(<class '\w+\.action\.")
 PARTS = {"Action": "Goal", "Service": "Request"}
-"""What a client of an action or of a service creates."""
+"""The kind of interface -> the part of it that a client creates."""
 OF_A_TYPE = "_TYPE_SUPPORT"
 """rclpy needs this attribute of each type."""
 

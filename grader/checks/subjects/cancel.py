@@ -49,7 +49,7 @@ def cancels_goal(evidence: Evidence, params: CancelsGoal) -> Finding:
         if not goals:
             return no_goal(evidence, expected)
         observed = f"The turtle followed no goal when {params.service} was called."
-        text = "Until it is told to stop, the node sends the next goal as soon as the last one has ended."
+        text = "Until the service is called, the node sends the next goal as soon as the last one has ended."
         return failed(observed, expected, Cause("goal-not-sent", text, evidence.place("send_goal_async")))
     call, goal = found
     took = Band.at_most(params.within_s)
@@ -96,7 +96,7 @@ def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
 
 
 def _stopped(goals: list[Goal], calls: list[Call]) -> tuple[Call, Goal] | None:
-    """Return the first call that came while the turtle followed a goal, with that goal; else None."""
+    """Return the first call that arrived while the turtle followed a goal, with that goal; else None."""
     for call in calls:
         for goal in goals:
             if goal.t_s < call.t_s and (goal.ended_s is None or goal.ended_s > call.t_s):

@@ -36,7 +36,9 @@ class Eight:
     residual_m: float = number(
         0.03, above=0, about="The maximum deviation of a lobe from its fitted circle (root mean square)."
     )
-    angle_tolerance_deg: float = number(12.0, above=0, about="The maximum difference of a lobe from 360 degrees.")
+    angle_tolerance_deg: float = number(
+        12.0, above=0, about="The maximum difference between the angle of a lobe and 360 degrees."
+    )
     closing_m: float = number(0.2, above=0, about="The maximum distance from the start to the end of the first lobe.")
     first: str = choice("left", "right", "either", about="The side of the first lobe.")
 

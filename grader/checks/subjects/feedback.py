@@ -44,7 +44,7 @@ class LogFeedback:
 def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
     """While the turtle follows a goal, lines show the remaining angle."""
     example = student_log.Format(params.format).example(1.25)
-    expected = f'While the turtle turns, a line such as "{example}" comes every {params.period_s:g} s.'
+    expected = f'While the turtle turns, a line such as "{example}" appears every {params.period_s:g} s.'
     goals = [goal for goal in goals_of(evidence) if _ended_s(evidence, goal) - goal.t_s >= LONG * params.period_s]
     if not goals:
         return no_goal(evidence, expected)
@@ -66,7 +66,7 @@ def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
     if not amount.holds(len(told)):
         observed = f"{len(told)} such lines appeared while the turtle turned for {turning_s:.1f} s."
         if len(told) > turning_s / params.period_s:
-            text = "The feedback comes 62 times per second. Store it, and log it in the callback of a timer."
+            text = "The feedback arrives 62 times per second. Store it, and log it in the callback of a timer."
             return failed(observed, expected, Cause("every-message", text, where))
         text = "Log in the callback of the timer while there is a goal."
         return failed(observed, expected, _unheard(evidence) or Cause("feedback-not-logged", text, where))
@@ -130,7 +130,7 @@ def _wrong(
     theta = float(frames.theta[max(int(np.searchsorted(frames.t_s, line.t_s)) - 1, 0)])
     remaining = normalize(normalize(goal.request["theta"]) - theta)
     observed = (
-        f"At {line.t_s:.1f} s the line says {line.numbers['remaining']:.2f}, "
+        f"At {line.t_s:.1f} s the line shows {line.numbers['remaining']:.2f}, "
         f"but the turtle still had to turn by {remaining:.2f} rad."
     )
     where = evidence.place("info")

@@ -139,7 +139,7 @@ def _other_heading(
         text = "The field theta is in radians. math.radians converts degrees."
         return failed(observed, expected, Cause("degrees", text, where), near_edge=near_edge)
     if abs(normalize(theta + math.radians(heading))) <= SAME_RAD:
-        text = "A positive angle is to the left, which is counter-clockwise."
+        text = "Angles increase to the left, which is counter-clockwise."
         return failed(observed, expected, Cause("wrong-sign", text, where), near_edge=near_edge)
     text = turned or "Compare this heading with the one that the exercise asks for. It is absolute: 0 is to the right."
     return failed(observed, expected, Cause("wrong-goal", text, where), near_edge=near_edge)

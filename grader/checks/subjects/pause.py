@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Command
 
 EARLY_S = 0.1
-"""A call of the trial may come this much before its planned time because of rounding (s)."""
+"""A call of the trial may be made this much before its planned time because of rounding (s)."""
 BEFORE_S = 1.0
 """The turtle must move in this time before the pause (s)."""
 
@@ -62,7 +62,7 @@ def pause(evidence: Evidence, params: Pause) -> Finding:
         observed = "The turtle did not continue." if first is None else f"The turtle continued after {wait_s:.1f} s."
         text = "The request with data=False ends the pause."
         return failed(observed, expected, Cause("pause-never-ends", text, where), near_edge=near)
-    return passed("The turtle stood still, and continued.", near_edge=near)
+    return passed("The turtle stood still and then continued.", near_edge=near)
 
 
 def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *, near_edge: bool) -> Finding:

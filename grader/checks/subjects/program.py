@@ -84,7 +84,7 @@ def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
         observed = f"For a bag without poses, {name} ended with exit code 0."
         return failed(observed, expected, Cause("exit-code", cause, evidence.place("exit", "print")))
     if not called.ended.startswith("exit") or not called.stderr.strip():
-        observed = f"For a bag without poses, {name} said nothing ({called.ended or 'no result'})."
+        observed = f"For a bag without poses, {name} printed no message ({called.ended or 'no result'})."
         cause = "sys.exit with a string prints the string."
         return failed(observed, expected, Cause("exit-code", cause, evidence.place("exit")))
     return passed(f'{name} says "{shorten(called.stderr.strip().splitlines()[-1], 80)}"')

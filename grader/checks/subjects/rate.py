@@ -66,7 +66,7 @@ class Rate:
 
 @dataclass(frozen=True)
 class Subject:
-    """What arrives at the rate: its name, and the method of the student's code that sends it."""
+    """The messages or lines that are counted: their name, and the method of the student's code that sends them."""
 
     noun: str
     call: str

@@ -55,7 +55,7 @@ def readable(evidence: Evidence, params: InBag) -> Finding:
     if bag.problem == "storage":
         cause = "The usual storage of ROS 2 Jazzy is MCAP. Record without the options -s and --compression-mode."
         return failed(
-            f"{params.bag} holds {shorten(bag.detail)}, and no .mcap file.",
+            f"{params.bag} contains {shorten(bag.detail)} but no .mcap file.",
             expected,
             Cause("bag-storage", cause, where),
         )

@@ -27,7 +27,7 @@ def starts(evidence: Evidence, _: NoParams) -> Finding:
         if crash is not None:
             return crash_finding(evidence, crash, f"{executable} crashed at startup: {crash.observed}.", expected)
         why = why_ended(evidence)
-        observed = f"{executable} ended by itself at startup."
+        observed = f"{executable} exited on its own at startup."
         return failed(observed, expected, why)
     if not activity.nodes(recording) and not activity.spun(recording):
         return _no_node(evidence)

@@ -21,7 +21,7 @@ ZEROS = "Publish a command with all values 0, and keep publishing it or stop the
 
 
 def no_standstill(evidence: Evidence, expected: str) -> Finding | None:
-    """Return a failed finding if the turtle moves at the end, or if the node did not tell it to stop; else None."""
+    """Return a failed finding if the turtle moves at the end, or if no command of the node stopped it; else None."""
     where = evidence.place("publish")
     frames = evidence.recording.frames
     until = activity.end_s(evidence.recording)

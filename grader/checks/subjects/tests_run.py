@@ -35,11 +35,11 @@ def found(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def pass_(evidence: Evidence, _: NoParams) -> Finding:
-    """All tests pass on the right node, each time."""
+    """All tests pass on the right node in every run."""
     spec = evidence.trial.tests
     assert spec is not None
     runs, code = evidence.bench.right, code_of(evidence)
-    expected = "All tests pass on the right node, each time."
+    expected = "All tests pass on the right node in every run."
     rejected = [run for run in runs if not run.accepted]
     if not rejected and len(runs) == spec.right_runs:
         if any(run.passed for run in runs):
@@ -59,9 +59,7 @@ def pass_(evidence: Evidence, _: NoParams) -> Finding:
 
 
 LEFT_OUT = "Options in setup.cfg or pytest.ini can exclude tests, and a test can end pytest itself."
-UNSTEADY = (
-    "Something in the tests depends on luck: on the time that passes, on chance, or on what an earlier test left."
-)
+UNSTEADY = "The tests depend on timing, on random numbers, or on the state that an earlier test left."
 
 
 def _observed(run: NodeRun) -> str:

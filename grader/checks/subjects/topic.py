@@ -125,7 +125,7 @@ def _why_silent(evidence: Evidence) -> Cause:
         return why.at(code.start)
     text = "The line that publishes may never be reached, or it may run only at the start, before anything subscribes."
     if not any(code.calls(name) for name in WAKES) and not loops(evidence):
-        text = "create_timer is never called, and there is no loop, so nothing publishes again and again."
+        text = "create_timer is never called, and there is no loop, so nothing publishes repeatedly."
     known = returns_before(evidence, "publish") or hidden_error(evidence, "publish")
     return known or Cause("never-publishes", text, evidence.place("publish"))
 
@@ -195,7 +195,7 @@ ONLY_TYPE = Kind(
     "The topic has one message type",
     Topic,
     only_type,
-    about="The student's node publishes nothing but this type on the topic.",
+    about="The student's node publishes only this type on the topic.",
 )
 SUBSCRIBES = Kind(
     "subscribes",

@@ -71,7 +71,7 @@ def package(*, before: str = "", after: str = "", more: dict[str, str] | None = 
 
 
 def build(ros: Ros, workspace: Path, files: dict[str, str], *, forks: bool) -> tuple[int, str, dict[str, bytes]]:
-    """Build the files, in forks or as plain colcon does. Return the exit code, the log, and the installed files."""
+    """Build the files, with forks or with plain colcon. Return the exit code, the log, and the installed files."""
     shutil.rmtree(workspace, ignore_errors=True)
     (workspace / "src").mkdir(parents=True)
     packed = io.BytesIO()

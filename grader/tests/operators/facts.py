@@ -294,7 +294,7 @@ FACTS: dict[str, Callable[[Facts, re.Match[str], Outcome], bool]] = {
     r"drove the circle (?P<word>(?:counter-)?clockwise)": _direction,
     r"The turtle (?:did not move|turned on the spot)": lambda facts, _, __: _went(facts) < 0.06,
     r"The turtle never turns": lambda facts, _, __: abs(_turned(facts)) < 0.11,
-    r"ended by itself|crashed": _ended,
+    r"exited on its own|crashed": _ended,
     r"Nothing was built|The node was not run": lambda facts, _, __: facts.evidence.run.recording is None,
 }
 """The form of a sentence -> whether it is true. `word`, `line`, `count` and `number` are parts of the sentence."""

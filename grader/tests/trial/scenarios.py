@@ -73,7 +73,7 @@ def a_node_that_drives_before_it_is_found() -> int:
 
 
 def who_may_request() -> bool:
-    """Return whether a request is possible before any client exists. Check that it is possible only while one exists."""
+    """Return whether a request is possible before any client exists. Check that it is possible while one exists."""
     stage = _stage()
     student = rclpy.create_node("student")
     anybody = stage.may_request()

@@ -33,9 +33,9 @@ def traceback(error: str, line: int = 14, file: str = f"/ws/{NODE_FILE}") -> str
     [
         (ended("SIGINT", 0), None, "", ""),
         (ended("SIGINT", stderr=TRACEBACK), None, "", ""),
-        (ended(exit_code=0), None, "The node ended by itself.", "The node ended by itself after 3.0 s."),
-        (ended(exit_code=0, t_s=0.0), None, "The node ended by itself.", "The node ended by itself at startup."),
-        (ended(exit_code=0, t_s=0.4), None, "The node ended by itself.", "The node ended by itself after 0.4 s."),
+        (ended(exit_code=0), None, "The node exited on its own.", "The node exited on its own after 3.0 s."),
+        (ended(exit_code=0, t_s=0.0), None, "The node exited on its own.", "The node exited on its own at startup."),
+        (ended(exit_code=0, t_s=0.4), None, "The node exited on its own.", "The node exited on its own after 0.4 s."),
         (ended(), "exit code 1", "The node crashed: exit code 1.", "The node crashed after 3.0 s: exit code 1."),
         (ended(exit_code=-11), "SIGSEGV", "The node crashed: SIGSEGV.", "The node crashed after 3.0 s: SIGSEGV."),
         (ended(exit_code=-1), "SIGHUP", "The node crashed: SIGHUP.", "The node crashed after 3.0 s: SIGHUP."),

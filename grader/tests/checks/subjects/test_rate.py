@@ -98,7 +98,7 @@ def test_the_interval_that_is_worst_either_way_is_shown() -> None:
 @pytest.mark.parametrize(
     ("shape", "diagnosis", "observed"),
     [
-        ("ends at once", "ends-at-once", "0 commands arrived in 10 s. The node ended by itself at startup."),
+        ("ends at once", "ends-at-once", "0 commands arrived in 10 s. The node exited on its own at startup."),
         (
             "crash at the start",
             "crash",

@@ -114,7 +114,7 @@ def test_a_publisher_whose_topic_is_not_known_is_better_than_none() -> None:
     ("end", "stderr", "changes", "diagnosis", "line", "words"),
     [
         (CRASHED, TRACEBACK, (), "crash", ":14", "The node crashed after 3.0 s: ZeroDivisionError"),
-        (ENDED, "", (), "no-publisher", ":9", "The node ended by itself after 3.0 s."),
+        (ENDED, "", (), "no-publisher", ":9", "The node exited on its own after 3.0 s."),
         (None, "", (), "no-publisher", ":9", "The node has no publisher."),
         (None, "", (("create_publisher", "make"),), "no-publisher", "", "The node has no publisher."),
         (None, "", (("create_timer(0.5", "create_timer(500"),), "timer-milliseconds", ":10", "The node has no"),
@@ -160,7 +160,7 @@ def test_a_silent_publisher_is_explained(
     if end is None:
         assert finding.observed == f"There is a publisher on {TOPIC}, but no message arrived after the start."
     elif diagnosis != "crash":
-        assert finding.observed.endswith("no message arrived after the start. The node ended by itself after 3.0 s.")
+        assert finding.observed.endswith("no message arrived after the start. The node exited on its own after 3.0 s.")
 
 
 def test_a_second_type_is_reported_whoever_shows_it() -> None:
