@@ -145,6 +145,13 @@ def test_a_rate_above_40_hz_is_for_wall_time_to_judge(hz: float, clock: ClockNam
     assert (found.near_edge, found.status) == (near, Status.FAILED)
 
 
+@pytest.mark.parametrize(("hz", "timer", "near"), [(62.5, True, True), (62.5, False, False), (50.0, False, True)])
+def test_simulated_time_shows_the_rate_of_a_node_that_acts_once_per_pose(hz: float, timer: bool, near: bool) -> None:
+    source = () if timer else ((TIMER, "self.create_subscription(Pose, '/turtle1/pose', self.send, 10)"),)
+    found = finding("rate", evidence(recording(every(1.0 / hz, 2.0, 1.0)), node(*source)))
+    assert found.near_edge == near
+
+
 @given(st.lists(st.floats(0.42, 0.62), min_size=15, max_size=20))
 def test_the_mean_from_first_to_last_arrival_decides_where_each_interval_is_allowed(intervals: list[float]) -> None:
     times = list(accumulate(intervals, initial=0.5))
