@@ -270,7 +270,7 @@ def main() -> None:
     sys.path.pop(0)
     forks = Forks()
     colcon = importlib.import_module("colcon_core.command").main
-    # colcon loads these modules during a build and skips those that fail to load. The package would then get the blame.
+    # colcon loads these modules during a build and skips those that fail to load. The package would then be blamed.
     for name in ("colcon_core.shell.dsv", "colcon_core.shell.sh", "colcon_core.task.python.build"):
         importlib.import_module(name)
     for name in ("colcon_ros.package_identification.ros", "colcon_ros.task.ament_python.build"):

@@ -44,7 +44,7 @@ MOST_ENTRY_POINTS = 100 * 1024
 """The maximum size of entry_points.txt (bytes)."""
 
 # Standard output contains only the install tree: colcon and its processes write to standard error. The option
-# --base-paths keeps colcon from searching every folder below. The executor is sequential because there is only one
+# --base-paths keeps colcon from searching every subfolder. The executor is sequential because there is only one
 # package and starting workers takes time.
 _SCRIPT = r"""
 echo cell-is-ready >&2

@@ -25,7 +25,7 @@ def end_s(recording: Recording) -> float:
 
 
 def ended_at_start(recording: Recording) -> bool:
-    """Return whether the node exited by itself before it ran.
+    """Return whether the node exited on its own before it ran.
 
     A node ran if it raised an exception inside rclpy's spin, no matter how soon. This depends neither on the clock nor
     on when the node was first observed. Without such an exception, a node that exits within the first moment did not

@@ -1,6 +1,6 @@
 """Whether something other than velocity commands moved the turtle, judged by its effect and not by its name.
 
-turtlesim moves a turtle in each frame by its velocities alone. A frame in which the turtle moved otherwise, or with a
+turtlesim moves a turtle in each frame by its velocities alone. A frame in which the turtle moved differently, or with a
 turning speed that no command set, shows a teleport, a reset or a goal of rotate_absolute.
 """
 

@@ -96,7 +96,7 @@ class Trajectory:
 
     @property
     def rests(self) -> int:
-        """The number of times that the turtle stopped and moved on."""
+        """The number of times that the turtle stopped and moved again."""
         moves = (self.steps > RESTS_M) | (np.abs(self.turn) > STRAIGHT_RAD)
         busy = np.flatnonzero(moves)
         return int((np.diff(busy) > 1).sum()) if len(busy) else 0

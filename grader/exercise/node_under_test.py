@@ -60,7 +60,7 @@ class TestsSpec:
     the maximum duration of one run.
     """
 
-    __test__ = False  # pytest must not take this class for a test
+    __test__ = False  # keeps pytest from collecting this class
 
     module: str
     name: str

@@ -211,7 +211,7 @@ class _Grading:
 
 
 def _longest_first(evidence: Evidence) -> list[Evidence]:
-    """Return a view of the evidence per trial of a node, the longest first, so that it does not run alone at last."""
+    """Return a view of the evidence per trial of a node, the longest first, so that no processor is idle at the end."""
     specs = evidence.exercise.trials
     views = [evidence.from_trial(spec.id) for spec in specs if spec.tests is None and not spec.beside]
     return sorted(views, key=lambda view: -view.trial.scenario.duration_s)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 class Tests:
     """Runs the student's tests, as a context manager. Leaving it ends all runs of the tests."""
 
-    __test__ = False  # pytest must not take this class for a test
+    __test__ = False  # keeps pytest from collecting this class
 
     def __init__(
         self, ros: Ros, options: Options, judging: Judging, stopwatch: Stopwatch, tell: Callable[[str], None]

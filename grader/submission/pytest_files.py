@@ -25,7 +25,7 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 class TestFunction:
     """A function or method that pytest runs as a test, and the file that contains it."""
 
-    __test__ = False  # pytest must not take this class for a test
+    __test__ = False  # keeps pytest from collecting this class
 
     node: Function
     module: Module

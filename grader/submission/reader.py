@@ -228,5 +228,5 @@ class _Unpacker(pickle.Unpickler):
         found = getattr(import_module(module), name, None) if module.startswith("grader.") else None
         if isinstance(found, type) and (is_dataclass(found) or issubclass(found, Enum | GraderError)):
             return found
-        message = f"{module}.{name} is not read"
+        message = f"{module}.{name} is not allowed"
         raise pickle.UnpicklingError(message)

@@ -245,7 +245,7 @@ def _resolve(tree: Tree, path: str) -> None:
 
 
 def reason(error: OSError, path: str) -> str:
-    """Return why something could not be read, for `rejected`.
+    """Return the reason why a path could not be read, for `rejected`.
 
     If the machine is at fault, raise MachineError instead.
     """

@@ -17,9 +17,9 @@ MOST_MESSAGE = 1500
 class NodeRun:
     """One run of all tests. `node` is the id of the broken node, or "" for the right one.
 
-    `exit_code` is that of pytest, None if the run did not end by itself. `collected` is the number of tests that pytest
-    found. The other fields describe the first test that did not pass: its name, the message, the file, the line, and
-    what failed: the test itself ("failed"), a fixture ("setup") or the import of its file ("import"). A student's
+    `exit_code` is that of pytest, None if the run did not end on its own. `collected` is the number of tests that
+    pytest found. The other fields describe the first test that did not pass: its name, the message, the file, the line,
+    and what failed: the test itself ("failed"), a fixture ("setup") or the import of its file ("import"). A student's
     process reports all of this. So only the pass or failure of a run counts, and only together with the other runs.
     """
 

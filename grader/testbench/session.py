@@ -42,7 +42,7 @@ READY = b"ready\n"
 """The session writes this before any of the student's code runs. A later failure is not the machine's fault."""
 _MOST_REPORT = 64 * 1024
 _DUMPABLE, _PARENT_DEATH = 4, 1
-"""PR_SET_DUMPABLE and PR_SET_PDEATHSIG of prctl(2). A run cannot look into a session that is not dumpable."""
+"""PR_SET_DUMPABLE and PR_SET_PDEATHSIG of prctl(2). A run cannot inspect a session that is not dumpable."""
 _GONE_S = 5.0
 
 

@@ -4,7 +4,7 @@ The process runs in a room (grader.sandbox), and the student's node runs in a ce
 with the grader's own process over its standard streams. The first line of input describes the trial. The answer is
 {"ready": true} when the simulator and the launcher are ready. The second line of input says what to start, and the
 install tree follows it. The last line of output is {"recording": {...}}, {"doubt": "...", "by_chance": false} if the
-other clock must decide, {"overwhelmed": "..."} if the node brought the simulator down, or {"fault": "..."} if the
+other clock must decide, {"overwhelmed": "..."} if the node made the simulator fail, or {"fault": "..."} if the
 machine is at fault.
 """
 

@@ -186,7 +186,7 @@ class NodeProcess:
     def interrupt(self) -> None:
         """Send SIGINT, as Ctrl-C does in a terminal."""
         if self._is_gone():
-            # The node has just exited by itself, and bubblewrap is about to report it.
+            # The node has just exited on its own, and bubblewrap is about to report it.
             with suppress(subprocess.TimeoutExpired):
                 self._process.wait(STOP_S)
         if not self.ended():

@@ -129,7 +129,7 @@ class ProcessEnd:
 
     `by` is what stopped it: "itself" (before the scenario was over), or a signal. `out_of` is set if the grader stopped
     it because it used more "memory", "processes" or "files" than a node may. `stop_s` is the time from SIGINT to its
-    exit (s of wall time), None if it exited by itself. `t_s` is the time of its exit on the trial's clock. `exit_code`
+    exit (s of wall time), None if it exited on its own. `t_s` is the time of its exit on the trial's clock. `exit_code`
     is negative for a signal, as in subprocess.
     """
 

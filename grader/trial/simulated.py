@@ -95,7 +95,7 @@ class SimulatedTrial(Simulation):
                     self.recorder.follow_graph()
                     self.recorder.snapshot()
                     if self._node.run_time_s() > MOST_CPU * duration_s:
-                        self._doubt("it works more than the time allows")
+                        self._doubt("it uses too much CPU time")
                         break
                 if frame % WAITS_EVERY == 0:
                     self._doubt_sleepers()
@@ -167,7 +167,7 @@ class SimulatedTrial(Simulation):
                 return False
 
     def _settle(self) -> None:
-        """Let the node and the simulator answer each other until both are idle."""
+        """Let the node and the simulator respond to each other until both are idle."""
         patience = TickPatience(self._node, time.monotonic())
         time.sleep(_POLL_S)  # the clock has just advanced, and a look is useless before the node wakes up
         while True:

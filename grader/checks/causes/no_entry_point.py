@@ -125,7 +125,7 @@ def _missing(evidence: Evidence, points: tuple[EntryPoint, ...]) -> Cause:
             return Cause("entry-point-name", text, where).fixed_by(at(where, point.name, executable))
     file = evidence.node_file or _looks_like_a_node(evidence, [point.target for point in points])
     if file is not None:
-        text = f"{shorten(file)} is there, but setup.py has no entry point for it."
+        text = f"{shorten(file)} exists, but setup.py has no entry point for it."
         return Cause("entry-point-missing", text)
     return Cause("entry-point-missing", "setup.py has no entry point with this name, and no file looks like it.")
 

@@ -88,7 +88,7 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
         text = "Separate two arguments with a comma, not with a dot."
         return Cause("comma-missing", text).fixed_by(at(scene.crash.where, ". self", ", self"))
     if owner in PLAIN:
-        return Cause("attribute-missing", f"This value is {PLAIN[owner]}, and that has no {shorten(name)}.")
+        return Cause("attribute-missing", f"This value is {PLAIN[owner]}, which has no {shorten(name)}.")
     return None
 
 
@@ -116,7 +116,7 @@ def _misspelt(scene: CrashScene, name: str, known: Iterable[str]) -> Cause | Non
     )
     if guess is None:
         return None
-    text = f"There is {guess}. Compare the two letter by letter, including upper and lower case."
+    text = f"A similar name exists: {guess}. Compare the two letter by letter, including upper and lower case."
     return Cause("attribute-misspelt", text).fixed_by(at(scene.crash.where, name, guess))
 
 
@@ -150,7 +150,7 @@ def _of_own_type(scene: CrashScene, owner: str, name: str) -> Cause:
         )
     first = next((each for each in scene.top_functions() if "self" in [a.arg for a in each.args.args]), None)
     if first is not None and first.lineno > own.lineno:
-        text = f"{first.name} is at the left edge, so the class ends before it. Indent it like the other methods."
+        text = f"{first.name} is not indented, so the class ends before it. Indent it like the other methods."
         return Cause("method-outside-class", text, scene.at(first))
     if name in {attribute for attribute, _ in attributes_set(own)} or name in ros_names.NODE:
         return _class_for_object(owner)

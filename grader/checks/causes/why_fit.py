@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from grader.exercise.call_inputs import Arc
 
 ROUGH_M = 0.02
-"""The difference between a mean or an extreme of noisy points and that of exact points (m), besides the tolerance."""
+"""How far a mean or an extreme of noisy points may be from that of exact points (m), in addition to the tolerance."""
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ def why_interface(scene: CrashScene) -> Cause | None:
     whole = NO_OBJECT.match(scene.crash.message)
     if whole is not None:
         part = PARTS[whole[1]]
-        text = f"The type has several parts, and only these make objects: add .{part} before the parentheses."
+        text = f"You can create objects only of the parts of this type: add .{part} before the parentheses."
         return Cause("interface-part", text)
     if OF_AN_ACTION.search(scene.crash.message):
         return Cause("wrong-type", "This is the type of an action. create_client is for services; see ActionClient.")

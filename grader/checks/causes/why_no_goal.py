@@ -56,7 +56,10 @@ def _other_client(evidence: Evidence, action: str, type_name: str) -> Cause | No
     if name == action:
         text = f"The client has the type {shorten(type_)}. The action has the type {type_name}."
         return Cause("action-type", text, where)
-    text = f"The client uses the name {shorten(name)}. The name of the action is {action}, with the name of the turtle."
+    text = (
+        f"The client uses the name {shorten(name)}. The name of the action is {action}, which includes the name "
+        "of the turtle."
+    )
     return Cause("action-name", text, where)
 
 
@@ -71,10 +74,10 @@ def why_aborted(evidence: Evidence, goals: list[Goal], goal: Goal) -> tuple[str,
             "callback that receives the result."
         )
         cause = Cause("goal-replaced", text, evidence.place(*SENDS))
-        return f"A second goal at {later[0].t_s:.1f} s aborted the goal of {goal.t_s:.1f} s.", cause
+        return f"A second goal at {later[0].t_s:.1f} s aborted the goal sent at {goal.t_s:.1f} s.", cause
     commands = [each for each in evidence.commands if goal.t_s - ONE_FRAME_S <= each.t_s <= until_s]
     if commands:
         text = "Any command aborts the goal, even one with zeros. Publish nothing while the turtle follows a goal."
         cause = Cause("goal-aborted-by-command", text, evidence.place("publish"))
-        return f"A velocity command at {commands[-1].t_s:.1f} s aborted the goal of {goal.t_s:.1f} s.", cause
-    return f"The goal of {goal.t_s:.1f} s was aborted.", Cause("goal-aborted", where=evidence.place(*SENDS))
+        return f"A velocity command at {commands[-1].t_s:.1f} s aborted the goal sent at {goal.t_s:.1f} s.", cause
+    return f"The goal sent at {goal.t_s:.1f} s was aborted.", Cause("goal-aborted", where=evidence.place(*SENDS))

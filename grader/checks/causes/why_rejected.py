@@ -67,6 +67,6 @@ def why_rejected(run: NodeRun, code: TestCode) -> Cause:
 
 
 def last_error(message: str) -> str:
-    """Return the exception in an excerpt of pytest, on one line."""
+    """Return the exception from an excerpt of pytest's output, on one line."""
     found = [match["text"] for match in ERROR.finditer(message)]
     return found[-1] if found else " ".join(message.split())[:150]

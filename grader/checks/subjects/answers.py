@@ -105,7 +105,7 @@ class GraphQuestion:
     connected_to: str = string(
         "a node's full name", start="/", default="", about="Only topics on which this node has the other end count."
     )
-    form: str = choice("text", "list", about="Whether the answer is a single string or a list of all that fit.")
+    form: str = choice("text", "list", about="Whether the answer is a single string or a list of all matching strings.")
 
 
 def answer_graph(evidence: Evidence, params: GraphQuestion) -> Finding:

@@ -40,7 +40,7 @@ class Arc:
 
     radius_m: float = number(above=0, at_most=5.5, about="The radius.")
     radius_tolerance_m: float = number(0.06, above=0, about="The maximum error of the radius.")
-    residual_m: float = number(0.03, above=0, about="How far the piece may deviate from the fitted circle (RMS).")
+    residual_m: float = number(0.03, above=0, about="The maximum deviation of the piece from the fitted circle (RMS).")
     direction: str = choice("counter-clockwise", "clockwise", about="The direction of the turn.")
     angle_deg: float = number(0.0, at_least=0, about="The angle of the arc; any angle if 0.")
     angle_tolerance_deg: float = number(12.0, above=0, about="The maximum error of the angle.")
@@ -78,7 +78,7 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
     if params.color is not None and _pieces(evidence, chosen) > 1:
         color = ", ".join(map(str, params.color))
         observed = f"The turtle drew with the colour {color}, then with another one, and then with the first one again."
-        text = "The node begins again after its last arc. The last state must be one in which it sends only zeros."
+        text = "The node starts again after its last arc. The last state must be one in which it sends only zeros."
         return failed(observed, expected, Cause("drives-on", text, evidence.place("publish")))
     points = np.append(np.flatnonzero(chosen)[0], np.flatnonzero(chosen) + 1)
     x, y = trajectory.x[points], trajectory.y[points]
@@ -204,7 +204,7 @@ ARC = Kind(
     "The turtle drives an arc",
     Arc,
     arc,
-    about="The turtle drives an arc by commands, in a certain colour or in a certain part of the trial.",
+    about="Velocity commands drive the turtle on an arc, in a certain colour or in a certain part of the trial.",
     drives=True,
     # A second arc to the other side leaves the first circle, but not one of twice the radius.
     radius_m=lambda params: max(params.radius_m, min(2.0 * params.radius_m, MOST_ROOM_M)),

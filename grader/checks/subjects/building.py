@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 INSTALLED_MODULE = re.compile(r"(?:local/)?lib/python[\d.]+/(?:site|dist)-packages/(?P<path>.+\.py)")
 LAST_WORDS = re.compile(r"^(?:error|[\w.]*Error|[\w.]*Exception)\b.*", re.MULTILINE)
 SETUP_PY_FRAME = re.compile(r"(?P<before>, in run_setup\n.*\n(?:[ ^~]+\n)?\s+File )\"<string>\"")
-"""How setup.py appears in a traceback when colcon runs it to read the arguments of setup()."""
+"""The form of setup.py in a traceback when colcon runs it to read the arguments of setup()."""
 UNREAD_SETUP = "return ast.literal_eval(output)"
 """The line of colcon that reads the arguments of setup()."""
 NO_FILE = re.compile(r"can't copy '?(?P<file>[^':]*)'?: doesn't exist")

@@ -71,7 +71,7 @@ def _goes_on(evidence: Evidence, params: CancelsGoal, goal: Goal, took_s: float,
         return failed(
             f"The goal was cancelled {took_s:.1f} s after the call.",
             expected,
-            Cause("goal-goes-on", "Request this in the callback of the service.", where),
+            Cause("goal-goes-on", "Cancel the goal in the callback of the service.", where),
             near_edge=Band.at_most(params.within_s).near(took_s),
         )
     text = "cancel_goal_async of the goal handle requests the cancellation."
@@ -81,7 +81,7 @@ def _goes_on(evidence: Evidence, params: CancelsGoal, goal: Goal, took_s: float,
 
 def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
     """After the call of the service, no goal arrives."""
-    expected = f"After a call of {params.service}, the turtle stays as it is."
+    expected = f"After a call of {params.service}, the node sends no more goals."
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     goals = goals_of(evidence)
     found = _stopped(goals, calls)

@@ -135,9 +135,7 @@ def _wrong(
     )
     where = evidence.place("info")
     if all(_holds(evidence, params, *pair, factor=-1.0) for pair in told):
-        return failed(
-            observed, expected, Cause("wrong-sign", "Log the number from the feedback without a change.", where)
-        )
+        return failed(observed, expected, Cause("wrong-sign", "Log the number from the feedback unchanged.", where))
     if all(_holds(evidence, params, *pair, signed=False) for pair in told):
         text = "The number keeps its sign: it is negative while the turtle turns to the right. Do not use abs."
         return failed(observed, expected, Cause("wrong-sign", text, where))

@@ -35,8 +35,8 @@ class SendsGoals:
 
     heading_deg: float = number(about="The heading of the goal, in degrees: 0 is to the right, 90 is up.")
     nth: float = number(1, at_least=1, about="The number of the first goal that is compared, from 1.")
-    total: float = number(1, at_least=1, about="How many goals are compared.")
-    turn_deg: float = number(0.0, about="The angle from one goal to the next, to the left.")
+    total: float = number(1, at_least=1, about="The number of goals that are compared.")
+    turn_deg: float = number(0.0, about="The angle to the left from one goal to the next.")
     tolerance_deg: float = number(1.0, above=0, about="The maximum error of a heading.")
 
 
@@ -47,7 +47,9 @@ def sends_goals(evidence: Evidence, params: SendsGoals) -> Finding:
     headings = [params.heading_deg + each * params.turn_deg for each in range(amount)]
     expected = f"Goal {first + 1} of the node is a heading of {headings[0]:g} degrees, and the turtle reaches it."
     if amount > 1:
-        expected = f"{amount} goals, from {headings[0]:g} degrees on in steps of {params.turn_deg:g}, each one reached."
+        expected = (
+            f"{amount} goals, starting at {headings[0]:g} degrees, in steps of {params.turn_deg:g}, each one reached."
+        )
     if not goals:
         return no_goal(evidence, expected)
     for goal in goals[: first + amount]:
@@ -67,7 +69,7 @@ def sends_goals(evidence: Evidence, params: SendsGoals) -> Finding:
             crash = crash_of(evidence)
             if crash is not None:
                 return crash_finding(evidence, crash, end_observed(evidence), expected)
-            observed = f"The goal of {goal.t_s:.1f} s was not reached until the end: it is {goal.status}."
+            observed = f"The goal sent at {goal.t_s:.1f} s was not reached by the end: its status is {goal.status}."
             text = "The node itself cancelled it." if goal.status == "canceled" else "The node starts too late."
             return failed(observed, expected, Cause("goal-not-reached", text, where))
     if len(goals) < first + amount:
@@ -134,7 +136,9 @@ def _other_heading(
 ) -> Finding:
     theta = float(goal.request["theta"])
     where = evidence.code.assigned("theta") or evidence.place("Goal", *SENDS)
-    observed = f"The goal of {goal.t_s:.1f} s has theta={theta:.2f} rad, which is {math.degrees(theta):.0f} degrees."
+    observed = (
+        f"The goal sent at {goal.t_s:.1f} s has theta={theta:.2f} rad, which is {math.degrees(theta):.0f} degrees."
+    )
     if abs(theta) > LARGE_RAD and abs(theta - heading) < 1.0:
         text = "The field theta is in radians. math.radians converts degrees."
         return failed(observed, expected, Cause("degrees", text, where), near_edge=near_edge)
@@ -153,7 +157,7 @@ def awaits_result(evidence: Evidence, _: NoParams) -> Finding:
         return no_goal(evidence, expected)
     without = [goal for goal in reached if goal.result_asked_s is None]
     if without:
-        observed = f"The node never asked for the result of the goal of {without[0].t_s:.1f} s."
+        observed = f"The node never asked for the result of the goal sent at {without[0].t_s:.1f} s."
         return failed(observed, expected, waits_in_callback(evidence) or _no_result(evidence))
     return passed(f"The node asked for the result of {count(len(reached), 'goal')}.")
 

@@ -149,7 +149,7 @@ def log_counter(evidence: Evidence, params: Counter) -> Finding:
         at = next(index for index, step in enumerate(steps) if step != 1.0)
         observed = f"The number after {numbers[at]:.0f} is {numbers[at + 1]:.0f}."
         return failed(
-            observed, expected, Cause("counter-step", "Each number must be one more than the number before.", where)
+            observed, expected, Cause("counter-step", "Each number must be one more than the previous number.", where)
         )
     if numbers[0] != params.first:
         observed = f"The first number is {numbers[0]:.0f}."

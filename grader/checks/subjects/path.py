@@ -288,7 +288,8 @@ CIRCLE = Kind(
     "The turtle drives the circle",
     CircleParams,
     circle,
-    about="The turtle drives a circle by commands: round, in the right direction, with the right size and place.",
+    about="Velocity commands drive the turtle on a circle: round, in the right direction, with the right size and "
+    "place.",
     drives=True,
     requested=requested_circle,
     radius_m=lambda params: params.radius_m,

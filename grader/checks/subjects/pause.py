@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 EARLY_S = 0.1
 """A call of the trial may be made this much before its planned time because of rounding (s)."""
 BEFORE_S = 1.0
-"""The turtle must move in this time before the pause (s)."""
+"""The turtle must move during this time before the pause (s)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +79,8 @@ def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *,
     if driving:
         observed = f"The turtle still moved {stop_s:.1f} s after the call."
         text = (
-            "The commands still drive during the pause: while the node is paused, publish a command with all values 0."
+            "The commands still move the turtle during the pause: while the node is paused, publish a command with "
+            "all values 0."
         )
         return failed(observed, expected, Cause("pause-ignored", text, where), near_edge=near_edge)
     observed = f"The turtle took {stop_s:.1f} s to stop after the call."

@@ -28,7 +28,7 @@ class Printed(OneCall):
     """One run of the program, and the names of the numbers in its line that are compared."""
 
     format: str = string("a line with its numbers in braces", about=FORMAT)
-    values: tuple[str, ...] = strings(about='Which numbers are compared: "messages", "rate", "x", "y", "radius".')
+    values: tuple[str, ...] = strings(about='The numbers that are compared: "messages", "rate", "x", "y", "radius".')
 
 
 def prints(evidence: Evidence, params: Printed) -> Finding:

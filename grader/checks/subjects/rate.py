@@ -185,7 +185,7 @@ def _few(evidence: Evidence, params: Rate, what: Subject, measured: Measured, ex
     if slow is not None:
         return failed(observed, expected, slow)
     if amount == 1:
-        cause = f"A timer calls a method again and again, so that {what.call} is called more than once."
+        cause = f"A timer calls a method repeatedly, so that {what.call} is called more than once."
         if evidence.code.calls("create_timer") and evidence.code.calls("cancel"):
             cause, where = "cancel stops the timer, so it does not call its method again.", evidence.place("cancel")
         return failed(observed, expected, Cause("published-once" if what is COMMAND else "logged-once", cause, where))

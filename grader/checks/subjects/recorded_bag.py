@@ -63,7 +63,7 @@ def readable(evidence: Evidence, params: InBag) -> Finding:
         cause = "Delete the folder, and record again."
         return failed(f"{params.bag} cannot be read: {bag.detail}.", expected, Cause("bag-damaged", cause, where))
     if not sum(bag.counts.values()):
-        cause = "The recording ended before anything arrived, or nothing was published meanwhile."
+        cause = "The recording ended before anything arrived, or nothing was published during it."
         return failed(f"The bag {params.bag} is empty.", expected, Cause("bag-empty", cause, where))
     return passed(f"The bag contains {sum(bag.counts.values())} messages.")
 
@@ -97,7 +97,7 @@ class CircleInBag(InBag):
     topic: str = string("a topic", start="/", default="/turtle1/pose", about="The topic with the poses.")
     radius_m: float = number(above=0, about="The radius of the circle.")
     tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error of the radius.")
-    turns: float = number(1.0, above=0, about="How many turns the bag must show at least.")
+    turns: float = number(1.0, above=0, about="The minimum number of turns in the bag.")
 
 
 def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:

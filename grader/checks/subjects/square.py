@@ -105,7 +105,7 @@ def square(evidence: Evidence, params: Square) -> Finding:
     if len(sides.lengths) < SIDES:
         observed = f"The trajectory has {count(len(sides.lengths), 'side')}."
         cause = (
-            "Four sides and the turns between them must fit into the time. "
+            "Four sides and the turns between them must fit into the duration of the trial. "
             "The node must switch back from turning to driving each time."
         )
         return failed(observed, expected, Cause("too-few-sides", cause, where))

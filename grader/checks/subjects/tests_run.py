@@ -122,7 +122,7 @@ def _is_silent(evidence: Evidence, broken: str) -> bool:
 
 
 def _hung(expected: str, code: TestCode, run: NodeRun | None) -> Finding:
-    text = "A test that waits for a message that never comes must give up: it needs a deadline."
+    text = "A test that waits for a message that never arrives must give up: it needs a deadline."
     where = code.tests[0].where if code.tests else None
     observed = "The tests did not end in time." if run is not None else "The tests did not end in time on other nodes."
     return failed(observed, expected, Cause("test-hangs", text, where))

@@ -33,8 +33,8 @@ def setup_py(instead: str, more: str = "") -> Files:
 @pytest.mark.parametrize(
     ("files", "diagnosis", "where", "words"),
     [
-        (setup_py(""), "entry-point-missing", "setup.py:5", f"{NODE_FILE} is there, but"),
-        ({**setup_py(""), NODE_FILE: None, OTHER: NODE}, "entry-point-missing", "setup.py:5", f"{OTHER} is there, but"),
+        (setup_py(""), "entry-point-missing", "setup.py:5", f"{NODE_FILE} exists, but"),
+        ({**setup_py(""), NODE_FILE: None, OTHER: NODE}, "entry-point-missing", "setup.py:5", f"{OTHER} exists, but"),
         (
             {**setup_py(""), NODE_FILE: None},
             "entry-point-missing",
@@ -69,9 +69,9 @@ def setup_py(instead: str, more: str = "") -> Files:
             "setup.py:13",
             "The entry point is in another list.",
         ),
-        ({"setup.py": None}, "entry-point-missing", "setup.py", f"{NODE_FILE} is there, but"),
-        ({"setup.py": "setup(\n"}, "entry-point-missing", "setup.py", f"{NODE_FILE} is there, but"),
-        ({"setup.py": "print(3)\n"}, "entry-point-missing", "setup.py", f"{NODE_FILE} is there, but"),
+        ({"setup.py": None}, "entry-point-missing", "setup.py", f"{NODE_FILE} exists, but"),
+        ({"setup.py": "setup(\n"}, "entry-point-missing", "setup.py", f"{NODE_FILE} exists, but"),
+        ({"setup.py": "print(3)\n"}, "entry-point-missing", "setup.py", f"{NODE_FILE} exists, but"),
     ],
 )
 def test_what_setup_py_has_instead_is_reported(files: Files, diagnosis: str, where: str, words: str) -> None:

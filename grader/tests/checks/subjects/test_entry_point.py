@@ -33,7 +33,7 @@ def test_a_text_that_is_no_entry_point_is_explained_by_its_signs(text: str, diag
 def test_a_node_under_another_file_name_that_no_entry_point_leads_to_is_shown() -> None:
     files = {NODE_FILE: None, "my_robot_controller/circle.py": NODE, **setup_py(f'            "{POINT}",\n', "")}
     found = of("entry-point", files, NOTHING)
-    assert found.cause.startswith("my_robot_controller/circle.py is there, but setup.py has no entry point for it")
+    assert found.cause.startswith("my_robot_controller/circle.py exists, but setup.py has no entry point for it")
 
 
 def leads_to(target: str) -> Build:
