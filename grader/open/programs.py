@@ -1,8 +1,9 @@
-"""The programs that a page can start: turtlesim, and a node of the current step. They are the same as in a terminal."""
+"""The programs that a page can start: turtlesim as in a terminal, and a node of the current step in a cell."""
 
 from __future__ import annotations
 
 import asyncio
+import json
 import os
 import re
 import signal
@@ -11,6 +12,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from grader.common.interpreter import interpreter
+from grader.open.linked_cell import linkable
 from grader.view.address import Address, remembered
 
 if TYPE_CHECKING:
@@ -25,6 +27,7 @@ ENDS_S = 8.0
 """How long a program may take to end after Ctrl-C (s). Then it is killed."""
 READY_S = 30.0
 """How long turtlesim may take until it is there (s)."""
+NO_CELL = "There is no sandbox here, so the program runs under your account, as in a terminal."
 _LOOK_S = 0.05
 _ADDRESS = re.compile(r"See it move: http://127\.0\.0\.1:(\d+)/#(\S+)")
 _SCREENS = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
@@ -44,8 +47,11 @@ class Program:
         """Whether the program runs."""
         return self._process is not None
 
-    async def start(self, *arguments: str) -> None:
-        """Start `python ARGUMENTS`, unless the program runs already."""
+    async def start(self, *arguments: str, says: str = "", held: bool = False) -> None:
+        """Start `python ARGUMENTS`, unless the program runs already. `says` is a line before its output.
+
+        If the program is `held`, its standard input is a pipe that closes when this process ends, however it ends.
+        """
         if self.running:
             return
         # The page shows the turtle, so no other page is opened.
@@ -54,10 +60,12 @@ class Program:
         own = {"PYTHONUNBUFFERED": "1", "GRADER_ROS2_DAEMON": "0"}
         start = interpreter(*arguments, env={**env, **own}, searches=True)
         self.lines.clear()
+        if says:
+            self.lines.extend([says, ""])
         self._process = await asyncio.create_subprocess_exec(
             *start.argv,
             env=start.env,
-            stdin=asyncio.subprocess.DEVNULL,
+            stdin=asyncio.subprocess.PIPE if held else asyncio.subprocess.DEVNULL,
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.STDOUT,
             start_new_session=True,
@@ -121,10 +129,15 @@ class Programs:
             await asyncio.sleep(_LOOK_S)
 
     async def start_node(self, step: str, executable: str) -> None:
-        """Start `grader run` with this executable of the step, beside a turtlesim without another page."""
+        """Start this executable of the step beside turtlesim: in a cell if there can be one, else like `grader run`."""
         await self.start_turtlesim()
-        given = ["--workspace", str(self._workspace)] if self._workspace else []
-        await self.node.start("-m", "grader.cli", "run", *given, "--no-view", step, executable)
+        workspace = str(self._workspace) if self._workspace else None
+        if await asyncio.to_thread(linkable):
+            settings = {"step": step, "executable": executable, "workspace": workspace}
+            await self.node.start("-m", "grader.open.node_in_cell", json.dumps(settings), held=True)
+            return
+        given = ["--workspace", workspace] if workspace else []
+        await self.node.start("-m", "grader.cli", "run", *given, "--no-view", step, executable, says=NO_CELL)
 
     async def stop(self) -> None:
         """Stop both."""

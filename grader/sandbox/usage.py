@@ -33,7 +33,7 @@ def exceeded(pid: int, limits: Limits) -> str | None:
     memory = 0
     processes = 0
     disks: dict[int, tuple[int, int]] = {}
-    for process in _family(pid):
+    for process in family(pid):
         memory += _own_bytes(process)
         processes += _threads(process)
         if not disks:
@@ -77,20 +77,20 @@ class Guard:
         return sum(ready_s for pid, ready_s in self._ready.copy().items() if pid != but)
 
     def _worked_so_far_s(self) -> float:
-        return sum(map(_cpu_s, _family(self._pid)))
+        return sum(map(_cpu_s, family(self._pid)))
 
     def _run(self) -> None:
         while not self._closed.wait(EVERY_S):
-            family = list(_family(self._pid))
-            self._worked.append((time.monotonic(), sum(map(_cpu_s, family))))
-            self._ready.update({pid: max(_ready_s(pid), self._ready.get(pid, 0.0)) for pid in family})
+            processes = list(family(self._pid))
+            self._worked.append((time.monotonic(), sum(map(_cpu_s, processes))))
+            self._ready.update({pid: max(_ready_s(pid), self._ready.get(pid, 0.0)) for pid in processes})
             what = exceeded(self._pid, self._limits)
             if what is not None:
                 self._over(what)
                 return
 
 
-def _family(pid: int) -> Iterator[int]:
+def family(pid: int) -> Iterator[int]:
     """Return the process and all its descendants. Orphans become children of the cell's first process."""
     waiting = [pid]
     while waiting:

@@ -39,6 +39,8 @@ OTHERS = {
     ("grade", "_alone"): "our command grader",
     ("grade", "start"): "made by the door in the same function",
     ("kernel", "_source_and_start_again"): "bash, which sources a ROS 2 and becomes what the door made",
+    ("cell_sockets", "main"): "the launcher, in its cell, as linked_cell made it",
+    ("linked_cell", "linked_cell"): "bubblewrap, with what the door made in the same function",
     ("in_cell", "__init__"): "this process again, in its cell",
     ("in_cell", "_next_run"): "this process again, in its cell, as a run of setup.py",
     ("in_cell", "main"): "tar, in its cell",

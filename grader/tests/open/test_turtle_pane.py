@@ -11,6 +11,8 @@ from playwright.sync_api import TimeoutError as NotInTime
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
+from grader.open.programs import NO_CELL
+from grader.sandbox import bubblewrap
 from grader.tests.browser import violations
 from grader.tests.domains import own_domain
 from grader.tests.open.course import CIRCLE, Course, course
@@ -79,6 +81,8 @@ def drive(learner: Course, browser: Browser) -> None:
 
     page.get_by_role("button", name="Run it").click()
     page.locator("#node-lines").get_by_text("[draw_circle]").wait_for()
+    where = "draw_circle runs in a sandbox." if bubblewrap.usable() else NO_CELL
+    page.locator("#node-lines").get_by_text(where).wait_for()
     page.locator("#rosout").get_by_text("[INFO] [draw_circle]: ").wait_for()
     page.locator('#graph [data-name="/draw_circle"]').wait_for()
     page.locator("#where").get_by_text("x 7.").wait_for()
@@ -86,6 +90,9 @@ def drive(learner: Course, browser: Browser) -> None:
     page.get_by_label("ros2").fill("topic info /turtle1/cmd_vel")
     page.keyboard.press("Enter")
     page.locator("#asked").get_by_text("Type: geometry_msgs/msg/Twist").wait_for()
+    page.get_by_label("ros2").fill("node info /draw_circle")
+    page.keyboard.press("Enter")
+    page.locator("#asked").get_by_text("/turtle1/cmd_vel: geometry_msgs/msg/Twist").wait_for()
     page.get_by_label("ros2").fill("topic pub /turtle1/cmd_vel")
     page.keyboard.press("Enter")
     page.locator("#asked").get_by_text("Only questions that change nothing").wait_for()

@@ -1,0 +1,152 @@
+"""A cell in which a node can run, with a relay to the other nodes of this machine (dds_relay.py)."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from selectors import DefaultSelector
+from typing import TYPE_CHECKING
+
+import grader.graph
+import grader.trial
+from grader.common.interpreter import interpreter
+from grader.errors import MachineError
+from grader.open.dds_ports import reserve
+from grader.open.dds_relay import Relay
+from grader.ros import installation
+from grader.sandbox import bubblewrap
+from grader.sandbox.control_group import control_group
+from grader.sandbox.limits import NODE_LIMITS
+from grader.sandbox.system_calls import call_filter
+from grader.sandbox.usage import Guard, family
+from grader.sandbox.user import cell_user
+from grader.trial.node_process import READY
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from grader.ros.installation import Ros
+
+LIMITS = replace(NODE_LIMITS, cpu_s=4 * 3600)
+"""The limits of a node of a trial, but it may run for an afternoon."""
+PROFILE = Path(grader.graph.__file__).with_name("loopback.xml")
+"""The Fast DDS profile for a network that has only 127.0.0.1."""
+LAUNCHER = Path(grader.trial.__file__).with_name("launcher.py")
+SOCKETS = Path(__file__).with_name("cell_sockets.py")
+FAST_DDS = "rmw_fastrtps_cpp"
+_MOST_SOCKETS = 250
+
+
+@dataclass
+class LinkedCell:
+    """The process of the launcher in its cell. Serve `selector` by calling the data of each key that is ready."""
+
+    process: subprocess.Popen[bytes]
+    selector: DefaultSelector
+    first: int = 0
+    """The process id of the launcher, which becomes the node."""
+    out_of: str | None = None
+    """The limit that the node has exceeded, if that has ended it."""
+
+    def interrupt(self) -> None:
+        """Send SIGINT to the process group of the node, as Ctrl-C does. Before the node has begun, end the cell."""
+        with suppress(ProcessLookupError):
+            if os.getpgid(self.first) == self.first:
+                os.killpg(self.first, signal.SIGINT)
+            else:
+                self.kill()
+
+    def kill(self) -> None:
+        """End the cell and everything in it."""
+        # The whole group, because while bubblewrap starts, it has a child that does not yet die with it.
+        with suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
+
+    def await_ready(self) -> None:
+        """Wait until the launcher can take its order.
+
+        Raises:
+            MachineError: it has ended.
+        """
+        assert self.process.stdout is not None
+        received = b""
+        while not received.endswith(READY):
+            byte = os.read(self.process.stdout.fileno(), 1)
+            if not byte:
+                lines = received.decode("utf-8", "replace").strip().splitlines() or ["no message"]
+                message = f"The sandbox did not start: {lines[-1]}. `grader doctor` says what is missing."
+                raise MachineError(message)
+            received += byte
+        # Nothing has forked yet but bubblewrap, each of whose processes has one child.
+        self.first = list(family(self.process.pid))[-1]
+
+    def over(self, what: str) -> None:
+        """End the cell because its node has exceeded a limit."""
+        self.out_of = what
+        self.kill()
+
+
+def linkable() -> bool:
+    """Return whether a node in a cell can meet the nodes of this machine: cells work, and ROS 2 uses Fast DDS."""
+    return os.environ.get("RMW_IMPLEMENTATION", FAST_DDS) == FAST_DDS and bubblewrap.usable()
+
+
+def environment(ros: Ros, domain: int, overlays: Sequence[Path] = ()) -> dict[str, str]:
+    """Return the environment of a node in this cell. `overlays` are install folders inside of it."""
+    env = installation.environment(ros, home=bubblewrap.HOME, overlays=overlays, domain=domain)
+    # The profile says what LOCALHOST would say, but without shared memory, which the cell does not share.
+    reach = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT", "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILE)}
+    return {**env, **reach}
+
+
+@contextmanager
+def linked_cell(ros: Ros, domain: int) -> Iterator[LinkedCell]:
+    """Start the launcher of trials in a cell, with a relay to the nodes in this ROS domain. The cell ends at the end.
+
+    Raises:
+        MachineError: the cell could not be started, or there is no free port.
+    """
+    with ExitStack() as stack:
+        ports = reserve(domain)
+        for each in ports.own:
+            stack.callback(each.close)
+        ours, theirs = socket.socketpair()
+        stack.enter_context(ours)
+        env = environment(ros, domain)
+        launch = interpreter(str(LAUNCHER), python=str(ros.python), env=env, searches=True)
+        listed = ",".join(map(str, ports.others))
+        first = interpreter(
+            *(str(SOCKETS), str(theirs.fileno()), listed, *launch.argv),
+            python=str(ros.python),
+            env=launch.env,
+            searches=True,
+        )
+        view = bubblewrap.ros_view(ros, PROFILE, LAUNCHER, SOCKETS)
+        group = stack.enter_context(control_group(LIMITS))
+        user = stack.enter_context(cell_user())
+        with theirs, call_filter() as filter_fd:
+            command = bubblewrap.lone_cell(
+                first.argv, view, env=first.env, limits=LIMITS, user=user, filter_fd=filter_fd
+            )
+            process = subprocess.Popen(
+                group.joined(command),
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                pass_fds=[theirs.fileno(), *([] if filter_fd is None else [filter_fd])],
+                start_new_session=True,
+            )
+        cell = LinkedCell(process, stack.enter_context(DefaultSelector()))
+        stack.callback(process.wait)
+        stack.callback(cell.kill)
+        _, descriptors, _, _ = socket.recv_fds(ours, 1, _MOST_SOCKETS)
+        inside = [socket.socket(fileno=each) for each in descriptors]
+        cell.await_ready()
+        stack.callback(Relay(cell.selector, domain, ports, inside).close)
+        stack.callback(Guard(process.pid, LIMITS, cell.over).close)
+        yield cell
