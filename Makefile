@@ -8,7 +8,8 @@ export PATH := $(if $(PATH),$(PATH):)/usr/local/sbin:/usr/local/bin:/usr/sbin:/u
 
 BIN := .venv/bin
 # `make demo PYTHON=python3.12` chooses the Python of .venv, and replaces a .venv of another Python.
-SET_UP := python3 -Es -m grader.setup.bootstrap
+# Without compiled modules: a full disk may have truncated them, and the set-up must still start.
+SET_UP := python3 -EsB -X pycache_prefix=/dev/null -m grader.setup.bootstrap
 CHOSEN := $(if $(findstring command line,$(origin PYTHON)),--python $(PYTHON))
 
 help: ## this list

@@ -21,6 +21,7 @@ from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 from grader.common import interpreter, package_managers
 from grader.common.package_managers import Need
 from grader.setup import machine, setup_errors
+from grader.setup.compiled_modules import remove_incomplete
 from grader.setup.provide import provide
 from grader.setup.setup_errors import MACHINE_BROKEN
 
@@ -194,6 +195,7 @@ def main(arguments: Sequence[str]) -> int:
         return MACHINE_BROKEN
     with (ROOT / "requirements.lock").open() as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)  # A second `make` waits for the first one.
+        remove_incomplete(ROOT / "grader")
         return set_up(PARTS[requested.parts], ros, requested.python)
 
 

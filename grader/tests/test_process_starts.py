@@ -179,7 +179,7 @@ def test_a_new_process_start_would_be_found(code: str) -> None:
     assert [is_made_by_the_door(call, tree) for _, call in process_starts(tree)] == [False]
 
 
-IN_THE_COURSES_FOLDER = {"-Es -m grader.setup.bootstrap", "-m pytest"}
+IN_THE_COURSES_FOLDER = {"-Es -m grader.setup.bootstrap", "-EsB -X", "-m pytest"}
 """For machines without an installation, and for developers: the course is the current folder."""
 
 

@@ -1,0 +1,26 @@
+"""Compiled modules (.pyc) that are incomplete because the disk was full when Python stored them.
+
+Python does not notice that the end is missing. From then on, each import of the module fails with an EOFError.
+"""
+
+import marshal
+from pathlib import Path
+
+HEADER = 16
+"""The size of the header of a compiled module (bytes): PEP 552."""
+
+
+def remove_incomplete(folder: Path) -> None:
+    """Remove the incomplete ones in this folder and below it. Python then compiles these modules again."""
+    for path in folder.rglob("__pycache__/*.pyc"):
+        if not is_complete(path):
+            path.unlink()
+
+
+def is_complete(path: Path) -> bool:
+    """Return whether Python can load this compiled module. A module of another Python version may not load."""
+    try:
+        marshal.loads(path.read_bytes()[HEADER:])
+    except (EOFError, ValueError, TypeError):
+        return False
+    return True
