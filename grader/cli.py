@@ -146,7 +146,7 @@ def regrade(
     html: Html = None,
     verbose: Verbose = False,
 ) -> None:
-    """Judge a recording again. No code of the student is run."""
+    """Judge a recording again, without running any of the student's code."""
     from grader.checks.exercises import find_exercise, load_exercise
     from grader.report.output_file import check_writable
     from grader.report.report import report_of

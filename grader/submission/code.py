@@ -38,7 +38,7 @@ class Unreadable:
 
 @dataclass(frozen=True)
 class Module:
-    """A Python file with its syntax tree, or with the reason why it has none."""
+    """A Python file with its syntax tree, or with the reason why it cannot be parsed."""
 
     file: str
     tree: ast.Module | None = None

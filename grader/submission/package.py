@@ -42,8 +42,7 @@ class Submission:
     files: Mapping[str, bytes]
     rejected: tuple[str, ...]
     digest: str
-    """The SHA-256 hash of the sorted paths and contents of `files`. It is independent of machine
-    and permissions."""
+    """The SHA-256 hash of the sorted paths and contents of `files`. It does not depend on permissions."""
     executable: frozenset[str] = frozenset()
     """The paths in `files` that have the executable bit."""
     student: str | None = None

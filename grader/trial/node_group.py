@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class NodeGroup:
-    """The node of the trial, which comes first, and the nodes beside it."""
+    """The nodes of a trial: first the trial's own node, then the nodes beside it."""
 
     def __init__(self, processes: Sequence[NodeProcess]) -> None:
         self.processes = tuple(processes)
@@ -49,7 +49,7 @@ class NodeGroup:
             process.interrupt()
 
     def escalate(self) -> None:
-        """Send the stronger signals to those that did not stop. Call this repeatedly after `interrupt`."""
+        """Send SIGTERM or SIGKILL to processes that do not exit in time. Call this repeatedly after `interrupt`."""
         for process in self.processes:
             if not process.ended():
                 process.escalate()
@@ -59,20 +59,23 @@ class NodeGroup:
         return sum(process.read_output(now_s) for process in self.processes)
 
     def waited_to_write(self, size: int) -> bool:
-        """Return whether one of the nodes, which wrote this many bytes together, may have waited for a reader."""
+        """Return whether one of the nodes, which wrote this many bytes in total, may have waited for a reader."""
         return any(process.waited_to_write(size) for process in self.processes)
 
     def worked_s(self, begin: float, end: float) -> float:
-        """Return the CPU time that all of them used between two times of CLOCK_MONOTONIC (s)."""
+        """Return the CPU time that all processes used between two times of CLOCK_MONOTONIC (s)."""
         return sum(process.worked_s(begin, end) for process in self.processes)
 
     def started_ready_s(self) -> float:
-        """Return how long the processes that they started have run or waited for a processor so far (s)."""
+        """Return how long the processes that the nodes started have run or waited for a processor so far (s)."""
         return sum(process.started_ready_s() for process in self.processes)
 
 
 class GroupThreads:
-    """The threads of several processes, as `Threads` has those of one. All raise GoneError if one has exited."""
+    """The threads of several processes, with the methods of `Threads`.
+
+    All methods raise GoneError if a process has exited.
+    """
 
     def __init__(self, pids: Sequence[int], wanted: Callable[[str], bool] = lambda _: True) -> None:
         self._each: list[Threads] = []
@@ -94,7 +97,7 @@ class GroupThreads:
         return LookAtThreads(all(look.asleep for look in looks), sum((look.runs for look in looks), ()))
 
     def looks(self) -> list[LookAtThreads]:
-        """Look at every thread once, and return one look per process."""
+        """Look at every thread once, and return the result for each process."""
         return [threads.look() for threads in self._each]
 
     def runs(self) -> tuple[bytes, ...]:

@@ -1,6 +1,6 @@
-"""The node `spawner` of a trial that plays the other half of a game: it announces targets, and removes what is caught.
+"""The node `spawner` of a trial, which plays the other half of a game: it announces targets and removes caught ones.
 
-The node of the trial hears the names on /targets twice a second, and calls /catch to have one removed.
+The node of the trial receives the names on /targets twice a second, and calls /catch to have one removed.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ ANNOUNCED_EVERY_S = 0.5
 
 
 class TargetKeeper(Node):
-    """Adds the targets, announces those that are left, and removes each one that a node caught."""
+    """Adds the targets, announces the remaining ones, and removes each target that a node caught."""
 
     def __init__(
         self,
@@ -34,7 +34,7 @@ class TargetKeeper(Node):
         targets: tuple[Target, ...],
         on_call: Callable[[str, str, Any, Any, float], object],
     ) -> None:
-        """Create the node. `on_call` hears of each call, as in `grader.turtlesim.interface.Hooks`."""
+        """Create the node. `on_call` is called for each service call, as in `grader.turtlesim.interface.Hooks`."""
         super().__init__(NAME)
         self._turtlesim = turtlesim
         self._on_call = on_call
@@ -46,7 +46,7 @@ class TargetKeeper(Node):
             turtlesim.add_turtle(target.name, Start(target.x, target.y, 0.0))
 
     def frame(self, now_s: float) -> None:
-        """Announce the targets that are left if it is time (s)."""
+        """Announce the remaining targets if it is time to (s)."""
         if now_s >= self._next_s:
             self._next_s = now_s + ANNOUNCED_EVERY_S
             self._publisher.publish(String(data=" ".join(self._left)))

@@ -1,7 +1,7 @@
-"""Draw the places of targets: turtles that a node is to catch, the nearest first.
+"""Draw the places of targets, which are turtles that a node must catch, the nearest one first.
 
-The places are drawn again until the order is clear: going to the nearest target each time gives one order only, and
-another rule (by name, by the distance from the start) gives another one.
+The places are drawn again until the order is unambiguous: always going to the nearest target gives a single order, and
+any other rule (by name, by the distance from the start) gives a different order.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ LOW_M, HIGH_M = 1.5, 9.5
 APART_M = 1.6
 """The smallest distance between two targets, and between a target and the start (m)."""
 CLEAR_M = 1.2
-"""How much nearer the nearest target is than the second one, at least (m)."""
+"""The minimum difference between the distances of the nearest and the second nearest target (m)."""
 LONGEST_M = 20.0
-"""The longest way from the start through all targets (m)."""
+"""The maximum length of the path from the start through all targets (m)."""
 MOST_DRAWS = 20_000
 
 
@@ -36,7 +36,7 @@ class Target:
 
 
 def draw_targets(count: int, start: Pose, seed: int) -> tuple[Target, ...]:
-    """Return `count` targets, sorted by their names. The first that is right of many draws counts."""
+    """Return `count` targets, sorted by their names. Draw repeatedly, and use the first draw that meets the conditions."""
     draw = random.Random(f"targets {seed}")
     targets: tuple[Target, ...] = ()
     for _ in range(MOST_DRAWS):
@@ -50,7 +50,7 @@ def draw_targets(count: int, start: Pose, seed: int) -> tuple[Target, ...]:
 
 
 def nearest_first(targets: tuple[Target, ...], start: Pose) -> tuple[Target, ...]:
-    """Return the targets in the order in which each is the nearest one when the turtle is at the one before."""
+    """Return the targets in the order in which a turtle reaches them if it always goes to the nearest one."""
     order: list[Target] = []
     x, y = start.x, start.y
     left = list(targets)

@@ -283,5 +283,5 @@ class Trial:
         except subprocess.TimeoutExpired:
             return OverwhelmedError("it no longer answered", hung=True)
         if code == -signal.SIGKILL:
-            return OverwhelmedError("it was still busy long after the end", hung=True)
+            return OverwhelmedError("it was still busy long after the end of the trial", hung=True)
         return OverwhelmedError(f"it ended with exit code {code}")

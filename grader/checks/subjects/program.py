@@ -109,7 +109,7 @@ def _why(key: str, given: dict[str, float], bag: BagInput) -> Cause:
                 "period-for-rate", "This is the time between two messages in seconds. The rate is 1 divided by it."
             )
         return Cause(
-            "wrong-rate", "The rate is the number of intervals divided by the time from first to last message."
+            "wrong-rate", "The rate is the number of intervals divided by the time from the first to the last message."
         )
     if key in ("x", "y", "radius"):
         within = _within(bag)

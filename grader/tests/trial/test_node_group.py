@@ -1,4 +1,4 @@
-"""Several nodes run in one trial: they hear each other, keep their own output, and end together."""
+"""Several nodes run in one trial: they receive each other's messages, keep their own output, and end together."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ node.create_subscription(String, "/targets", hear, 10)
 
 
 def trial_of(inputs: Inputs, **bodies: str) -> Recording:
-    """Run a node with each of these bodies, all in one trial of 4 s."""
+    """Return the recording of one trial of 4 s in which a node with each of these bodies runs."""
     stream = io.BytesIO()
     with tarfile.open(fileobj=stream, mode="w|") as tar:
         for name, body in bodies.items():
