@@ -195,7 +195,7 @@ class NodeProcess:
             self._signal(signal.SIGINT)
 
     def escalate(self) -> None:
-        """Send SIGTERM, and later SIGKILL, if the node does not exit in time. Call this repeatedly after `interrupt`."""
+        """Send SIGTERM, and later SIGKILL, if the node does not exit in time. Call this repeatedly after SIGINT."""
         assert self._interrupted is not None
         passed = time.monotonic() - self._interrupted
         if passed > STOP_S + 1.0 and self._by != "SIGKILL":

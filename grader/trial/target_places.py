@@ -36,7 +36,7 @@ class Target:
 
 
 def draw_targets(count: int, start: Pose, seed: int) -> tuple[Target, ...]:
-    """Return `count` targets, sorted by their names. Draw repeatedly, and use the first draw that meets the conditions."""
+    """Return `count` targets, sorted by name. Draw repeatedly, and use the first draw that meets the conditions."""
     draw = random.Random(f"targets {seed}")
     targets: tuple[Target, ...] = ()
     for _ in range(MOST_DRAWS):
