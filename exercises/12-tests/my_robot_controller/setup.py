@@ -16,7 +16,7 @@ setup(
     maintainer_email="student@example.com",
     description="Nodes that drive the turtle of turtlesim",
     license="MIT",
-    # TODO 1: say that pytest runs the tests.
+    # TODO 1: declare that pytest runs the tests.
     entry_points={
         "console_scripts": [
             "test_node = my_robot_controller.my_first_node:main",

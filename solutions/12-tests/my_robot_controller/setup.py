@@ -20,7 +20,7 @@ setup(
     extras_require={"test": ["pytest"]},
     # END SOLUTION
     # BEGIN STARTER
-    # # TODO 1: say that pytest runs the tests.
+    # # TODO 1: declare that pytest runs the tests.
     # END STARTER
     entry_points={
         "console_scripts": [

@@ -20,7 +20,7 @@ TURN = math.pi / (TICKS * PERIOD)  # rad/s: an arc is half a circle
 
 
 class TwoPensNode(Node):
-    """Asks for a pen, draws, asks for a turtle and another pen, draws, and stands still."""
+    """Sets a pen, draws an arc, spawns a turtle, sets another pen, draws an arc, and stops."""
 
     def __init__(self):
         super().__init__("two_pens")
@@ -38,7 +38,7 @@ class TwoPensNode(Node):
 
     def step(self):
         if self.publisher.get_subscription_count() == 0:
-            return  # nobody listens yet: a command sent now would be lost
+            return  # no subscriber yet: the command would be lost
         msg = Twist()
         # BEGIN SOLUTION
         if self.state == "begin":
@@ -60,7 +60,7 @@ class TwoPensNode(Node):
                 self.state = "done"
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 5: what belongs to the state? "begin": ask for the yellow pen as soon as both services are there.
+        # # TODO 5: what happens in each state? "begin": request the yellow pen as soon as both services are there.
         # # "first arc": half a circle to the left in TICKS calls; then ask for the turtle.
         # # "second arc": half a circle to the right. In all other states, stand still.
         # END STARTER
@@ -73,7 +73,7 @@ class TwoPensNode(Node):
         self.pen.call_async(request).add_done_callback(callback)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 6: make the call without waiting, and let rclpy call `callback` when the response is there.
+        # # TODO 6: make the call without waiting, and let rclpy call `callback` when the response arrives.
         # END STARTER
         # BEGIN SOLUTION
 

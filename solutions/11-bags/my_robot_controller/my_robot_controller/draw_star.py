@@ -32,7 +32,7 @@ class DrawStarNode(Node):
 
     def step(self):
         if self.publisher.get_subscription_count() == 0 or not self.client.server_is_ready():
-            return  # the simulator is not there yet
+            return  # the simulator is not running yet
         if self.state == "corner":
             self.state = "turn"
             self.turn()

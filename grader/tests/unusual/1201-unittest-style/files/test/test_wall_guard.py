@@ -17,7 +17,7 @@ STEP = 100_000_000  # 0.1 s in nanoseconds
 
 
 class Bench:
-    """The node under test, a listener beside it, and a clock that stands still until `run` moves it."""
+    """The node under test, a second node that listens, and a clock that only `run` advances."""
 
     def __init__(self):
         self.guard = WallGuard()
