@@ -18,7 +18,7 @@ START_S = 0.2
 
 
 def end_s(recording: Recording) -> float:
-    """Return when the scenario was over, on the trial's clock (s): at SIGINT, or at its scheduled end."""
+    """Return the end of the scenario on the trial's clock (s): the time of SIGINT, or the scheduled end."""
     if recording.end.by == "itself":
         return max(recording.sigint_t_s, recording.duration_s)
     return recording.sigint_t_s

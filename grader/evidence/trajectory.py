@@ -103,7 +103,7 @@ class Trajectory:
 
 
 def driven_from(recording: Recording) -> Pose:
-    """Return where the turtle was before the first command. Only a call of the submission can have moved it there."""
+    """Return the pose of the turtle before the first command. Only a call of the submission can have moved it there."""
     before, frames = _before_driving(recording), recording.frames
     if not before:
         return recording.start

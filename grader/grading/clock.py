@@ -67,7 +67,7 @@ class Attempt:
 
     @property
     def disturbance(self) -> tuple[bool, float]:
-        """How other programs disturbed the trial: whether they crowded the machine, and how long it stalled (s)."""
+        """The disturbance by other programs: whether they crowded the machine, and the length of the stalls (s)."""
         return self.evidence.recording.crowded, self.evidence.recording.stalled_s
 
 

@@ -27,12 +27,11 @@ if TYPE_CHECKING:
 QUIET_S = 0.2
 """The graph has settled if nothing new has arrived for this long."""
 DEADLINE_S = 4.0
-"""How long to wait for participants that have open ports but send nothing, such as a stopped process. If a node does
-not use our profile and its answer is lost, it announces itself again after 3 s (leaseAnnouncement), and then sends its
-endpoints.
-"""
+"""The maximum time to wait for participants that have open ports but send nothing, such as a stopped process. If a
+node does not use our profile and its answer is lost, it announces itself again after 3 s (leaseAnnouncement), and
+then sends its endpoints."""
 NOTHING_THERE_S = 0.5
-"""How long to listen if the number of participants is unknown. This is as long as the real `ros2` waits."""
+"""The time to listen if the number of participants is unknown, as in the real `ros2`."""
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
 """The Fast DDS profile for the nodes of commands on the loopback interface."""
 PATIENT_PROFILE = LOOPBACK_PROFILE.with_name("loopback_patient.xml")
@@ -40,7 +39,7 @@ PATIENT_PROFILE = LOOPBACK_PROFILE.with_name("loopback_patient.xml")
 _RANGE, _PROFILE = "ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTRTPS_DEFAULT_PROFILES_FILE"
 _POLL_S = 0.01
 _WAKE_S = 0.1
-"""How long one call into rclpy may wait: Python handles Ctrl-C only after the call has returned."""
+"""The maximum time that one call into rclpy may wait: Python handles Ctrl-C only after the call has returned."""
 HIGHEST_DOMAIN = 232
 """The highest domain id that has ports (DDSI-RTPS, 9.6.1)."""
 PREFIX = "_ros2cli"

@@ -165,7 +165,7 @@ def _short(names: Sequence[str]) -> list[str]:
 
 
 def _alike(paths: Sequence[Sequence[str]]) -> int:
-    """Return how many leading folders all the paths have in common, not counting the last part of a path."""
+    """Return the number of leading folders that all paths have in common, not counting the last part of a path."""
     same = 0
     for level in zip(*(path[:-1] for path in paths), strict=False):
         if len(set(level)) > 1:

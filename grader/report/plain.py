@@ -60,5 +60,5 @@ def _fitting(lines: list[str], room: int) -> tuple[str, ...]:
 
 
 def size(text: str) -> int:
-    """Return how many bytes a text takes up in a page."""
+    """Return the number of bytes that a text takes up in a page."""
     return len(text.encode("utf-8", "replace")) + sum(text.count(char) * (more - 1) for char, more in GROWTH.items())

@@ -125,7 +125,7 @@ def _in_one_line(difference: str) -> str:
 
 
 def _why_this_clock(evidence: Evidence) -> str:
-    """Return why the first trial was judged by its clock, and which trials were judged by the other clock and why."""
+    """Return the reason for the clock of the first trial, and for each trial that was judged by the other clock."""
     first = evidence.run.recording
     if first is None and evidence.run.called is not None:
         return "No node was run. Your code was called, without a simulator."

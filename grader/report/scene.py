@@ -122,7 +122,7 @@ def _goals(recording: Recording) -> list[str]:
 
 
 def _drawn(evidence: Evidence, points: list[Point]) -> list[Line]:
-    """Return the trajectory as one line per pen. Where the pen is up, it looks like another turtle's path."""
+    """Return the trajectory as one line per pen. Parts with the pen up look like the path of another turtle."""
     trajectory, spans = evidence.trajectory, pen_spans(evidence.recording)
     if len(spans) == 1 or not trajectory.finite:
         return [Line("trajectory", tuple(points))]

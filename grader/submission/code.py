@@ -112,7 +112,7 @@ class Code:
         return self._calls.get(name, [])
 
     def assigned(self, *path: str) -> Where | None:
-        """Return where an attribute such as ("linear", "x") is first set, by an assignment or by a keyword argument."""
+        """Return the place where an attribute such as ("linear", "x") is first set, by assignment or by keyword."""
         for module in self.modules:
             lines = [line for node in module.nodes for line in _sets(node, path)]
             if lines:

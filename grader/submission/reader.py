@@ -212,7 +212,7 @@ class _Packer(pickle.Pickler):
     """Pickles enumeration members and our errors as calls to their classes, whatever other reducers are registered."""
 
     def reducer_override(self, obj: object) -> Any:  # noqa: ANN401 - as the base class
-        """Return how to recreate the object."""
+        """Return the call that recreates the object."""
         if isinstance(obj, Enum):
             return type(obj), (obj.value,)
         return (type(obj), obj.args) if isinstance(obj, GraderError) else NotImplemented

@@ -153,7 +153,7 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
 
 
 def _run(trial: SimulatedTrial | WallTrial, duration_s: float) -> float:
-    """Run the scenario, and return when SIGINT was sent. From here on, the node is the cause of every failure."""
+    """Run the scenario, and return the time of SIGINT (s). From here on, the node is the cause of every failure."""
     try:
         return trial.run(duration_s)
     except (DoubtError, KeyboardInterrupt):
@@ -179,7 +179,7 @@ def _own_doing(stall: tuple[float, float], node: NodeGroup, trial: SimulatedTria
 
 
 def _arrived(trial: SimulatedTrial | WallTrial) -> int:
-    """Return how many messages arrived on topics other than those of the simulator."""
+    """Return the number of messages that arrived on topics other than those of the simulator."""
     recorder = trial.recorder
     return recorder.dropped + sum(not message.topic.endswith(SIMULATORS) for message in recorder.messages)
 

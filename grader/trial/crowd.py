@@ -58,7 +58,8 @@ class Stalls:
         self.look(0.0)
         self._for_node = [(0.0, 0.0)]
         self.waited_s = 0.0
-        """How long the simulator and the node have waited for a processor so far (s), summed over all threads."""
+        """The time for which the simulator and the node have waited for a processor so far (s), summed over all
+        threads."""
 
     def look(self, now_s: float) -> tuple[float, float] | None:
         """Return the stall since the last call, or None.
@@ -109,7 +110,7 @@ def _threads(*pids: int) -> GroupThreads | None:
 
 
 def _times(threads: GroupThreads | None) -> tuple[float, float]:
-    """Return how long all threads have run, and how long they have waited for a processor (s)."""
+    """Return the time for which all threads have run, and the time for which they waited for a processor (s)."""
     if threads is None:
         return 0.0, 0.0
     try:

@@ -67,7 +67,7 @@ class NodeGroup:
         return sum(process.worked_s(begin, end) for process in self.processes)
 
     def started_ready_s(self) -> float:
-        """Return how long the processes that the nodes started have run or waited for a processor so far (s)."""
+        """Return the time for which processes started by the nodes have run or waited for a processor so far (s)."""
         return sum(process.started_ready_s() for process in self.processes)
 
 
@@ -101,7 +101,7 @@ class GroupThreads:
         return [threads.look() for threads in self._each]
 
     def runs(self) -> tuple[bytes, ...]:
-        """Return how often each thread of the last look has run."""
+        """Return the number of times that each thread of the last look has run."""
         return sum((threads.runs() for threads in self._each), ())
 
     def main_asleep(self) -> bool:

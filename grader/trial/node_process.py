@@ -32,7 +32,7 @@ FULL = 0.25
 """A node that had to wait for a full pipe wrote more than this share of the pipe size. The kernel may fill each page
 only halfway."""
 STOP_S = 3.0
-"""How long the node may take to exit after SIGINT (s). SIGTERM follows, and SIGKILL 1 s later."""
+"""The maximum time from SIGINT to the exit of the node (s). SIGTERM follows, and SIGKILL 1 s later."""
 
 
 class LaunchError(Exception):
@@ -164,7 +164,7 @@ class NodeProcess:
         return self._guard.worked_s(begin, end) if self._guard is not None else 0.0
 
     def started_ready_s(self) -> float:
-        """Return how long the processes that the node started have run or waited for a processor so far (s)."""
+        """Return the time for which processes started by the node have run or waited for a processor so far (s)."""
         return self._guard.ready_s(but=self.pid) if self._guard is not None else 0.0
 
     def read_output(self, now_s: float) -> int:

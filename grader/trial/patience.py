@@ -9,9 +9,9 @@ if TYPE_CHECKING:
     from grader.trial.rest import Threads
 
 ASLEEP_S = 20.0
-"""How long a node may sleep before it starts to wait for its clock (s)."""
+"""The maximum time that a node may sleep before it waits for its clock (s)."""
 WORKED_S = 20.0
-"""How long it may work before it starts to wait for its clock (s of CPU time)."""
+"""The maximum CPU time that it may use before it waits for its clock (s)."""
 HANDSHAKE_S = 100.0
 """The time limit for both on a crowded machine (s). The limit for the whole trial is slightly higher (trial.py)."""
 TICK_CPU_S = 1.0

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     Floats = npt.NDArray[np.float64]
 
 AFTER_STALL_S = 0.05
-"""How long messages keep arriving late after a stall (s)."""
+"""The time after a stall in which messages still arrive late (s)."""
 
 ClockName = Literal["simulated", "wall"]
 

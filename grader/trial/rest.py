@@ -141,7 +141,7 @@ class Threads:
         raise GoneError
 
     def runs(self) -> tuple[bytes, ...]:
-        """Return how often each thread of the last look has run. This takes a third of the time of a look."""
+        """Return the number of runs of each thread of the last look. This takes a third of the time of a look."""
         try:
             return tuple([os.pread(schedstat, 64, 0) for _, schedstat in self._files.values()])
         except ProcessLookupError:  # some or all threads have exited, so the result must differ from every look

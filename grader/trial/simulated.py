@@ -31,11 +31,11 @@ if TYPE_CHECKING:
     from grader.trial.recording import Pose
 
 QUIET_S = 0.02
-"""How long there must be no discovery traffic before discovery counts as finished (s). This is less than half the time
+"""The time without discovery traffic after which discovery counts as finished (s). This is less than half the time
 between two announcements (fastdds.xml). If it were longer, the announcements of the simulator and the node might leave
 no such gap for many seconds."""
 WAKE_S = 1.0
-"""How long to wait until the node notices /clock (s). A node that uses create_rate never wakes up at time 0."""
+"""The maximum time to wait until the node notices /clock (s). A node that uses create_rate never wakes up at time 0."""
 MOST_CPU = 2.0
 """A node whose CPU time exceeds this multiple of the duration cannot keep up in wall time either. Wall time decides."""
 GRAPH_EVERY = 31
@@ -46,7 +46,7 @@ of an action."""
 WAITS_EVERY = 7
 """The number of frames between two checks of what the node's threads wait for."""
 ENDING_S = 0.5
-"""How long a sleeping node may take to exit before the sleep counts as a doubt (s of wall time)."""
+"""The time in which a sleeping node must exit, or else the sleep counts as a doubt (s of wall time)."""
 _POLL_S = 0.00005
 
 
@@ -76,7 +76,7 @@ class SimulatedTrial(Simulation):
         return self._now_s
 
     def run(self, duration_s: float) -> float:
-        """Run the scenario, and return when SIGINT was sent, on the trial's clock (s).
+        """Run the scenario, and return the time of SIGINT on the trial's clock (s).
 
         Raises:
             DoubtError: the node may follow wall time, and the plan sets `stop_at_doubt`.

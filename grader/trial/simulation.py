@@ -211,7 +211,7 @@ class Simulation:
 
     @property
     def own_nodes(self) -> tuple[str, ...]:
-        """The names of our nodes that a recording shows."""
+        """The names of the grader's nodes that are visible in a recording."""
         return tuple(node.get_fully_qualified_name() for node in self._nodes if node is not self.recorder)
 
     def all_nodes_found(self) -> bool:

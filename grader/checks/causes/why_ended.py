@@ -18,7 +18,7 @@ SPINS = ("spin", "spin_once", "spin_until_future_complete")
 
 
 def why_ended(evidence: Evidence) -> Cause:
-    """Return why a program exited before Ctrl-C without an exception."""
+    """Return the cause of a program that exited before Ctrl-C without an exception."""
     code = evidence.code
     bare = named_only(evidence, "rclpy.init", "rclpy.spin", "main")
     if bare is not None:
@@ -53,7 +53,7 @@ def _returns_before_spin(evidence: Evidence) -> Cause | None:
 
 
 def _exits(evidence: Evidence) -> Where | None:
-    """Return where a method calls exit, or None."""
+    """Return the place where a method calls exit, or None."""
     for module in evidence.code.modules:
         for own in (node for node in module.nodes if isinstance(node, ast.ClassDef)):
             for node in ast.walk(own):
@@ -67,7 +67,7 @@ def _is_spin(call: ast.Call) -> bool:
 
 
 def why_no_node(evidence: Evidence) -> Cause:
-    """Return why a program runs without creating a node."""
+    """Return the cause of a program that runs without creating a node."""
     code = evidence.code
     bare = named_only(evidence, "rclpy.init", "main")
     if bare is not None:

@@ -11,7 +11,7 @@ from grader.submission.where import Where
 
 
 def why_no_test(code: TestCode) -> Cause:
-    """Return why pytest finds no test in these files."""
+    """Return the reason why pytest finds no test in these files."""
     if not code.files:
         for module in code.modules:
             if any(isinstance(node, ast.Assert) for node in module.nodes):

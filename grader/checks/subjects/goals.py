@@ -84,7 +84,7 @@ def goals_of(evidence: Evidence) -> list[Goal]:
 
 
 def first_call_s(evidence: Evidence) -> float:
-    """Return when the trial first called a service of the node (s)."""
+    """Return the time of the trial's first call to a service of the node (s)."""
     return min((call.t_s for call in evidence.recording.calls if call.by_trial), default=math.inf)
 
 

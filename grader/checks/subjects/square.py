@@ -130,7 +130,10 @@ def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -
             observed = (
                 f"The {name} side is {length:.2f} m long: {abs(more):.2f} m too {'long' if more > 0 else 'short'}."
             )
-            cause = "The length of a side is speed times time. The time is a number of timer calls."
+            cause = (
+                "The length of a side is speed times time. The time is the number of timer calls times the timer "
+                "period."
+            )
             finding = failed(observed, expected, Cause("side-length", cause, where), near_edge=near)
             if name == ORDINALS[0] and more < 0.0 and all(map(long.holds, sides.lengths[1:SIDES])):
                 finding = too_soon(finding, evidence)

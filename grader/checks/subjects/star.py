@@ -79,7 +79,7 @@ def _measured(evidence: Evidence, params: Star, sides: Sides, expected: str) -> 
         if long.holds(length):
             continue
         observed = f"Side {index + 1} is {length:.2f} m long."
-        text = "The length of a side is speed times time. The time is a number of timer calls."
+        text = "The length of a side is speed times time. The time is the number of timer calls times the timer period."
         if length > params.side_m and all(command.linear[0] for command in evidence.commands):
             text = "No command with zeros ends a side, so the turtle continues. Publish one after each side."
         return failed(observed, expected, Cause("side-length", text, where), near_edge=near)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Return a folder with seven reports: three passed, two failed, one was not built, and one could not be judged."""
+    """Return a folder with seven reports: three passed, two failed, one not built, and one that could not be judged."""
     for number, status in enumerate(("passed", "passed", "passed", "failed", "failed", "skipped", "error")):
         given = report(status, submission=f"class/student{number}/step")
         (tmp_path / f"student{number}").mkdir()
