@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
 IMPORTING = threading.RLock()
-"""Held while a module of this file is imported, and while the process forks."""
+"""Held while numpy or catkin_pkg is imported, and while the process forks."""
 
 
 class _Lazy:

@@ -28,7 +28,7 @@ def refusal(error: BaseException) -> Optional[str]:
 
 
 def refusal_in(said: str) -> Optional[str]:
-    """Return the sentence for a lack of disk space, memory, files or processes that the message `said` mentions."""
+    """Return the sentence if the message `said` mentions a lack of disk space, memory, files or processes."""
     found = next((number for number in sorted(_SCARCE) if os.strerror(number) in said), None)
     return sentence(found) if found else None
 

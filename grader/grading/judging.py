@@ -41,7 +41,7 @@ class Judging:
 
     def early(self, evidence: Evidence) -> Early:
         """Return the results that are already certain from the files alone."""
-        load_catkin_pkg()  # two of the child processes need it
+        load_catkin_pkg()  # two of the child processes need catkin_pkg
         try:
             early, self._clocks = read(_early, evidence, self.choice)
         except UnreadableError as error:

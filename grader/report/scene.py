@@ -115,7 +115,7 @@ def _bag_scene(evidence: Evidence) -> Scene | None:
 
 
 def _goals(recording: Recording) -> list[str]:
-    """Return a sentence such as "3 goals: 2 succeeded, 1 canceled" if there were any."""
+    """Return a line such as "3 goals: 2 succeeded, 1 canceled", or an empty list without goals."""
     ends = Counter(goal.status for goal in recording.goals)
     amounts = ", ".join(f"{amount} {status}" for status, amount in ends.items())
     return [f"{count(len(recording.goals), 'goal')}: {amounts}"] if amounts else []

@@ -1,4 +1,4 @@
-"""Evaluate constants in a source file without running it: numbers, strings, and names that have such a value."""
+"""Evaluate constants in a source file without running it: numbers, strings, and names with such values."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ TIMEOUT_S = 120.0
 MEMORY = 1024 * 1024 * 1024
 """The address space of the child, in addition to that of the grader (bytes)."""
 MOST_ANSWER = 256 * 1024 * 1024
-"""The maximum size of a result (bytes). Most of it is the files of a submission."""
+"""The maximum size of a result (bytes). It consists mostly of the files of a submission."""
 _CHUNK = 1024 * 1024
 _STANDARD = {
     "builtins": ("set", "frozenset", "bytearray", "complex"),
@@ -52,7 +52,7 @@ _STANDARD = {
 
 
 class _Child:
-    """Whether this process is such a child. In a child, `read` calls the function directly."""
+    """Whether this process was forked by `read`. In a forked process, `read` calls the function directly."""
 
     inside = False
 

@@ -162,7 +162,7 @@ def _read_folder(tree: Tree, folder: int, prefix: str, depth: int) -> None:
     for entry in listing:
         path = prefix + entry.name
         if not entry.name.isprintable():
-            # Python's tools fail on such names, and nobody can import or type them.
+            # Python's tools fail on these names, and nobody can import or type them.
             tree.rejected[path] = "has a name with control characters, or one that is not UTF-8"
         elif len(os.fsencode(path)) > MAX_PATH_BYTES:
             tree.rejected[path] = f"has a path of more than {MAX_PATH_BYTES} bytes"

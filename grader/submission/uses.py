@@ -1,8 +1,8 @@
 """Uses of functions, found by their last names, even if the source gives the functions other names.
 
 A search for calls of `sleep` does not find `from time import sleep as nap`, `nap = time.sleep`, `partial(time.sleep,
-1)` or `getattr(time, "sleep")`. It does not find a function in another file that calls `sleep` either. So
-every mention of such a function counts as a use, and names in other files that refer to such a function are followed.
+1)` or `getattr(time, "sleep")`. It does not find a function in another file that calls `sleep` either. So every mention
+of one of the functions counts as a use, and names in other files that refer to one are followed.
 """
 
 from __future__ import annotations

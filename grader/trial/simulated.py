@@ -185,7 +185,7 @@ class SimulatedTrial(Simulation):
                 return
 
     def _take_in(self) -> bool:
-        """Handle everything that has arrived. Return whether the node may continue because of it."""
+        """Handle everything that has arrived. Return whether the node may react to it."""
         if not self.may_request():
             self.hear()
             return False
@@ -257,7 +257,7 @@ class SimulatedTrial(Simulation):
         timed = [wait for wait in self._node.waits() if wait.timed]
         sleeping = [wait for wait in timed if wait.call in ("nanosleep", "clock_nanosleep")]
         if sleeping and not self._is_ending():
-            self._doubt("the node sleeps on wall time")
+            self._doubt("the node sleeps in wall time")
         elif not sleeping and len(timed) > len(self.node.pids):
             self._doubt("the node waits for wall time")
 

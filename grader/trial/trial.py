@@ -38,7 +38,7 @@ CONDUCTORS_ROOMS = ("common", "ros", "sandbox", "trial", "turtlesim")
 MOST_MEMORY = 3 * 1024 * MIB
 """The maximum address space of the conductor (bytes)."""
 MOST_ANSWER = 256 * MIB
-"""The maximum size of one answer from the conductor (bytes). Most of it is the messages of a recording."""
+"""The maximum size of one answer from the conductor (bytes). It consists mostly of the messages of a recording."""
 
 
 @dataclass(frozen=True)
@@ -251,7 +251,7 @@ class Trial:
             self._process.stdin.write(data)
             self._process.stdin.flush()
         except BrokenPipeError:
-            pass  # it has exited, and `_answer` reports why
+            pass  # the process has exited, and `_answer` reports the reason
 
     def _answer(self, key: str) -> Any:  # noqa: ANN401 - JSON
         assert self._process.stdout is not None

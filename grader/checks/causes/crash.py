@@ -69,7 +69,7 @@ class Crash:
 
     @property
     def meaning(self) -> str:
-        """What such an exception usually means, or an empty string if that is unknown."""
+        """The usual meaning of the exception, or an empty string if it is unknown."""
         if self.error == "AssertionError" and "field must be of type 'float'" in self.message:
             return "This field is a float. Write the number with a decimal point."
         return MEANINGS.get(self.error, "")
@@ -179,7 +179,7 @@ def _own_file(path: str, files: Mapping[str, bytes]) -> str | None:
 
 
 def _is_beside(path: str) -> bool:
-    """Return whether a file next to setup.py may be at this path. Files of another package, such as rclpy, are not."""
+    """Return whether a file next to setup.py may be at this path, and not a file of another package, such as rclpy."""
     folders = path.split("/")[:-1]
     return not any(name in folders for name in PACKAGES) or folders[-1] in PACKAGES
 

@@ -14,7 +14,7 @@ WAITS_FOR_SUBSCRIBER = ("get_subscription_count", "count_subscribers")
 
 
 def too_soon(finding: Finding, evidence: Evidence) -> Finding:
-    """Return the finding about a trajectory whose beginning is too short, with the cause `too-soon` if that applies.
+    """Return the finding about a trajectory whose beginning is too short, with the cause `too-soon` if it applies.
 
     In simulated time, the clock starts when publisher and subscription are connected, so nothing is lost. Nothing is
     lost either if the node checks its number of subscriptions.

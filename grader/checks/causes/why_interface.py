@@ -18,7 +18,7 @@ OF_A_RESULT = ("status", "result")
 NO_OBJECT = re.compile(r"^(Action|Service) classes can not be instantiated")
 OF_AN_ACTION = re.compile(r"service type provided is not valid \(<class '\w+\.action\.")
 PARTS = {"Action": "Goal", "Service": "Request"}
-"""The kind of interface -> the part of it that a client creates."""
+"""The kind of interface -> the part that a client creates."""
 OF_A_TYPE = "_TYPE_SUPPORT"
 """rclpy needs this attribute of each type."""
 

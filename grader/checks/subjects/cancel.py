@@ -38,7 +38,7 @@ class NoGoalAfter:
 
 
 def cancels_goal(evidence: Evidence, params: CancelsGoal) -> Finding:
-    """The goal that the turtle follows when the trial calls the service is cancelled in time."""
+    """The call of the service cancels the turtle's current goal in time."""
     expected = f"The goal is cancelled within {params.within_s:g} s after a call of {params.service}."
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     if not any(call.response is not None for call in calls):

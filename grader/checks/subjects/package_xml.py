@@ -67,7 +67,7 @@ def valid(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def why_not_read(evidence: Evidence, manifest: Manifest) -> Cause:
-    """Return the cause of a package.xml that catkin_pkg, and with it colcon, cannot read."""
+    """Return the cause of a package.xml that catkin_pkg, and therefore colcon, cannot read."""
     problem = manifest.problem or ""
     tag = ROS_1_TAGS.search(problem)
     if tag is not None:

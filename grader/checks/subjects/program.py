@@ -94,7 +94,7 @@ def _why(key: str, given: dict[str, float], bag: BagInput) -> Cause:
     count, rate = bag.arc.count, bag.rate_hz
     more = count + bag.commands
     if key == "messages" and given[key] == more:
-        return Cause("all-messages", "All messages of the bag were counted, and not only the poses.")
+        return Cause("all-messages", "All messages of the bag were counted, not only the poses.")
     if key == "rate":
         value = given[key]
         if value == 0.0 or abs(value * 1e9 - rate) <= rate:

@@ -171,7 +171,7 @@ def as_command(timed: Timed) -> Command:
 
 
 class NoPaper:
-    """Paper for a turtle whose trail is not drawn."""
+    """A canvas for a turtle whose trail is not drawn."""
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
         """Draw nothing."""

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from grader.trial.trial import Plan
 
 CHANCE = WallTimeNeeded("its threads keep waking each other up", by_chance=True)
-SLEEPS = WallTimeNeeded("the node sleeps on wall time")
+SLEEPS = WallTimeNeeded("the node sleeps in wall time")
 
 
 @dataclass
 class Trials:
-    """A replacement for the class of trials. Each trial in simulated time stops at the next doubt, if there is one."""
+    """A replacement for the class `Trial`. Each trial in simulated time stops at the next doubt, if there is one."""
 
     doubts: list[WallTimeNeeded]
     clocks: list[str] = field(default_factory=list)

@@ -49,7 +49,7 @@ def test_a_source_that_cannot_be_read_is_judged_in_wall_time(monkeypatch: pytest
 
 def test_a_doubt_ends_a_trial_only_if_no_clock_was_requested() -> None:
     assert [stops_at_doubt(choice) for choice in ("auto", "simulated", "wall")] == [True, False, False]
-    assert after_doubt(WallTimeNeeded("the node sleeps on wall time")).why == "the node sleeps on wall time"
+    assert after_doubt(WallTimeNeeded("the node sleeps in wall time")).why == "the node sleeps in wall time"
 
 
 def test_a_value_near_an_edge_is_decided_in_wall_time() -> None:

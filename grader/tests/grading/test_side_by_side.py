@@ -41,7 +41,7 @@ LONGEST = {"own_circle", "go_to_goal"}
 
 @dataclass
 class Trials:
-    """A replacement for the class of trials. `begun` are the nodes that ran and `ended` the clocks, in order."""
+    """A replacement for the class `Trial`. `begun` are the nodes that ran and `ended` the clocks, in order."""
 
     open: int = 0
     begun: list[str] = field(default_factory=list)

@@ -29,7 +29,7 @@ WRONG = recording(every(0.25, 2.0, 1.0), clock="wall")
 
 @dataclass
 class Trials:
-    """A replacement for the class of trials: each trial returns the next recording."""
+    """A replacement for the class `Trial`. Each trial returns the next recording."""
 
     recordings: list[Recording]
     alone: list[bool] = field(default_factory=list)
