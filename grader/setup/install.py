@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import ssl
 import subprocess
 import sys
 import time
@@ -20,8 +19,8 @@ from grader.common.interpreter import clean, interpreter
 from grader.errors import MachineError
 from grader.setup import lock, setup_errors
 from grader.setup.bootstrap import ROOT, STAMP, Stamp, say, write_stamp
+from grader.setup.uv import uv
 
-BIN = Path(sys.prefix, "bin")
 _OPTIONS = ("--no-deps", "--require-hashes", "--no-build-isolation")
 _PROGRESS = ("Downloading ", "Using cached ", "Building ", "Prepared ", "Installed ", "Bytecode compiled ")
 _MOST_LINES = 40
@@ -106,12 +105,7 @@ def _uv(*arguments: str) -> float | None:
 
     Raises: MachineError: the disk is full, or the user may not write to it.
     """
-    command = [str(BIN / "uv"), "pip", "install", "--python", sys.executable, *arguments]
-    stores = ssl.get_default_verify_paths()
-    if stores.cafile or (stores.capath and any(Path(stores.capath).iterdir())):
-        command.append(
-            "--system-certs"
-        )  # Use the system's certificates, as other programs do. A minimal system has none, so there uv uses its own.
+    command = uv("pip", "install", "--python", sys.executable, *arguments)
     if not _may_write(setup_errors.cache()):
         command.append("--no-cache")  # Without a writable home folder, uv needs only this option.
     done = _run(command, clean(os.environ))

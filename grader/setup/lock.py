@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import MachineError, UsageError
+from grader.setup.uv import uv
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -123,7 +124,7 @@ def split(entries: Iterable[Entry], needs: Mapping[str, Collection[str]]) -> str
     return text
 
 
-def make(uv: str, *, upgrade: bool = False) -> str:
+def make(*, upgrade: bool = False) -> str:
     """Return the content of a new lock file for pyproject.toml, resolved by uv. This needs the network.
 
     The versions in the existing lock file are kept if they are still compatible, unless `upgrade` is True.
@@ -132,7 +133,7 @@ def make(uv: str, *, upgrade: bool = False) -> str:
         whole = Path(folder, "whole.txt")
         if LOCK_FILE.exists():
             shutil.copyfile(LOCK_FILE, whole)
-        _compile(uv, whole, ["--all-extras", *(["--upgrade"] if upgrade else [])])
+        _compile(whole, ["--all-extras", *(["--upgrade"] if upgrade else [])])
         entries = parse(f"{_MARK}all\n" + whole.read_text(encoding="utf-8"))["all"]
         needs = {}
         for part, requirements, arguments in [
@@ -146,7 +147,7 @@ def make(uv: str, *, upgrade: bool = False) -> str:
         ]:
             path = Path(folder, f"{part}.txt")
             # Limit each part to the versions in the whole file, for each Python.
-            _compile(uv, path, [*arguments, "--constraint", str(whole)], requirements)
+            _compile(path, [*arguments, "--constraint", str(whole)], requirements)
             needs[part] = {name for name, _ in _NAME.findall(path.read_text(encoding="utf-8"))}
     return split(entries, needs)
 
@@ -161,10 +162,10 @@ def _requirements(extra: str) -> list[str]:
     return [str(requirement) for requirement in project["optional-dependencies"][extra]]
 
 
-def _compile(uv: str, output: Path, arguments: list[str], requirements: str | None = None) -> None:
+def _compile(output: Path, arguments: list[str], requirements: str | None = None) -> None:
     """Resolve the project's dependencies, or `requirements` (one per line) if given, and write them to `output`."""
     command = [
-        *(uv, "pip", "compile", str(PROJECT) if requirements is None else "-"),
+        *uv("pip", "compile", str(PROJECT) if requirements is None else "-"),
         *("--output-file", str(output), "--quiet", *arguments),
         *("--universal", "--python-version", "3.10", "--no-python-downloads"),
         # Each machine decides where packages are downloaded from, so the file contains no index and no URLs.
@@ -178,8 +179,7 @@ def _compile(uv: str, output: Path, arguments: list[str], requirements: str | No
 
 def main(arguments: list[str]) -> int:
     """Write the lock file. With `--upgrade`, use the newest compatible versions."""
-    uv = str(Path(sys.prefix, "bin", "uv"))
-    text = make(uv, upgrade="--upgrade" in arguments)
+    text = make(upgrade="--upgrade" in arguments)
     parts = parse(text)
     unchanged = LOCK_FILE.exists() and LOCK_FILE.read_text(encoding="utf-8") == text
     if not unchanged:

@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import re
 import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 
 from grader.setup import lock
 from grader.setup.machine import OLDEST
+from grader.setup.uv import uv
 
 pytestmark = [pytest.mark.exhaustive, pytest.mark.door]
 
@@ -24,8 +23,7 @@ def test_nothing_is_missing(part: str) -> None:
     requirements = lock.select(text, [*lock.ALWAYS, part])
     pythons = f"--universal --python-version {OLDEST[0]}.{OLDEST[1]}"
     options = f"pip compile - {pythons} --no-annotate --no-header --quiet".split()
-    command = [str(Path(sys.prefix, "bin/uv")), *options]
-    done = subprocess.run(command, cwd="/", input=requirements, capture_output=True, text=True, check=False)
+    done = subprocess.run(uv(*options), cwd="/", input=requirements, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     listed, needed = (
         set(re.findall(r"^[\w.-]+==\S+", packages, re.MULTILINE)) for packages in (requirements, done.stdout)
