@@ -12,14 +12,16 @@ import re
 import subprocess
 import sys
 import time
-from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader.common.interpreter import clean, interpreter
 from grader.errors import MachineError
 from grader.setup import lock, setup_errors
 from grader.setup.bootstrap import ROOT, STAMP, Stamp, say, write_stamp
 from grader.setup.uv import uv
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _OPTIONS = ("--no-deps", "--require-hashes", "--no-build-isolation")
 _PROGRESS = ("Downloading ", "Using cached ", "Building ", "Prepared ", "Installed ", "Bytecode compiled ")
