@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from grader.checks.diagnoses_of_catching import OF_CATCHING
 from grader.checks.diagnoses_of_files import OF_FILES
 
 if TYPE_CHECKING:
@@ -275,6 +276,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "program-traceback": "the program ends with a traceback instead of a message",
         "exit-code": "the program ends with exit code 0 although something is missing",
     },
+    **OF_CATCHING,
     "Advice": {
         "no-timer": "the node does not use a timer",
     },

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import Literal
 
+from grader.checks.diagnosis_of_catching import DiagnosisOfCatching
 from grader.checks.diagnosis_of_files import DiagnosisOfFiles
 
 Diagnosis = Literal[
     DiagnosisOfFiles,
+    DiagnosisOfCatching,
     # Starting and stopping
     "crash",
     "needs-stdin",

@@ -63,7 +63,7 @@ def _png(evidence: Evidence, report: Report) -> bytes:
 
 def draw_picture(evidence: Evidence, report: Report) -> Image.Image:
     """Return the picture of every trial as one image. If there is no trajectory to draw, the picture says so."""
-    trials = [each for each in evidence.views() if not each.trial.calls] or [evidence]
+    trials = [each for each in evidence.views() if not each.trial.calls and not each.trial.beside] or [evidence]
     panels = _panels(len(trials))
     page = _page(panels)
     pen = ImageDraw.Draw(page)

@@ -148,7 +148,7 @@ def _others(recording: Recording) -> Iterator[tuple[list[Line | Ring | Arrow], s
             shapes.append(Line("other", tuple((row[1], row[2]) for row in track.rows)))
         shapes.append(Arrow("other", (x, y), theta))
     if tracks:
-        yield shapes, f"also there: {a_list([shorten(track.turtle) for track in tracks], most=4)}"
+        yield shapes, f"also there: {a_list([shorten(track.turtle) for track in tracks], most=2)}"
 
 
 def finite_points(trajectory: Trajectory) -> list[Point]:

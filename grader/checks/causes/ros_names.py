@@ -20,6 +20,7 @@ MODULE_OF = {
     "GoalStatus": "action_msgs.msg",
     "SetPen": "turtlesim.srv",
     "Spawn": "turtlesim.srv",
+    "Kill": "turtlesim.srv",
     "TeleportAbsolute": "turtlesim.srv",
     "String": "std_msgs.msg",
     "Float32": "std_msgs.msg",

@@ -135,7 +135,7 @@ def _why_not_declared(
     evidence: Evidence, manifest: Manifest, name: str, needed: Sequence[str], imported: Mapping[str, Where]
 ) -> Cause:
     """Return the cause of a package `name` that package.xml does not declare at all."""
-    guess = nearest(name, set(manifest.run_depends) - set(needed))
+    guess = nearest(name, [each for each in manifest.run_depends if each not in needed and not _used(evidence, each)])
     if guess is not None:
         cause = f'It declares "{shorten(guess)}". Is that a typing error?'
         return Cause("depend-misspelt", cause, _line(evidence, re.escape(guess)))
@@ -156,6 +156,12 @@ def _why_not_declared(
     elif imported:
         cause = f"Your code does not import it, but the task needs it. {cause}"
     return Cause("missing-depend", cause, where)
+
+
+def _used(evidence: Evidence, package: str) -> bool:
+    """Return whether any Python file of the submission imports the package, so that its name is no typing error."""
+    line = re.compile(rf"^\s*(from|import)\s+{re.escape(package)}\b".encode(), re.MULTILINE)
+    return any(path.endswith(".py") and line.search(data) for path, data in evidence.submission.files.items())
 
 
 def _text(evidence: Evidence) -> str:

@@ -67,7 +67,8 @@ def _expected(params: Topic) -> str:
 
 def _wrong_type(evidence: Evidence, params: Topic, publishers: list[Endpoint]) -> Finding:
     types = a_list(sorted({shorten(publisher.type) for publisher in publishers}))
-    observed = f"{params.topic} receives messages of type {types}, which the turtle does not understand."
+    whose = "which the turtle does not understand" if params == COMMANDS else f"and not {params.type}"
+    observed = f"{params.topic} receives messages of type {types}, {whose}."
     cause = "The message type is the first argument of create_publisher."
     return failed(observed, _expected(params), Cause("wrong-type", cause, _publisher_line(evidence, params.topic)))
 
@@ -77,7 +78,8 @@ def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, 
     topics = sorted({publisher.topic for publisher in same_type or publishers})
     guess = nearest(params.topic, topics)
     shown = [guess] if guess is not None else topics
-    observed = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, but no turtle subscribes to it."
+    nobody = "no turtle subscribes to it" if params == COMMANDS else f"not on {params.topic}"
+    observed = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, but {nobody}."
     why = why_topic(params.topic, shown[0], evidence)
     why = why.fixed_by(right_name(evidence, "create_publisher", shown[0], params.topic))
     return failed(observed, _expected(params), why.at(_publisher_line(evidence, shown[0])))

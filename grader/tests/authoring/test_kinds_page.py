@@ -27,6 +27,7 @@ else:
 
 WITHOUT_UNIT = {
     "turns",
+    "turtles",
     "total",
     "sides",
     "first",

@@ -106,6 +106,8 @@ OWN = {
     "pausable_circle.py": {"RADIUS = 1.2": "RADIUS = {radius_m}"},
     "tunable_circle.py": {"1.8,": "{radius_m},", "1.0,": "{speed_m_s},"},
     "lookout.py": {"radians(85)": "radians({left_deg})", "radians(-80)": "radians({right_deg})"},
+    "spawner.py": {"TURTLES = 5": "TURTLES = {turtles}"},
+    "catcher.py": {"REACH = 0.4": "REACH = {reach_m}"},
     "draw_star.py": {"SIDE = 2.3": "SIDE = {side_m}", "radians(10)": "radians({first_deg})"},
 }
 """The individual numbers in our solutions: file -> string -> the string with a student's numbers."""

@@ -1,0 +1,64 @@
+"""Draw a star: an action turns the turtle, and commands drive it."""
+
+import math
+
+import rclpy
+from action_msgs.msg import GoalStatus
+from geometry_msgs.msg import Twist
+from rclpy.action import ActionClient
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from turtlesim.action import RotateAbsolute
+
+SIDE = 1.0  # m; TODO 9: your side_m and first_deg from my_numbers_10.toml
+FIRST = math.radians(0)  # rad: the heading of the first side
+SIDES = 5
+CORNER = math.radians(144)  # rad: the turn from one side to the next
+TICKS = 10  # calls of the timer in one side
+PERIOD = 0.1  # s
+
+
+class DrawStarNode(Node):
+    """Turns, drives a side, and so on, until the star is complete."""
+
+    def __init__(self):
+        super().__init__("draw_star")
+        self.publisher = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+        self.client = ActionClient(self, RotateAbsolute, "/turtle1/rotate_absolute")
+        self.timer = self.create_timer(PERIOD, self.step)
+        self.state = "corner"
+        self.sides = 0
+        self.ticks = 0
+
+    def step(self):
+        if self.publisher.get_subscription_count() == 0 or not self.client.server_is_ready():
+            return  # the simulator is not there yet
+        # TODO 10: what belongs to the state? "corner": send the goal, once. "turn": nothing at all; a command would
+        # abort the goal. "drive": a side in TICKS calls, then a command with zeros, then the next corner or the end.
+
+    def drive(self, speed):
+        msg = Twist()
+        msg.linear.x = speed
+        self.publisher.publish(msg)
+
+    def turn(self):
+        # TODO 11: send the goal for the next side, and ask for its result, as in lookout.py.
+        pass
+
+    # TODO 12: when the goal has succeeded, drive.
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = DrawStarNode()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,48 @@
+"""Drive to a goal, with the pose as feedback."""
+
+import math
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from turtlesim.msg import Pose
+
+GOAL = (8.5, 2.5)  # x, y in m
+CLOSE = 0.05  # m
+
+
+class GoToGoalNode(Node):
+    """Looks at the pose before each command."""
+
+    def __init__(self):
+        super().__init__("go_to_goal")
+        self.publisher = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+        # TODO d: subscribe to the turtle's pose.
+        self.timer = self.create_timer(0.1, self.step)
+        self.pose = None
+
+    def pose_received(self, pose):
+        self.pose = pose
+
+    def step(self):
+        msg = Twist()
+        # TODO d: how far is the goal, and in which direction? Turn towards it, drive when you face it, stand
+        # still when you are there.
+        self.publisher.publish(msg)
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = GoToGoalNode()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

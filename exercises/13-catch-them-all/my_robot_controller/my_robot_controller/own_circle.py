@@ -1,0 +1,30 @@
+"""Drive the circle of my_numbers.toml."""
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+
+
+class OwnCircleNode(Node):
+    """Publishes the same command again and again, with the student's own radius and rate."""
+
+    def __init__(self):
+        super().__init__("own_circle")
+        # TODO a: the numbers are in my_numbers.toml, beside package.xml. Write them here.
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = OwnCircleNode()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

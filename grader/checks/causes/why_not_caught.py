@@ -1,0 +1,142 @@
+"""Why some targets were not caught: the turtle does not move, stands still, or has not enough time."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.why_silent import why_nothing
+from grader.checks.causes.why_unasked import waits_in_callback, why_unasked
+from grader.common.lazy import np
+from grader.common.words import a_list, shorten
+from grader.evidence import activity
+from grader.evidence.targets import distance_m
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.trial.observed import Track
+
+STILL_S = 3.0
+"""A turtle that has not moved for this long stands still (s)."""
+STILL_M = 0.05
+NEAR_M = 1.0
+"""A turtle that stands still this near to a target has reached it (m)."""
+CATCH = "/catch"
+OWN_POSE = "/turtle1/pose"
+
+
+def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
+    """Return the most likely cause. `left` are the targets that were not caught."""
+    recording = evidence.recording
+    ended = [other for other in recording.beside if other.end.by == "itself"]
+    if ended:
+        text = f"{ended[0].executable} ended at {recording.sigint_t_s:.1f} s, so the trial was over."
+        other = next((spec for spec in evidence.exercise.beside(evidence.trial.id)), evidence.trial)
+        return Cause("other-node-ended", text, evidence.from_trial(other.id).place("spin"))
+    waiting = waits_in_callback(evidence)
+    if waiting is not None:
+        return waiting
+    late = loop_variable(evidence)
+    if late is not None:
+        return late
+    if not evidence.commands:
+        silent = Cause("no-publish", "publish is never called.", evidence.place("create_publisher"))
+        why = why_nothing(evidence, ("publish",)) or (None if evidence.code.calls("publish") else silent)
+        return why or Cause("never-drives", "No command arrived.", evidence.place("publish"))
+    wrong = _wrong_name(evidence)
+    if wrong is not None:
+        return wrong
+    if not _moved_m(evidence, 0.0):
+        return _never_drives(evidence, left)
+    if _moved_m(evidence, activity.end_s(recording) - STILL_S) <= STILL_M:
+        return _stands_still(evidence, left)
+    text = "The turtle still drove when the time was over."
+    if left:
+        near_m, name = min((_nearest_m(evidence, track), track.turtle) for track in left)
+        text += f" It came as near as {near_m:.1f} m to {shorten(name)}."
+    return Cause("too-slow", text, evidence.place("publish"))
+
+
+def _wrong_name(evidence: Evidence) -> Cause | None:
+    """Return the cause if /catch was called with a name that no target has. Otherwise return None."""
+    names = {track.turtle for track in evidence.recording.tracks}
+    until = activity.end_s(evidence.recording)
+    calls = [call for call in evidence.recording.calls if call.service == CATCH and call.t_s < until]
+    strange = [name for call in calls if (name := str(call.request["name"])) not in names]
+    if not strange:
+        return None
+    text = f'The node called {CATCH} with the name "{shorten(strange[0])}". The targets were {a_list(sorted(names))}.'
+    return Cause("target-name", text, evidence.place("call_async"))
+
+
+def _never_drives(evidence: Evidence, left: list[Track]) -> Cause:
+    subscriptions = activity.endpoints(evidence.recording, "subscription")
+    poses = sorted({each.topic for each in subscriptions if each.topic.endswith("/pose")} - {OWN_POSE})
+    wanted = [f"/{track.turtle}/pose" for track in left]
+    if set(poses) & set(wanted):
+        return Cause("never-drives", "All commands that arrived were zeros.", evidence.place("publish"))
+    text = "The node does not subscribe to the pose of any target."
+    if poses:
+        text = f"The node subscribes to {shorten(poses[0])}, but to the pose of no target: {a_list(wanted)}."
+    return Cause("never-drives", text, evidence.place("create_subscription"))
+
+
+def _nearest_m(evidence: Evidence, track: Track) -> float:
+    """Return the smallest distance of turtle1 from a target that was never caught (m)."""
+    x, y = track.rows[-1][1:3]
+    frames = evidence.recording.frames
+    return float(np.min(np.hypot(frames.x - x, frames.y - y)))
+
+
+def _stands_still(evidence: Evidence, left: list[Track]) -> Cause:
+    recording = evidence.recording
+    until = activity.end_s(recording)
+    near = min(left, key=lambda track: distance_m(recording, track, until), default=None)
+    if near is not None and distance_m(recording, near, until) <= NEAR_M:
+        asked = [call for call in recording.calls if call.service == CATCH and call.t_s < until]
+        if not any(call.request["name"] == near.turtle for call in asked) and evidence.trial.scenario.targets:
+            why = why_unasked(evidence, CATCH)
+            if not asked:
+                return why
+        text = f"It stands beside {shorten(near.turtle)}."
+        return Cause("stands-still", text, evidence.place("call_async", "publish"))
+    text = "The turtle stood still at the end. After a catch, the next target must become the nearest one."
+    return Cause("stands-still", text, evidence.place("call_async", "publish"))
+
+
+def _moved_m(evidence: Evidence, from_s: float) -> float:
+    """Return how far apart the places of turtle1 are from this time on (m)."""
+    frames = evidence.recording.frames
+    rows = (frames.t_s >= from_s) & (frames.t_s <= activity.end_s(evidence.recording))
+    if not rows.any():
+        return 0.0
+    return float(np.hypot(np.ptp(frames.x[rows]), np.ptp(frames.y[rows])))
+
+
+def loop_variable(evidence: Evidence) -> Cause | None:
+    """Return the cause if a function that is made in a loop uses the loop's variable. Otherwise return None.
+
+    All these functions use the last value. A default value (`name=name`) keeps the value of each turn.
+    """
+    for module in evidence.code.modules:
+        for loop in (node for node in module.nodes if isinstance(node, ast.For)):
+            name = loop.target.id if isinstance(loop.target, ast.Name) else ""
+            for made in ast.walk(loop):
+                if isinstance(made, ast.Lambda | ast.FunctionDef) and _uses(made, name):
+                    text = (
+                        f"The function is made in a loop, and uses {shorten(name)}, the variable of the loop. When it "
+                        "is called, the loop is over, and the variable has its last value. Make the function in a "
+                        "method that gets the value as an argument."
+                    )
+                    return Cause("loop-variable", text, Where(module.file, made.lineno))
+    return None
+
+
+def _uses(made: ast.Lambda | ast.FunctionDef, name: str) -> bool:
+    arguments = made.args
+    if name in {each.arg for each in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)}:
+        return False
+    body = [made.body] if isinstance(made, ast.Lambda) else made.body
+    return any(isinstance(node, ast.Name) and node.id == name for part in body for node in ast.walk(part))

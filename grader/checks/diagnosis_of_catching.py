@@ -1,0 +1,24 @@
+"""The ids of mistakes of two nodes, one of which spawns turtles that the other one catches."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+DiagnosisOfCatching = Literal[
+    "target-count",
+    "target-name",
+    "target-place",
+    "target-unannounced",
+    "target-format",
+    "still-announced",
+    "not-killed",
+    "loop-variable",
+    "never-drives",
+    "stands-still",
+    "too-slow",
+    "other-order",
+    "from-afar",
+    "catch-again",
+    "not-driven",
+    "other-node-ended",
+]

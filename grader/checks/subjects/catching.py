@@ -1,0 +1,190 @@
+"""Checks of a node that drives turtle1 to other turtles and has them removed, the nearest first."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_not_caught import why_not_caught
+from grader.checks.causes.why_unasked import why_unasked
+from grader.checks.kind import Kind, NoParams, number, string
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.subjects.services import calls_of
+from grader.checks.tolerance import unless_starved
+from grader.common.words import a_list, count, shorten
+from grader.evidence import activity
+from grader.evidence.interventions import MOVING, moved_by
+from grader.evidence.targets import caught, distance_m, is_there
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.trial.observed import Track
+    from grader.trial.recording import Recording
+
+NEARER_M = 0.5
+"""A target counts as nearer if it is nearer by more than this (m). The turtle drives while the node decides."""
+SLACK_M = 0.1
+"""A pose is a little old when the node decides, and the turtle drives on (m)."""
+OFTEN = 3
+"""How many calls for one target are too many. A node may ask twice if a response is late."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Catches:
+    """How many targets there must be, at least."""
+
+    turtles: float = number(1, at_least=1, about="How many turtles must be there to be caught, at least.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class WithinReach:
+    """The service that removes a target, and the distance from which the node may call it (m)."""
+
+    service: str = string("the full name of a service", start="/", about="The service that the node calls.")
+    reach_m: float = number(above=0, about="How near turtle1 must be to the target.")
+
+
+def catches(evidence: Evidence, params: Catches) -> Finding:
+    """All targets were removed before SIGINT, and turtle1 only drove."""
+    recording = evidence.recording
+    expected = f"All targets are caught within {recording.duration_s:g} s, and turtle1 only drives."
+    tracks = recording.tracks
+    gone = caught(recording)
+    moved = _forbidden(recording)
+    if moved is not None:
+        observed = f"The node moved the turtle with {moved}."
+        text = "The turtle must drive to each target: publish on /turtle1/cmd_vel."
+        return failed(observed, expected, Cause("not-driven", text, evidence.place("create_client", "ActionClient")))
+    if evidence.trial.scenario.targets and "kill" in recording.interventions:
+        text = "Only the spawner removes a target. Ask it with its service /catch."
+        cause = Cause("not-driven", text, evidence.place("create_client"))
+        return failed("The node removed a target itself, with /kill.", expected, cause)
+    if len(gone) == len(tracks) >= params.turtles:
+        return passed(f"All {count(len(gone), 'target')} were caught, the last one at {gone[-1].gone_s:.0f} s.")
+    crash = crash_of(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, end_observed(evidence), expected)
+    observed = f"{len(gone)} of {count(len(tracks), 'target')} were caught."
+    if len(tracks) < params.turtles:
+        observed = f"Only {count(len(tracks), 'target')} of {params.turtles:.0f} appeared."
+    if end_observed(evidence):
+        observed = f"{end_observed(evidence)} {observed}"
+    left = [track for track in tracks if track not in gone]
+    finding = failed(observed, expected, why_not_caught(evidence, left))
+    return unless_starved(finding, recording, off=0.1, per_s=1.0)
+
+
+def _forbidden(recording: Recording) -> str | None:
+    """Return the call that moved turtle1, or None. Removing a target is no such call."""
+    moving = tuple(name for name in recording.interventions if name in MOVING)
+    return moved_by(replace(recording, interventions=moving), from_start=True)
+
+
+def nearest_first(evidence: Evidence, _: NoParams) -> Finding:
+    """Each time, the target that was nearest when the last one was caught is the next one."""
+    recording = evidence.recording
+    expected = "Each time, the next target is the one that is nearest to turtle1."
+    gone = caught(recording)
+    if not gone:
+        return failed("No target was caught.", expected, why_not_caught(evidence, list(recording.tracks)))
+    from_s = 0.0
+    for track in gone:
+        others = [each for each in recording.tracks if is_there(each, from_s + 1e-6, from_s) and each is not track]
+        found = min(others, key=lambda each: distance_m(recording, each, from_s), default=None)
+        if found is not None:
+            chosen_m, nearest_m = (distance_m(recording, each, from_s) for each in (track, found))
+            if nearest_m < chosen_m - NEARER_M:
+                return _other_order(evidence, track, chosen_m, found, nearest_m, from_s, gone, expected)
+        from_s = track.gone_s or 0.0
+    return passed(f"{count(len(gone), 'target')} were caught, the nearest first.")
+
+
+def _other_order(
+    evidence: Evidence,
+    track: Track,
+    chosen_m: float,
+    found: Track,
+    nearest_m: float,
+    from_s: float,
+    gone: list[Track],
+    expected: str,
+) -> Finding:
+    observed = (
+        f"At {from_s:.1f} s, {shorten(found.turtle)} was {nearest_m:.1f} m away and {shorten(track.turtle)} "
+        f"{chosen_m:.1f} m, but {shorten(track.turtle)} was caught first."
+    )
+    names = [each.turtle for each in gone]
+    text = "Compute the distance from turtle1 to each target that is left, each time anew."
+    recording = evidence.recording
+    by_start = sorted(gone, key=lambda each: distance_m(recording, each, 0.0))
+    farthest = max(recording.tracks, key=lambda each: distance_m(recording, each, 0.0))
+    if names == sorted(names):
+        text = "The targets were caught in the order of their names."
+    elif [each.turtle for each in by_start] == names:
+        text = "The targets were caught by their distances from the start. After each catch, turtle1 is somewhere else."
+    elif gone[0] is farthest:
+        text = "The first target was the farthest one."
+    return failed(observed, expected, Cause("other-order", text, evidence.place("min", "sorted", "sort", "max")))
+
+
+def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
+    """The node called the service for each target once, when turtle1 was near enough."""
+    recording = evidence.recording
+    expected = f"The node calls {params.service} when the target is at most {params.reach_m:g} m away."
+    until = activity.end_s(recording)
+    calls = [call for call in calls_of(evidence) if call.service == params.service and call.t_s < until]
+    tracks = {track.turtle: track for track in recording.tracks}
+    where = evidence.place("call_async")
+    often = [name for name in tracks if sum(call.request["name"] == name for call in calls) > OFTEN]
+    for call in calls:
+        track = tracks.get(str(call.request["name"]))
+        if track is None:
+            observed = f'The node called {params.service} with the name "{shorten(str(call.request["name"]))}".'
+            text = f"The targets were {a_list(sorted(tracks))}. The name is a field of the request."
+            return failed(observed, expected, Cause("target-name", text, where))
+        away_m = distance_m(recording, track, call.t_s)
+        if not away_m <= params.reach_m + SLACK_M:
+            observed = f"When the node called {params.service} for {track.turtle}, it was {away_m:.2f} m away."
+            return failed(observed, expected, Cause("from-afar", "", where), near_edge=_near(away_m, params))
+    if often:
+        observed = f"The node called {params.service} for {often[0]} again and again."
+        text = "Remember that the node has asked, until the response is there."
+        return failed(observed, f"{expected} Once is enough.", Cause("catch-again", text, where))
+    if not calls:
+        return failed(f"The node never called {params.service}.", expected, why_unasked(evidence, params.service))
+    return passed("The node asked for each target when it was near.")
+
+
+def _near(away_m: float, params: WithinReach) -> bool:
+    return math.isclose(away_m, params.reach_m + SLACK_M, abs_tol=0.02)
+
+
+CATCHES = Kind(
+    "catches_all",
+    "trial",
+    "All turtles are caught",
+    Catches,
+    catches,
+    about="All turtles besides turtle1 are gone before the end, and turtle1 only drove.",
+    drives=True,
+)
+NEAREST_FIRST = Kind(
+    "nearest_first",
+    "trial",
+    "The nearest one is caught first",
+    NoParams,
+    nearest_first,
+    about="Each time, the turtle that was nearest to turtle1 after the last catch is the next one.",
+)
+WITHIN_REACH = Kind(
+    "within_reach",
+    "trial",
+    "The node catches from near by",
+    WithinReach,
+    within_reach,
+    about="The node calls the service that removes a turtle when turtle1 is near enough, and only then.",
+)

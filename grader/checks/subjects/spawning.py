@@ -1,0 +1,262 @@
+"""Checks of a node that spawns turtles, announces those that are left, and removes those that were caught."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_rate import callbacks_of
+from grader.checks.causes.why_silent import methods_of, why_nothing
+from grader.checks.causes.why_unasked import waits_in_callback, why_unasked
+from grader.checks.kind import Kind, number, string
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.subjects.services import calls_of, no_response
+from grader.checks.tolerance import Band
+from grader.common.words import a_list, count, shorten
+from grader.evidence import activity
+from grader.evidence.targets import announcements, is_there
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.evidence.targets import Announcement
+    from grader.trial.observed import Call
+
+LATE_S = 1.05
+"""How long an announcement may be behind the truth (s): two periods of the topic."""
+AT_ONCE_S = 0.1
+"""A turtle may be gone this much after it is no longer announced (s)."""
+OFTEN = 3
+"""A node may also publish each change, but not more than this many times the messages of the timer."""
+ALIKE_M = 0.01
+"""Places that differ by less than this are the same (m)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spawns:
+    """How many turtles the node spawns, the beginning of their names, and the limits of their coordinates (m)."""
+
+    turtles: float = number(at_least=1, about="How many turtles the node spawns.")
+    name: str = string(
+        "the beginning of a name", default="target", about="What the names begin with. A number follows."
+    )
+    low_m: float = number(1.0, at_least=0, about="The smallest coordinate of a turtle.")
+    high_m: float = number(10.0, at_least=0, about="The largest coordinate of a turtle.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Announces:
+    """The topic with the names of the turtles that are left, and the time between two messages (s)."""
+
+    topic: str = string("the full name of a topic", start="/", about="The topic.")
+    period_s: float = number(0.5, above=0, about="The time between two messages.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Removes:
+    """The service that the trial calls with the name of a turtle, and the topic with the names."""
+
+    service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
+    type: str = string("a service type, as in turtlesim/srv/Kill", about="Its type. The request has the field name.")
+    topic: str = string("the full name of a topic", start="/", about="The topic with the names of those that are left.")
+
+
+def spawns(evidence: Evidence, params: Spawns) -> Finding:
+    """The node spawned this many turtles with the right names, at different places on the field."""
+    wanted = [f"{params.name}{index + 1}" for index in range(int(params.turtles))]
+    expected = (
+        f"The node spawns {count(len(wanted), 'turtle')}, {wanted[0]} to {wanted[-1]}, at random places. "
+        f"x and y are from {params.low_m:g} to {params.high_m:g}."
+    )
+    calls = [call for call in calls_of(evidence) if not call.by_trial and call.service == "/spawn"]
+    crash = crash_of(evidence)
+    if not calls:
+        if crash is not None:
+            return crash_finding(evidence, crash, end_observed(evidence), expected)
+        return failed("The node never called /spawn.", expected, why_unasked(evidence, "/spawn"))
+    where = evidence.place("Request", "call_async")
+    names = [str((call.response or {}).get("name", "")) for call in calls]
+    there = [name for name in names if name]
+    strange = [name for name in there if name not in wanted]
+    if strange and not any(name.startswith(params.name) for name in strange):
+        observed = f"The node spawned a turtle named {shorten(strange[0])}."
+        return failed(observed, expected, Cause("target-name", "The name is a field of the request.", where))
+    if len(there) != len(wanted) or strange:
+        if crash is not None and len(there) < len(wanted):
+            return crash_finding(evidence, crash, end_observed(evidence), expected)
+        observed = f"The node spawned {count(len(there), 'turtle')}: {a_list([shorten(name) for name in there])}."
+        text = ""
+        if len(there) < len(calls):
+            text = "turtlesim refused a name that another turtle has."
+        elif len(there) > len(wanted):
+            text = "Count the requests when you send them: the responses come later."
+        return failed(observed, expected, Cause("target-count", text, where))
+    return _places(evidence, params, calls, expected) or passed(f"The node spawned {count(len(there), 'turtle')}.")
+
+
+def _places(evidence: Evidence, params: Spawns, calls: list[Call], expected: str) -> Finding | None:
+    where = evidence.code.assigned("x") or evidence.place("Request", "call_async")
+    places = [(float(call.request["x"]), float(call.request["y"])) for call in calls]
+    for call, place in zip(calls, places, strict=True):
+        if not all(params.low_m <= each <= params.high_m for each in place):
+            observed = f"{shorten(str(call.request['name']))} is at x={place[0]:.2f}, y={place[1]:.2f}."
+            text = "The field is about 11 m wide, and a turtle at the edge is hard to reach."
+            if place == (0.0, 0.0):
+                text = "The fields x and y of a request are 0 until the node sets them."
+            return failed(observed, expected, Cause("target-place", text, where))
+    first = places[0]
+    if len(places) > 1 and all(abs(x - first[0]) + abs(y - first[1]) < ALIKE_M for x, y in places):
+        observed = f"All turtles are at x={first[0]:.2f}, y={first[1]:.2f}."
+        text = "Draw new numbers for each turtle, for example with random.uniform."
+        return failed(observed, expected, Cause("target-place", text, where))
+    return None
+
+
+def announces(evidence: Evidence, params: Announces) -> Finding:
+    """Each message on the topic has the names of all turtles that are left, and of no other."""
+    expected = (
+        f"Every {params.period_s:g} s, the node publishes the names of all targets that are left, with spaces between."
+    )
+    heard = announcements(evidence.recording, params.topic)
+    where = evidence.place("publish", "create_publisher")
+    if not heard:
+        crash = crash_of(evidence)
+        if crash is not None:
+            return crash_finding(evidence, crash, end_observed(evidence), expected)
+        why = why_nothing(evidence, ("publish",)) or Cause("never-publishes", "", where)
+        return failed(f"No String arrived on {params.topic}.", expected, why)
+    for message in heard:
+        finding = _wrong_names(evidence, message, expected)
+        if finding is not None:
+            return finding
+    times_s = [*(message.t_s for message in heard), activity.end_s(evidence.recording)]
+    begin_s, longest_s = max(((at_s, later_s - at_s) for at_s, later_s in pairwise(times_s)), key=lambda gap: gap[1])
+    most = Band.at_most(1.4 * params.period_s)
+    if not most.holds(longest_s):
+        observed = f"After the message at {begin_s:.1f} s, none came for {longest_s:.1f} s."
+        crash = crash_of(evidence)
+        if crash is not None:
+            return crash_finding(evidence, crash, end_observed(evidence), expected)
+        cause = Cause("timer-period", "Publish in each call of the timer.", evidence.place("create_timer"))
+        return failed(observed, expected, waits_in_callback(evidence) or cause, near_edge=most.near(longest_s))
+    often = OFTEN * (times_s[-1] - times_s[0]) / params.period_s
+    if len(heard) > max(often, OFTEN):
+        observed = f"{len(heard)} messages arrived in {times_s[-1] - times_s[0]:.1f} s."
+        cause = Cause("timer-period", "Publish in the callback of one timer.", evidence.place("create_timer"))
+        return failed(observed, expected, cause)
+    return passed("The node announces the targets that are left.", near_edge=most.near(longest_s))
+
+
+def _wrong_names(evidence: Evidence, message: Announcement, expected: str) -> Finding | None:
+    """Return the failed finding about an announcement that was not true in the last second, or None."""
+    tracks = evidence.recording.tracks
+    from_s, to_s = message.t_s - LATE_S, message.t_s
+    where = evidence.place("publish")
+    around = {track.turtle for track in tracks if is_there(track, from_s, to_s + AT_ONCE_S)}
+    called = {str(call.request.get("name")) for call in calls_of(evidence) if call.by_trial and call.t_s <= to_s}
+    throughout = {
+        track.turtle
+        for track in tracks
+        if track.rows[0][0] <= from_s and (track.gone_s is None or track.gone_s > to_s + AT_ONCE_S)
+    }
+    at = f"The message at {message.t_s:.1f} s"
+    strange = [name for name in message.names if name not in around]
+    known = {track.turtle for track in tracks}
+    if strange and any(part in name for name in strange for part in known | {"target"} if name not in known):
+        text = 'The text is the names and one space between two of them: " ".join(names).'
+        return failed(f'{at} is "{shorten(message.text)}".', expected, Cause("target-format", text, where))
+    if strange:
+        text = "Remove a name from the list when it is caught, and add it when the response of /spawn is there."
+        observed = f"{at} names {a_list([shorten(name) for name in strange])}, which is not there."
+        return failed(observed, expected, Cause("still-announced", text, where))
+    missing = sorted(throughout - called - set(message.names))
+    if missing:
+        observed = f"{at} does not name {a_list([shorten(name) for name in missing])}."
+        stuck = waits_in_callback(evidence)
+        text = "The list of those that are left gets a name in the callback that receives the response of /spawn."
+        return failed(observed, expected, stuck or Cause("target-unannounced", text, where))
+    return None
+
+
+def removes(evidence: Evidence, params: Removes) -> Finding:
+    """Each turtle that the trial caught was killed, and none else; unknown names change nothing."""
+    expected = f"When {params.service} is called, the node removes this turtle with /kill, and no other."
+    calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
+    recording = evidence.recording
+    for call in calls:
+        name = str(call.request["name"])
+        if call.response is None:
+            return no_response(evidence, params.service, params.type, call, expected)
+        track = next((each for each in recording.tracks if each.turtle == name), None)
+        kills = [
+            each
+            for each in calls_of(evidence)
+            if not each.by_trial and each.service == "/kill" and each.t_s >= call.t_s
+        ]
+        gone_s = track.gone_s if track is not None else None
+        if track is not None and (gone_s is None or gone_s - call.t_s > LATE_S):
+            return _not_killed(evidence, name, params.topic, kills, expected)
+        others = [each for each in recording.tracks if each.gone_s is not None and each.turtle != name]
+        wrong = [each for each in others if each.turtle not in {str(other.request["name"]) for other in calls}]
+        if wrong:
+            observed = f"{shorten(wrong[0].turtle)} was removed, although nobody caught it."
+            return failed(observed, expected, Cause("not-killed", "", evidence.place("create_service")))
+    return passed(f"A call of {params.service} removes the turtle.")
+
+
+def _not_killed(evidence: Evidence, name: str, topic: str, kills: list[Call], expected: str) -> Finding:
+    crash = crash_of(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, end_observed(evidence), expected)
+    where = _callback(evidence) or evidence.place("create_service")
+    if kills:
+        other = shorten(str(kills[0].request["name"]))
+        observed = f"{name} was caught, and the node asked /kill to remove {other or 'a turtle without a name'}."
+        text = "The name to remove is request.name, the field of the request that the callback receives."
+        return failed(observed, expected, Cause("not-killed", text, where))
+    heard = announcements(evidence.recording, topic)
+    if heard and not any(name in message.names for message in heard):
+        text = f"{name} was never announced. Perhaps it is not in the list of those that are left."
+        return failed(f"{name} was caught, but it is still there.", expected, Cause("target-unannounced", text, where))
+    why = waits_in_callback(evidence) or why_unasked(evidence, "/kill")
+    if why.diagnosis == "service-not-called":
+        why = Cause("not-killed", "The callback of the service must send a request to /kill.", where)
+    return failed(f"{name} was caught, but it is still there.", expected, why)
+
+
+def _callback(evidence: Evidence) -> Where | None:
+    """Return the place of the callback of the node's service."""
+    names = {name for _, name in callbacks_of(evidence, "create_service")}
+    return next(
+        (Where(each.file, method.lineno) for each, method in methods_of(evidence) if method.name in names), None
+    )
+
+
+SPAWNS = Kind(
+    "spawns_targets",
+    "trial",
+    "The node spawns turtles",
+    Spawns,
+    spawns,
+    about="The node spawns a number of turtles with the right names, on the field and not all at one place.",
+)
+ANNOUNCES = Kind(
+    "announces_targets",
+    "trial",
+    "The node announces the turtles",
+    Announces,
+    announces,
+    about="Regularly, a String has the names of all spawned turtles that are left, with spaces between them.",
+)
+REMOVES = Kind(
+    "removes_targets",
+    "trial",
+    "The node removes what was caught",
+    Removes,
+    removes,
+    about="The node removes each turtle whose name a `[[trial.call]]` has in its field `name`, and no other.",
+)

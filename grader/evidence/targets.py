@@ -1,0 +1,85 @@
+"""What a recording shows of targets, the turtles besides turtle1: where they were, and which names were announced."""
+
+from __future__ import annotations
+
+import math
+import struct
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.common.lazy import np
+from grader.evidence import activity
+
+if TYPE_CHECKING:
+    from grader.trial.observed import Track
+    from grader.trial.recording import Recording
+
+STRING = "std_msgs/msg/String"
+HEADER = 8
+"""The number of bytes before the characters of a String: those of CDR, and the length (uint32)."""
+
+
+@dataclass(frozen=True)
+class Announcement:
+    """A String on a topic, with its arrival time (s)."""
+
+    t_s: float
+    text: str
+
+    @property
+    def names(self) -> list[str]:
+        """The words of the text."""
+        return self.text.split()
+
+
+def announcements(recording: Recording, topic: str) -> list[Announcement]:
+    """Return the messages of the type String on the topic before SIGINT, in order."""
+    until = activity.end_s(recording)
+    return [
+        Announcement(message.t_s, _text(message.data))
+        for message in recording.messages
+        if message.topic == topic and message.type == STRING and message.t_s < until
+    ]
+
+
+def _text(data: bytes) -> str:
+    """Return the characters of a serialized String. In CDR, a zero byte ends them, and it counts."""
+    if len(data) < HEADER:
+        return ""
+    (length,) = struct.unpack_from("<I", data, HEADER - 4)
+    return data[HEADER : HEADER + length].rstrip(b"\0").decode("utf-8", "replace")
+
+
+def place_of_turtle1(recording: Recording, t_s: float) -> tuple[float, float]:
+    """Return x and y of turtle1 at this time (m)."""
+    frames = recording.frames
+    if not len(frames.t_s):
+        return recording.start.x, recording.start.y
+    index = min(int(np.searchsorted(frames.t_s, t_s)), len(frames.t_s) - 1)
+    return float(frames.x[index]), float(frames.y[index])
+
+
+def place_at(track: Track, t_s: float) -> tuple[float, float]:
+    """Return x and y of a target at this time (m)."""
+    before = [row for row in track.rows if row[0] <= t_s] or [track.rows[0]]
+    return before[-1][1], before[-1][2]
+
+
+def distance_m(recording: Recording, track: Track, t_s: float) -> float:
+    """Return how far turtle1 is from a target at this time (m)."""
+    (x, y), (to_x, to_y) = place_of_turtle1(recording, t_s), place_at(track, t_s)
+    return math.hypot(to_x - x, to_y - y)
+
+
+def is_there(track: Track, from_s: float, to_s: float) -> bool:
+    """Return whether the target is there at any time between these two (s)."""
+    return track.rows[0][0] <= to_s and (track.gone_s is None or track.gone_s >= from_s)
+
+
+def caught(recording: Recording) -> list[Track]:
+    """Return the targets that were removed before SIGINT, in that order."""
+    until = activity.end_s(recording)
+    return sorted(
+        (track for track in recording.tracks if track.gone_s is not None and track.gone_s <= until),
+        key=lambda track: track.gone_s or 0.0,
+    )

@@ -1,0 +1,70 @@
+"""Drive a square, with a timer and a state."""
+
+import math
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+
+SIDE = 2.0  # m
+TICKS = 10  # calls of the timer for a side, and for a corner
+PERIOD = 0.1  # s
+
+
+class DrawSquareNode(Node):
+    """Drives, turns, drives, turns, ... and stops after four sides."""
+
+    def __init__(self):
+        super().__init__("draw_square")
+        self.publisher = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+        self.timer = self.create_timer(PERIOD, self.step)
+        self.state = "drive"
+        self.ticks = 0
+        self.sides = 0
+
+    def step(self):
+        if self.publisher.get_subscription_count() == 0:
+            return  # nobody listens yet: a command sent now would be lost
+        msg = Twist()
+        # BEGIN SOLUTION
+        if self.state == "drive":
+            msg.linear.x = SIDE / (TICKS * PERIOD)
+        elif self.state == "turn":
+            msg.angular.z = math.pi / 2 / (TICKS * PERIOD)
+        self.ticks += 1
+        if self.ticks == TICKS:
+            self.change_state()
+        # END SOLUTION
+        # BEGIN STARTER
+        # # TODO c: set the speeds that belong to the state, count the call, and change the state when it is over.
+        # END STARTER
+        self.publisher.publish(msg)
+        # BEGIN SOLUTION
+
+    def change_state(self):
+        self.ticks = 0
+        if self.state == "drive":
+            self.sides += 1
+            self.state = "turn"
+        elif self.sides < 4:
+            self.state = "drive"
+        else:
+            self.state = "done"
+        # END SOLUTION
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = DrawSquareNode()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

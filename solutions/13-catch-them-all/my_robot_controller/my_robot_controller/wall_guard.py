@@ -1,0 +1,50 @@
+"""A node that keeps the turtle away from the walls. It is right: test it, and do not change it.
+
+What it promises:
+
+1. It publishes geometry_msgs/msg/Twist on /turtle1/cmd_vel, every 0.1 s.
+2. Before the first pose has come on /turtle1/pose, it publishes nothing.
+3. Away from the walls it drives straight on: linear.x is 1.0 m/s.
+4. Less than 1.0 m from a wall, it slows down to 0.5 m/s and turns to the left: angular.z is 1.5 rad/s. The walls are at
+   0 m and at 11 m, in x and in y. When it is away from the wall, it drives straight on again.
+5. When the last pose is older than 1.0 s, it stops: every field is 0.
+"""
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.duration import Duration
+from rclpy.node import Node
+from turtlesim.msg import Pose
+
+
+class WallGuard(Node):
+    def __init__(self):
+        super().__init__("wall_guard")
+        self.pose = None
+        self.pose_time = None
+        self.publisher = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+        self.subscription = self.create_subscription(Pose, "/turtle1/pose", self.on_pose, 10)
+        self.timer = self.create_timer(0.1, self.send)
+
+    def on_pose(self, pose):
+        self.pose = pose
+        self.pose_time = self.get_clock().now()
+
+    def send(self):
+        if self.pose is None:
+            return
+        command = Twist()
+        x, y = self.pose.x, self.pose.y
+        if self.get_clock().now() - self.pose_time > Duration(seconds=1):
+            pass
+        elif min(x, 11.0 - x, y, 11.0 - y) < 1.0:
+            command.linear.x = 0.5
+            command.angular.z = 1.5
+        else:
+            command.linear.x = 1.0
+        self.publisher.publish(command)
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    rclpy.spin(WallGuard())
