@@ -51,8 +51,8 @@ class OwnNumbers:
 def normal_id(student: str) -> str:
     """Return the normal form of an id, which ignores case, character width and extra spaces.
 
-    Ids are compared, and numbers are drawn, in this form. Otherwise, students could try different spellings of their
-    ids until they get the same numbers as a friend.
+    This form is used for comparing ids and for drawing numbers. Otherwise, students could try different spellings of
+    their ids until they get the same numbers as a friend.
     """
     folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", student).casefold())
     return " ".join(folded.split())

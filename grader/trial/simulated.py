@@ -175,7 +175,7 @@ class SimulatedTrial(Simulation):
                 if patience.several_worked():
                     self._doubt("the node never comes to rest: its threads keep waking each other up", by_chance=True)
                 else:
-                    self._doubt("the node is busy all the time: a loop in it never pauses")
+                    self._doubt("the node is busy all the time: it has a loop without a pause")
                 return
             # Our receiving threads have not run since the last time, so no new message has arrived.
             if self._received == self._handled:

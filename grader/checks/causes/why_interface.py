@@ -1,4 +1,4 @@
-"""Why a type, a future, or a message of an action or a service was used in the wrong way, which raised an exception."""
+"""Causes of exceptions from the wrong use of interfaces: action and service types, their messages, and futures."""
 
 from __future__ import annotations
 

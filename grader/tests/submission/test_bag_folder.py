@@ -24,7 +24,7 @@ def with_data(data: bytes) -> BagFolder:
 
 
 def written(messages: int, size: int, chunk: int = 1024 * 1024) -> bytes:
-    """Return a file with messages of zeros, which compress well."""
+    """Return a file whose messages consist of zeros, which compress well."""
     stream = BytesIO()
     writer = Writer(stream, chunk_size=chunk, compression=CompressionType.ZSTD)
     writer.start()
