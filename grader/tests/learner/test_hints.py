@@ -83,7 +83,7 @@ def test_after_all_hints_one_for_a_failed_check_is_repeated() -> None:
 def test_passed_checks_get_no_hint() -> None:
     verdict("04-package-files", done=("depends-rclpy", "depends-geometry-msgs"), failed=("entry-point",))
     reported = {hints.hint(None, None).split(": ", 1)[1] for _ in range(9)}
-    done = "each package that they import must be there when the node runs."
+    done = "each package that they import must be installed when the node runs."
     assert reported == {text for text in all_texts("04") if not text.endswith(done)}
     verdict("04-package-files", passed=True)
     assert hints.hint(None, None) == "04-package-files has passed, so you do not need more hints."

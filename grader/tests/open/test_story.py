@@ -45,7 +45,7 @@ def test_the_story_of_step_03(learner: Course, browser: Browser) -> None:
     assert page.locator("#checks li.passed").count() > 5
 
     page.get_by_role("button", name="Hint").click()
-    page.locator("#hints li").get_by_text("Three things are missing").wait_for()
+    page.locator("#hints li").get_by_text("Three parts are missing").wait_for()
 
     stays(page, "package-xml")
     learner.save("2.0", "2")
