@@ -6,6 +6,7 @@ kept. Therefore, the verdict after a save takes little longer than the trial its
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from queue import SimpleQueue
 from threading import Event, Thread
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Literal
 from watchfiles import DefaultFilter, watch
 
 from grader.colcon.rebuild import Rebuild
-from grader.errors import UsageError
+from grader.errors import MachineError, UsageError
 from grader.grading.grade import Graded, can_be_explained, explained, grade
 from grader.submission.package import open_answers, open_submission
 from grader.trial.trial import Plan, Trial
@@ -164,6 +165,8 @@ class Watched:
     ) -> Graded:
         """Grade the current content of the folder. See `grader.grading.grade.grade` for `tell` and `early`.
 
+        Show the verdict first, and then call `prepare`.
+
         Raises:
             UsageError: there is no package in the folder.
         """
@@ -174,20 +177,27 @@ class Watched:
             raise
         self._judged = submission.digest
         self._wanted = self._unproved = None
-        try:
-            graded = grade(
-                self.exercise,
-                submission,
-                self._options,
-                tell,
-                early=early,
-                build=self.rebuild,
-                trial=self._next_trial,
-            )
-        finally:
-            self._warm_up()
+        graded = grade(
+            self.exercise,
+            submission,
+            self._options,
+            tell,
+            early=early,
+            build=self.rebuild,
+            trial=self._next_trial,
+        )
         self._unproved = graded
         return graded
+
+    def prepare(self) -> None:
+        """Start the simulator and the launcher of the next trial. This keeps two processors busy for half a second."""
+        if self._warm is None and self._wanted is not None:
+            plan, ros = self._wanted
+            trial = Trial(plan, ros, in_cell=self._options.in_cell)
+            # If it cannot be started, the next grading reports why.
+            with suppress(MachineError):
+                trial.start()
+                self._warm = (plan, trial)
 
     @property
     def unproved(self) -> bool:
@@ -226,10 +236,3 @@ class Watched:
             self._warm = None
             return trial
         return Trial(plan, ros, in_cell=in_cell)
-
-    def _warm_up(self) -> None:
-        if self._warm is None and self._wanted is not None:
-            plan, ros = self._wanted
-            trial = Trial(plan, ros, in_cell=self._options.in_cell)
-            trial.start()
-            self._warm = (plan, trial)

@@ -112,6 +112,7 @@ class _Screen:
         if notice:
             self._say(f"\n{notice}")
         self._say(f"\nWatching {self.watched.folder}   {KEYS if self._console.is_terminal else ''}".rstrip())
+        self.watched.prepare()
 
     def _prove(self, events: Events) -> None:
         """Try the causes of the last report while no event waits, and show the results."""

@@ -62,11 +62,13 @@ def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
     desk.tell("Reading")
     try:
         graded = watched.grade(desk.tell, desk.early)
-        steps.note(watched.exercise, watched.folder, graded.report, workspace)
+        # The disk of the progress may be slow.
         desk.judged(graded.report)
+        steps.note(watched.exercise, watched.folder, graded.report, workspace)
         desk.detailed(verdict_html(graded.evidence, graded.report, watched.folder))
     except GraderError as error:
         desk.failed(str(error))
+    watched.prepare()
 
 
 def _prove(desk: Desk, events: Events, watched: Watched) -> None:

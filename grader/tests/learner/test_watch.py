@@ -278,6 +278,9 @@ def test_the_first_of_several_trials_is_prepared_early(package: Path, monkeypatc
     monkeypatch.setattr("grader.learner.watch.grade", graded)
     watched = Watched(find_exercise(STEP), package, Options(in_cell=False))
     watched.grade()
+    # The verdict is shown before the processors are busy with the next trial.
+    assert begun == []
+    watched.prepare()
     assert begun == [first]
     watched.close()
     assert begun == []
