@@ -44,7 +44,7 @@ class Case:
     folder: Path = CASES
     """The folder of the case. This is not a key of expected.toml."""
     base: str = "03-circle-publisher"
-    """`files` is copied over this: the solution of a step, or a package in bases/. Empty if there is no base."""
+    """`files` is copied over this: the solution of a step, or a package in bases/. Empty for a case without a base."""
     exercise: str = ""
     """The exercise that grades the case. If empty, and the base is a solution, the exercise of the base."""
     edit: tuple[Mapping[str, str], ...] = ()

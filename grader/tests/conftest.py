@@ -27,7 +27,7 @@ os.environ["ROS_DOMAIN_ID"] = str(default_domain())
 os.environ["GRADER_ROS2_DAEMON"] = "0"
 
 collect_ignore = ["cases", "mistakes", "unusual", "hostile"]
-"""Submissions. Some of them contain tests of their own."""
+"""Folders with submissions. Some of these contain their own tests."""
 
 
 LONGEST = (

@@ -1,4 +1,4 @@
-"""Create bags like those that learners record, without a recorder."""
+"""Create bags like those of learners, without a recorder."""
 
 from __future__ import annotations
 

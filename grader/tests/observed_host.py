@@ -75,7 +75,7 @@ class Host:
         """Run a command until it ends."""
         if self._as_user:
             subprocess.run(["chown", "-R", f"{USER}:{USER}", str(self._scratch)], check=True)
-        # This is not imported above, because there is no ROS 2 inside.
+        # This is not imported above, because the host has no ROS 2.
         from grader.tests.both_worlds import SOURCED_ENV
 
         before = self._files()

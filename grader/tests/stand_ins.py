@@ -29,6 +29,6 @@ class StandIns:
         program.chmod(0o755)
 
     def calls(self) -> list[str]:
-        """Return all calls so far."""
+        """Return the recorded calls."""
         file = self.folder / "calls"
         return file.read_text("utf-8").splitlines() if file.exists() else []

@@ -105,7 +105,7 @@ def test_answers_of_ros2_are_those_that_were_recorded(block: Block) -> None:
 
 
 def test_no_command_stands_outside_of_a_block(lesson: Path) -> None:
-    """No test would run such a command."""
+    """No other test would run a command outside a block."""
     assert re.findall(r"^ +\$ .*", lesson.read_text("utf-8"), re.MULTILINE) == []
 
 
