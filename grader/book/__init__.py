@@ -1,1 +1,1 @@
-"""The lessons as pages: from lesson.md to HTML. `grader book` writes them to a folder, `grader open` serves them."""
+"""The lessons as HTML pages. `grader book` writes them to a folder, and `grader open` serves them."""

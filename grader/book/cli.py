@@ -22,7 +22,7 @@ def book(
         str, typer.Option(help="The URL of your course's repository. Each page links to it.", metavar="URL")
     ] = "",
 ) -> None:
-    """Write the lessons as pages for a web server. They need no server and load nothing from other sites."""
+    """Write the lessons as static pages. They load nothing from other sites, and any web server can serve them."""
     from grader.book.site import write_book
     from grader.common.words import count
 

@@ -1,4 +1,4 @@
-"""A block of code as HTML: coloured source, or a terminal that shows what to type and what comes."""
+"""A block of code as HTML: highlighted source, or a terminal with commands and their output."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _NAMES = {"": "Text", "toml": "TOML", "xml": "XML", "python": "Python", "bash": 
 
 
 def code_html(text: str, language: str) -> str:
-    """Return the HTML of a block. A script adds a button that copies it, or only the commands if it is a terminal."""
+    """Return the HTML of a block. A script adds a button that copies the code, or only the commands of a terminal."""
     text = text.rstrip("\n")
     lines = _console(text) if language == CONSOLE else _source(text, language)
     name = _NAMES.get(language, language)
@@ -34,7 +34,7 @@ def _source(text: str, language: str) -> Iterator[Markup]:
 
 
 def _console(text: str) -> Iterator[Markup]:
-    """Yield a line for each line: what is typed is a kbd element, and what comes is a samp element."""
+    """Yield the HTML of each line: commands are kbd elements, and output lines are samp elements."""
     continues = False
     for line in text.split("\n"):
         if continues or line.startswith(PROMPT):

@@ -1,4 +1,4 @@
-"""Where the figures that a reader can change stand in the lessons. figures.js draws them."""
+"""The places of the interactive figures in the lessons. figures.js draws them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure of figures.js, at the end of the section with this anchor."""
+    """A figure of figures.js at the end of the section with this anchor."""
 
     name: str
     anchor: str
@@ -19,9 +19,9 @@ FIGURES = {
     "07-challenges": Figure("goal", "d-a-drive-to-a-goal"),
     "09-parameters": Figure("radius", "say-no"),
 }
-"""The figures by step. A figure whose section is gone stands at the end of the lesson."""
+"""The figures by step. A figure whose section does not exist is at the end of the lesson."""
 
 
 def figure_html(figure: Figure) -> str:
-    """Return the place for the figure. It is empty until the script draws in it."""
+    """Return the element for the figure. The script draws the figure in this element."""
     return f'<figure class="explore" data-figure="{figure.name}" hidden></figure>\n'

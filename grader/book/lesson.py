@@ -1,4 +1,4 @@
-"""A lesson as data: its title, its HTML, its sections and its pictures, all read from lesson.md."""
+"""A lesson as data: the title, HTML, sections and pictures of a lesson.md."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Lesson:
 
 
 def lesson_of(folder: Path) -> Lesson:
-    """Read the lesson in the folder of a step.
+    """Read the lesson from the folder of a step.
 
     Raises:
         MachineError: the file cannot be read.

@@ -1,4 +1,4 @@
-"""Markdown to HTML, with what a lesson needs: code with colours, terminals, figures, tables and links between steps."""
+"""Convert the Markdown of a lesson to HTML: highlighted code, terminals, figures, tables and links between steps."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
     from grader.book.figures import Figure
 
 PAGE = "index.html"
-"""The name of a lesson's page in the folder of its step."""
+"""The name of a lesson's page, inside the folder of its step."""
 _LESSON_LINK = re.compile(r"^(\.\./[\w-]+/)lesson\.md(#.*)?$")
 _NEIGHBOURS = re.compile(r"(Before|Next): ")
 
 
 @dataclass(frozen=True)
 class Section:
-    """A heading with its level (2 or 3) and its anchor, and the plain text below it, for the search."""
+    """A heading with its level (2 or 3) and its anchor, and the plain text below it for the search."""
 
     level: int
     title: str
@@ -49,7 +49,7 @@ class Rendered:
 
 
 def rendered(text: str, figure: Figure | None = None) -> Rendered:
-    """Return the HTML of a lesson, with the place for a figure. HTML in the Markdown is shown as text."""
+    """Return the HTML of a lesson, with an element for a figure. HTML in the Markdown is shown as text."""
     markdown = _parser()
     tokens = _without_neighbours(markdown.parse(text))
     title, tokens = _title(tokens)
@@ -63,7 +63,7 @@ def rendered(text: str, figure: Figure | None = None) -> Rendered:
 
 
 def anchor_of(title: str) -> str:
-    """Return the anchor of a heading, as GitHub makes it."""
+    """Return the anchor of a heading, as on GitHub."""
     return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
 
 
@@ -86,7 +86,7 @@ def _fence(_: RendererHTML, tokens: Sequence[Token], at: int, _options: OptionsD
 
 
 def _image(_: RendererHTML, tokens: Sequence[Token], at: int, _options: OptionsDict, _env: EnvType) -> str:
-    # The caption is the text for those who do not see the picture, too. The paragraph around it becomes the figure.
+    # The caption also describes the picture to screen readers. The paragraph around the picture becomes the figure.
     token = tokens[at]
     return (
         f'<img src="{escape(str(token.attrs["src"]))}" alt="" loading="lazy">'
@@ -110,7 +110,7 @@ def _th_open(_: RendererHTML, _tokens: Sequence[Token], _at: int, _options: Opti
 
 
 def _without_neighbours(tokens: list[Token]) -> list[Token]:
-    """Leave out the last line with the links to the neighbouring steps, because the page has its own."""
+    """Remove the last line with the links to the neighbouring steps, because the page has its own links."""
     if len(tokens) > 3 and tokens[-2].type == "inline" and _NEIGHBOURS.match(tokens[-2].content):
         tokens = tokens[:-3]
         if tokens[-1].type == "hr":
@@ -138,7 +138,7 @@ def _add_anchors(tokens: list[Token]) -> None:
 
 
 def _link(tokens: list[Token]) -> None:
-    """Let links to lessons lead to their pages, and make a paragraph with nothing but a picture a figure."""
+    """Change links to lessons to links to their pages, and paragraphs with only a picture to figures."""
     for token in _inner(tokens):
         if token.type == "link_open":
             token.attrSet("href", _LESSON_LINK.sub(rf"\1{PAGE}\2", str(token.attrs["href"])))
@@ -149,7 +149,7 @@ def _link(tokens: list[Token]) -> None:
 
 
 def _with_figure(tokens: list[Token], figure: Figure) -> list[Token]:
-    """Add the figure at the end of its section, or else at the end of the lesson."""
+    """Insert the figure at the end of its section, or else at the end of the lesson."""
     begin = next((at for at, token in enumerate(tokens) if token.attrs.get("id") == figure.anchor), len(tokens))
     heads = (at for at, token in enumerate(tokens) if at > begin and token.type == "heading_open")
     end = next(heads, len(tokens))
@@ -162,7 +162,7 @@ def _inner(tokens: list[Token]) -> Iterator[Token]:
 
 
 def _sections(tokens: list[Token], title: str) -> Iterator[Section]:
-    """Yield the text before the first heading as a section with the lesson's title, and then one for each heading."""
+    """Yield a section with the text before the first heading and the lesson's title, then one section per heading."""
     level, heading, anchor = 1, title, ""
     texts: list[str] = []
     heads = {id(inline) for opening, inline in pairwise(tokens) if opening.type == "heading_open"}

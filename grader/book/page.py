@@ -1,4 +1,4 @@
-"""The page of a lesson, and the page with all lessons."""
+"""The page of a lesson, and the page with the list of all lessons."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; require-trusted-types-for 'script'; trusted-types 'none'"
 )
-"""For pages without a server of ours. The pages load nothing from anywhere else."""
+"""The policy for pages on any web server. The pages load nothing from other sites."""
 
 
 def lesson_page(lesson: Lesson, among: Sequence[Lesson], repository: str = "", policy: str = POLICY) -> str:
-    """Return the page of a lesson. `among` are all lessons, in order; `repository` is the URL of the sources."""
+    """Return the page of a lesson. `among` are all lessons in order, and `repository` is the URL of the sources."""
     at = [each.id for each in among].index(lesson.id)
     return fill("lesson.html", lesson_values(lesson, among, at, repository, policy), ASSETS)
 
@@ -31,7 +31,7 @@ def lesson_page(lesson: Lesson, among: Sequence[Lesson], repository: str = "", p
 def lesson_values(
     lesson: Lesson, among: Sequence[Lesson], at: int, repository: str = "", policy: str = POLICY
 ) -> Mapping[str, object]:
-    """Return what the template of a lesson needs; `at` is the lesson's place among all lessons."""
+    """Return the values for the template of a lesson. `at` is the index of the lesson among all lessons."""
     return {
         **_values(among, "../", repository, policy),
         "lesson": lesson,
@@ -42,17 +42,17 @@ def lesson_values(
 
 
 def contents_page(among: Sequence[Lesson], repository: str = "", policy: str = POLICY) -> str:
-    """Return the page with all lessons."""
+    """Return the page with the list of all lessons."""
     return fill("contents.html", contents_values(among, repository, policy), ASSETS)
 
 
 def contents_values(among: Sequence[Lesson], repository: str = "", policy: str = POLICY) -> Mapping[str, object]:
-    """Return what the template of the page with all lessons needs."""
+    """Return the values for the template of the page with all lessons."""
     return _values(among, "", repository, policy)
 
 
 def _values(among: Sequence[Lesson], root: str, repository: str, policy: str) -> dict[str, object]:
-    """Return what all pages need; `root` leads from the page's folder to the folder of the book."""
+    """Return the values that all pages need. `root` is the relative path from the page to the folder of the book."""
     return {
         "course": TITLE,
         "lessons": among,

@@ -1,4 +1,4 @@
-"""What the search of the pages searches in: one entry for each section of each lesson."""
+"""The index for the search of the pages: one entry for each section of each lesson."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Write the lessons as static pages, for any web server."""
+"""Write the lessons as static pages for any web server."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ FOLDER = "assets"
 
 
 def write_book(out: Path, repository: str = "") -> int:
-    """Write all pages to the folder `out`; return the number of lessons. Existing files are replaced.
+    """Write all pages to the folder `out`. Return the number of lessons. Existing files are replaced.
 
     Raises:
         UsageError: `out` is not a folder, or cannot be written.
@@ -44,13 +44,13 @@ def write_book(out: Path, repository: str = "") -> int:
 
 
 def assets() -> dict[str, Path]:
-    """Return the style sheets, scripts and pictures that the pages load, by name; templates are left out."""
+    """Return the style sheets, scripts and pictures of the pages by name. Templates are omitted."""
     files = [REPORT_ASSETS / "page.css", VIEW_ASSETS / "turtle.svg", VIEW_ASSETS / "svg.js", *sorted(ASSETS.iterdir())]
     return {file.name: file for file in files if file.suffix in (".css", ".js", ".svg")}
 
 
 def pictures(among: Sequence[Lesson]) -> dict[str, Path]:
-    """Return the pictures of the lessons, by their path in the book. Only pictures inside of course/ are shown."""
+    """Return the pictures of the lessons by their path in the book. Only pictures inside course/ are included."""
     found = {}
     for lesson in among:
         course = lesson.folder.parent.resolve()

@@ -1,1 +1,1 @@
-"""`grader open`: one page to learn on, with the lesson, the verdict after each save, and a live turtle."""
+"""`grader open`: a page for learning, with the lesson, the verdict after each save, and a live turtle."""

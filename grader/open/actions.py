@@ -1,4 +1,4 @@
-"""What a page can request, each a method with the JSON of the request; nothing else can be started or changed."""
+"""The actions that a page can request. Each is a method with the JSON of the request as its argument."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Actions:
-    """The actions of a page. Each returns data for JSON, and raises GraderError with a sentence for the page.
+    """The actions of a page. Each returns data for JSON, or raises GraderError with a message for the page.
 
-    `tell` passes a word of grading.py on to the process that grades.
+    `tell` sends a command of grading.py to the process that grades.
     """
 
     tell: Callable[[str], object]
@@ -35,7 +35,7 @@ class Actions:
     programs: Programs
 
     def all(self) -> Mapping[str, Callable[[Request], Any]]:
-        """Return the actions by name; some are coroutines."""
+        """Return the actions by name. Some are coroutines."""
         threaded = {"start": self.start, "hint": self.hint, "rerun": self.rerun, "ask": self.ask}
         return {**threaded, "turtlesim": self.turtlesim, "node": self.node}
 
@@ -43,7 +43,7 @@ class Actions:
         """Start a step, or the next one. Files of the learner are not overwritten."""
         step = request.get("step")
         if not isinstance(step, str) or (step != "next" and step not in catalogue()):
-            message = "There is no such step."
+            message = "The step does not exist."
             raise UsageError(message)
         begun = steps.start(step, self.workspace)
         self.tell(STEP)
@@ -51,16 +51,16 @@ class Actions:
         return {"step": begun.exercise.id, "folder": str(begun.started.folder), "lacking": lacking}
 
     def hint(self, _: Request) -> object:
-        """Read the next hint of the current step."""
+        """Return the next hint of the current step."""
         return {"text": hints.hint(None, self.workspace)}
 
     def rerun(self, _: Request) -> object:
-        """Grade again."""
+        """Request another grading."""
         self.tell(RERUN)
         return {}
 
     def ask(self, request: Request) -> object:
-        """Ask ROS 2 a question that changes nothing."""
+        """Run a verb of `ros2` that changes nothing."""
         words = arguments(str(request.get("text", "")))
         env = users_environment(None, lambda _: None, {**os.environ, "GRADER_ROS2_DAEMON": "0"})
         found = answer(words, env)
@@ -75,14 +75,14 @@ class Actions:
         return {}
 
     async def node(self, request: Request) -> object:
-        """Start a node of the current step, or stop it."""
+        """Start or stop a node of the current step."""
         if request.get("on") is not True:
             await self.programs.node.stop()
             return {}
         current = steps.current(self.workspace)
         name = request.get("executable")
         if current is None or name not in executables(current[0]):
-            message = "This step has no such program."
+            message = "This step does not have the program."
             raise UsageError(message)
         await self.programs.start_node(current[0].id, str(name))
         return {}

@@ -1,4 +1,4 @@
-"""`grader open` from start to end: the address, the process that serves the page, and the grading in this process."""
+"""Run `grader open`: choose the address, start the process that serves the page, and grade in this process."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from grader.view.address import Place
 
 _ENDS_S = 15.0
-"""How long the server may take to end (s). Then it is killed."""
+"""The time that the server has to exit (s) before it is killed."""
 
 
 def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
@@ -43,7 +43,7 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _interrupt)
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    # A progress that cannot be read is reported here, not in the page.
+    # Report progress that cannot be read here, not in the page.
     page_data(Content(), progress.workspace_of(workspace))
     place = listen("open", port)
     try:
@@ -55,11 +55,11 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
             print(f"Learn here: {place.address.url}", flush=True)
             for line in elsewhere(place.address.port, os.environ):
                 print(line, flush=True)
-            print("It ends with Ctrl-C.", flush=True)
+            print("Press Ctrl-C to stop it.", flush=True)
             Thread(target=_pass_on, args=(connection, events), daemon=True).start()
             with suppress(ConnectionError):
                 grading.run(Desk(lambda content: _send(connection, content)), events, workspace)
-            message = "The process that serves the page has ended. Type the command again."
+            message = "The process that serves the page has exited. Repeat the command."
             raise MachineError(message)
     except KeyboardInterrupt:
         print()
@@ -67,7 +67,7 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
 
 @contextmanager
 def _page(place: Place, workspace: Path | None, *, opens: bool) -> Iterator[socket.socket]:
-    """Start the process that serves the page; yields the connection to it. It ends when the connection is closed."""
+    """Start the process that serves the page, and yield the connection to it. Closing the connection ends it."""
     ours, theirs = socket.socketpair()
     with ours, theirs:
         given = {
@@ -89,7 +89,7 @@ def _page(place: Place, workspace: Path | None, *, opens: bool) -> Iterator[sock
             env=start.env,
             pass_fds=[theirs.fileno(), place.listening.fileno()],
             stdin=subprocess.DEVNULL,
-            # Ctrl-C is meant for this process.
+            # Only this process handles Ctrl-C.
             start_new_session=True,
         )
         theirs.close()
@@ -111,7 +111,7 @@ def _send(connection: socket.socket, content: Content) -> None:
 
 
 def _pass_on(connection: socket.socket, events: Events) -> None:
-    """Put each word from the page into the events, and end them when the server has ended."""
+    """Add each command from the page to the events. Close the events when the server has exited."""
     with suppress(OSError), connection.makefile("r", encoding="utf-8") as lines:
         for line in lines:
             events.press(line.strip())
@@ -119,14 +119,14 @@ def _pass_on(connection: socket.socket, events: Events) -> None:
 
 
 def elsewhere(port: int, env: Mapping[str, str]) -> list[str]:
-    """Return the line that leads to the page from another machine, if this is a Codespace or an ssh session."""
+    """Return the command that makes the page reachable from another machine, in a Codespace or an ssh session."""
     if env.get("CODESPACES") == "true":
         name = env.get("CODESPACE_NAME", "NAME")
-        return [f"On your own computer, type first: gh codespace ports forward {port}:{port} --codespace {name}"]
+        return [f"On your own computer, first type: gh codespace ports forward {port}:{port} --codespace {name}"]
     if "SSH_CONNECTION" in env:
         server = (env["SSH_CONNECTION"].split()[2:3] or ["HOST"])[0]
         forward = f"{port}:127.0.0.1:{port}"
-        return [f"On your own computer, type first: ssh -N -L {forward} {getpass.getuser()}@{server}"]
+        return [f"On your own computer, first type: ssh -N -L {forward} {getpass.getuser()}@{server}"]
     return []
 
 

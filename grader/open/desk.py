@@ -1,4 +1,4 @@
-"""What the page shows beside the lesson, as data: the steps, the checks of the current step, the verdict, the hints."""
+"""The data that the page shows beside the lesson: the steps, the checks of the current step, the verdict, the hints."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 OPEN = "open"
-"""The kind of a check that was not judged yet."""
+"""The kind of a check that has not been judged yet."""
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """The last verdict: its checks by id, the line that sums it up, and the HTML of its details."""
+    """The last verdict: its checks by id, its summary line, and the HTML of its details."""
 
     checks: dict[str, dict[str, object]]
     line: str
@@ -38,7 +38,7 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Content:
-    """The changing content of the desk. `number` counts the verdicts. `doing` is what the grader does now, or empty."""
+    """The variable content of the page. `number` counts the verdicts. `doing` is the stage of grading, or empty."""
 
     exercise: str = ""
     folder: str = ""
@@ -47,32 +47,32 @@ class Content:
     number: int = 0
     verdict: Verdict | None = None
     early: dict[str, dict[str, object]] | None = None
-    """Checks that are already certain to fail, from the files alone, until the verdict comes."""
+    """Checks that fail because of the files, shown until the verdict is ready."""
 
 
 class Desk:
-    """The content, which is passed to `show` after each change."""
+    """The content of the page. Each change calls `show`."""
 
     def __init__(self, show: Callable[[Content], object]) -> None:
         self._show = show
         self._content = Content()
 
     def begin(self, exercise: Exercise | None, folder: Path | None) -> None:
-        """Show another step, without a verdict yet; None if no step was started."""
+        """Show another step without a verdict, or no step if `exercise` is None."""
         name = exercise.id if exercise else ""
         self._set(Content(exercise=name, folder=str(folder or ""), number=self._content.number + 1))
 
     def tell(self, doing: str) -> None:
-        """Show what the grader does."""
+        """Show the current stage of grading."""
         if doing != self._content.doing:
             self._set(replace(self._content, doing=doing))
 
     def early(self, outcomes: Sequence[Outcome]) -> None:
-        """Show what is certain to fail, from the files alone."""
+        """Show the checks that fail because of the files."""
         self._set(replace(self._content, early={each.id: _check(each) for each in outcomes}, problem=""))
 
     def judged(self, report: Report) -> None:
-        """Show a verdict. Its details stay those of the last one until `detailed` is called."""
+        """Show a verdict. Keep the details of the last verdict until `detailed` is called."""
         checks = {outcome.id: _check(outcome) for outcome in report.outcomes}
         before = self._content.verdict
         made = Verdict(checks, verdict(report), tone(report), before.html if before else "")
@@ -84,7 +84,7 @@ class Desk:
             self._set(self._final(verdict=replace(self._content.verdict, html=html)))
 
     def failed(self, problem: str) -> None:
-        """Show why there is no verdict."""
+        """Show the reason why no verdict was reached."""
         self._set(self._final(problem=problem))
 
     def _final(self, *, verdict: Verdict | None = None, problem: str = "") -> Content:
@@ -102,14 +102,14 @@ def to_json(content: Content) -> str:
 
 
 def from_json(text: str | bytes) -> Content:
-    """Return the content that `to_json` has written."""
+    """Return the content from the output of `to_json`."""
     data = json.loads(text)
     made = data["verdict"]
     return Content(**{**data, "verdict": made and Verdict(**made)})
 
 
 def page_data(now: Content, workspace: Path) -> dict[str, object]:
-    """Return everything for a page: the content, and the learner's progress in the workspace."""
+    """Return all data for a page: the content, and the learner's progress in the workspace."""
     known = progress.load(workspace)
     exercise = find_exercise(now.exercise) if now.exercise else None
     step = known.step(now.exercise)
@@ -144,7 +144,7 @@ def _check(outcome: Outcome) -> dict[str, object]:
 
 
 def _checks(exercise: Exercise, now: Content) -> list[dict[str, object]]:
-    """Return all checks of the exercise in order: failed from the files, or judged before, or not judged yet."""
+    """Return all checks of the exercise in order: failed because of the files, judged before, or not judged yet."""
     judged = {**(now.verdict.checks if now.verdict else {}), **(now.early or {})}
     return [
         judged.get(spec.id)

@@ -1,6 +1,6 @@
-"""The server of the page: the lessons, the verdict, the news, and the actions, behind the guard of the view.
+"""The server of the page: lessons, verdict, news and actions, protected by the guard of the view.
 
-Lessons are public text. Everything of the learner's needs the token: in a header, which no other site can send, or in
+Lessons are public. The learner's data needs the token: in a header, which no other site can send, or in
 the address of the connection for news, whose Origin the guard checks.
 """
 
@@ -42,14 +42,14 @@ TOKEN = "x-course-token"
 LARGEST = 4096
 """The maximum size of the body of a request (bytes)."""
 PATIENCE_S = 5.0
-"""How long a page may take to send the body of a request (s)."""
+"""The time that a page has to send the body of a request (s)."""
 
 
 @dataclass(frozen=True)
 class DeskServer:
-    """What answers the requests.
+    """The request handlers.
 
-    `content` returns what the page shows now. `actions` are what a page can request. `turtle`
+    `content` returns the current data of the page. `actions` are the actions that a page can request. `turtle`
     returns the address of turtlesim's view.
     """
 
@@ -79,7 +79,7 @@ class DeskServer:
     async def _page(self, request: Request) -> Response:
         found = await run_in_threadpool(self.pages.find, request.path_params["path"])
         if found is None:
-            return PlainTextResponse("There is no such page.", 404)
+            return PlainTextResponse("The page does not exist.", 404)
         return FileResponse(found) if isinstance(found, Path) else Response(found, media_type="text/html")
 
     async def _verdict(self, request: Request) -> Response:
@@ -93,7 +93,7 @@ class DeskServer:
             return _refused()
         action = self.actions.get(request.path_params["name"])
         if action is None:
-            return JSONResponse({"problem": "There is no such action."}, 404)
+            return JSONResponse({"problem": "The action does not exist."}, 404)
         try:
             wanted = await asyncio.wait_for(_wanted(request), PATIENCE_S)
             if iscoroutinefunction(action):
@@ -138,7 +138,7 @@ def _refused() -> Response:
 
 
 async def _wanted(request: Request) -> dict[str, Any]:
-    """Return the JSON object in the body. Raises OverflowError if it is too large, ValueError if it is not one."""
+    """Return the JSON object in the body. Raises OverflowError if it is too large, or ValueError for other data."""
     body = b""
     async for chunk in request.stream():
         body += chunk
@@ -170,7 +170,7 @@ async def _follow(socket: WebSocket, hub: Hub) -> None:
 
 
 def _awake(text: str) -> bool | None:
-    """Return whether a page says that it is shown or hidden; None if it says something else."""
+    """Return whether a message reports that the page is shown or hidden, or None for other messages."""
     try:
         said = json.loads(text) if len(text) <= LARGEST else {}
     except (ValueError, RecursionError):

@@ -1,4 +1,4 @@
-"""Grade the current step after each save, and show the verdict on the desk."""
+"""Grade the current step after each save, and show the verdict on the page."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from grader.open.desk import Desk
 
 RERUN, STEP = "rerun", "step"
-"""What a page requests: grade again, or the current step may be another one."""
+"""The commands from a page: grade again, or check whether the current step has changed."""
 
 
 def run(desk: Desk, events: Events, workspace: Path | None) -> None:
-    """Grade after every save and request, until the events end."""
+    """Grade after every save and command, until the events end."""
     options = Options(in_cell=bubblewrap.usable())
     current = steps.current(workspace)
     while True:
@@ -46,7 +46,7 @@ def _await_step(events: Events) -> bool:
 
 
 def _grade_until_another(desk: Desk, events: Events, watched: Watched, workspace: Path | None) -> bool:
-    """Grade one step until another one is the current step. Return False at the end of the events."""
+    """Grade a step until the learner starts another one. Return False at the end of the events."""
     for happened in events:
         if happened.key == STEP:
             current = steps.current(workspace)
@@ -72,7 +72,7 @@ def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
 
 
 def _prove(desk: Desk, events: Events, watched: Watched) -> None:
-    """Try the causes of the verdict while nothing else happens, and show what the tries have shown."""
+    """Try the causes of the verdict while no event waits, and show the results."""
     proved = watched.prove(desk.tell, events.waiting)
     if proved is not None:
         desk.judged(proved.report)

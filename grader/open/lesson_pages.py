@@ -1,4 +1,4 @@
-"""The files that the server has: the pages of the lessons with the panes, their pictures, style sheets and scripts."""
+"""The files of the server: the pages of the lessons with the panes, and their pictures, style sheets and scripts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ OWN = Path(__file__).parent / "assets"
 
 
 class LessonPages:
-    """Finds what a path of a request means. Only these names exist; a path is never a path on the disk."""
+    """Finds the content for the path of a request. A path never refers to a path on the disk."""
 
     def __init__(self) -> None:
         self._read: tuple[object, list[Lesson]] = (None, [])
@@ -33,7 +33,7 @@ class LessonPages:
         self._assets |= {f"{FOLDER}/{file.name}": file for file in [*shared, *own]}
 
     def find(self, path: str) -> str | Path | None:
-        """Return the text of a page, or a file, or None if there is nothing with this path."""
+        """Return the text of a page, or a file, or None if the path is unknown."""
         if path in self._assets:
             return self._assets[path]
         among = self._lessons()
@@ -47,7 +47,7 @@ class LessonPages:
         return pictures(among).get(path)
 
     def _lessons(self) -> list[Lesson]:
-        """Return the lessons, read again if a file has changed since the last time."""
+        """Return the lessons. Read them again if a file has changed."""
         files = [file.parent / LESSON for file in catalogue().values()]
         stamp = [(file, file.stat().st_mtime_ns) for file in files if file.is_file()]
         if stamp != self._read[0]:

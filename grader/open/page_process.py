@@ -1,7 +1,7 @@
 """The process that serves the page, and its connection to the process that grades.
 
-The grading process forks to read what a learner wrote, which is safe only without other busy threads. Therefore the
-server is a process of its own. It gets the content of the desk as lines of JSON, and answers with words of grading.py.
+The grading process forks to read a learner's files, which is safe only without other busy threads. Therefore, the
+server is a separate process. It receives the content of the page as lines of JSON, and sends commands of grading.py.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
     from grader.view.address import Place
 
 LONGEST = 1 << 26
-"""The maximum size of a line (bytes). The HTML of a verdict is limited to much less."""
+"""The maximum size of a line (bytes). The HTML of a verdict is much smaller."""
 _LOOK_S = 1.0
-"""The interval for checking whether another command has changed the learner's progress (s)."""
+"""The interval of checking whether another command has changed the learner's progress (s)."""
 
 
 class PageProcess:
-    """Serves the page at `place` until the grading process, which holds the other end of `connection`, has ended."""
+    """Serves the page at `place` until the grading process, at the other end of `connection`, has exited."""
 
     def __init__(self, connection: socket.socket, place: Place, workspace: Path | None, *, opens: bool) -> None:
         self._connection = connection
@@ -51,9 +51,9 @@ class PageProcess:
         self._programs = Programs(self._tell, workspace)
 
     async def serve(self) -> None:
-        """Serve until the other process has ended."""
+        """Serve until the other process has exited."""
         loop = asyncio.get_running_loop()
-        # Ctrl-C is meant for the process that grades. This one ends when that one has ended.
+        # Only the grading process handles Ctrl-C. This process exits when the grading process has exited.
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             loop.add_signal_handler(number, lambda: None)
         reader, writer = await asyncio.open_connection(sock=self._connection, limit=LONGEST)
@@ -75,7 +75,7 @@ class PageProcess:
             await self._programs.stop()
 
     async def _follow(self, reader: asyncio.StreamReader, ended: asyncio.Event) -> None:
-        """Show each content that comes, until the other process has ended."""
+        """Show each received content until the other process has exited."""
         try:
             with suppress(ConnectionError):
                 while line := await reader.readline():
@@ -85,7 +85,7 @@ class PageProcess:
             ended.set()
 
     async def _look(self, tell: Callable[[str], None]) -> None:
-        """Notice a change of the progress, by a page or by another command such as `grader start`."""
+        """Detect changes of the progress by a page or by another command such as `grader start`."""
         before = _stamp()
         while True:
             await asyncio.sleep(_LOOK_S)
@@ -122,7 +122,7 @@ def main() -> None:
 
     given = json.loads(sys.argv[1])
     listening = socket.socket(fileno=given["listening"])
-    # The token is secret, and all users can see the arguments of a process.
+    # The settings come from the environment, because all users can see the arguments of a process.
     address = Address(listening.getsockname()[1], os.environ.pop("GRADER_VIEW_TOKEN"))
     workspace = Path(given["workspace"]) if given["workspace"] else None
     connection = socket.socket(fileno=given["connection"])

@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 KEPT = 200
-"""The number of lines that are kept of a program's output."""
+"""The maximum number of lines of a program's output that are kept."""
 LONGEST = 500
-"""The maximum length of a line that is kept (characters)."""
+"""The maximum length of these lines in characters."""
 ENDS_S = 8.0
-"""How long a program may take to end after Ctrl-C (s). Then it is killed."""
+"""The time that a program has to end after Ctrl-C (s) before it is killed."""
 READY_S = 30.0
-"""How long turtlesim may take until it is there (s)."""
+"""The maximum time for starting turtlesim (s)."""
 NO_CELL = "There is no sandbox here, so the program runs under your account, as in a terminal."
 _LOOK_S = 0.05
 _ADDRESS = re.compile(r"See it move: http://127\.0\.0\.1:(\d+)/#(\S+)")
@@ -34,7 +34,7 @@ _SCREENS = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
 
 
 class Program:
-    """A program that runs or not, with its last lines. `changed` is called when there is something new."""
+    """A program that may be running, with its last lines. `changed` is called after each change."""
 
     def __init__(self, changed: Callable[[], object]) -> None:
         self.lines: deque[str] = deque(maxlen=KEPT)
@@ -44,11 +44,11 @@ class Program:
 
     @property
     def running(self) -> bool:
-        """Whether the program runs."""
+        """Whether the program is running."""
         return self._process is not None
 
     async def start(self, *arguments: str, says: str = "", held: bool = False) -> None:
-        """Start `python ARGUMENTS`, unless the program runs already. `says` is a line before its output.
+        """Start `python ARGUMENTS` unless the program is running already. `says` is a line before its output.
 
         If the program is `held`, its standard input is a pipe that closes when this process ends, however it ends.
         """
@@ -56,7 +56,7 @@ class Program:
             return
         # The page shows the turtle, so no other page is opened.
         env = {name: value for name, value in os.environ.items() if name not in _SCREENS}
-        # No daemon of ros2, which would stay.
+        # Do not start the daemon of ros2, which would continue to run.
         own = {"PYTHONUNBUFFERED": "1", "GRADER_ROS2_DAEMON": "0"}
         start = interpreter(*arguments, env={**env, **own}, searches=True)
         self.lines.clear()
@@ -74,7 +74,7 @@ class Program:
         self._changed()
 
     async def stop(self) -> None:
-        """Stop the program as Ctrl-C does in a terminal, and wait for its end."""
+        """Stop the program as Ctrl-C does in a terminal, and wait until it has exited."""
         process, reading = self._process, self._reading
         if process is None or reading is None:
             return
@@ -90,7 +90,7 @@ class Program:
     async def _read(self, process: asyncio.subprocess.Process) -> None:
         assert process.stdout is not None
         while chunk := await process.stdout.read(65536):
-            # A line that comes in two pieces is joined again; a very long one is cut.
+            # Join a line that arrives in two pieces, and truncate a very long one.
             first, *rest = chunk.decode("utf-8", "replace").split("\n")
             if self.lines:
                 self.lines[-1] = (self.lines[-1] + first)[:LONGEST]
@@ -104,7 +104,7 @@ class Program:
 
 
 class Programs:
-    """Turtlesim and the node of a step."""
+    """turtlesim and the node of a step."""
 
     def __init__(self, changed: Callable[[], object], workspace: Path | None) -> None:
         self.turtlesim = Program(changed)
@@ -112,7 +112,7 @@ class Programs:
         self._workspace = workspace
 
     def address(self) -> Address | None:
-        """Return the address of the view of turtlesim: of the one that was started here, or in a terminal."""
+        """Return the address of the view of turtlesim, which was started here or in a terminal."""
         for line in self.turtlesim.lines:
             found = _ADDRESS.search(line)
             if found:
@@ -122,7 +122,7 @@ class Programs:
     async def start_turtlesim(self) -> None:
         """Start `grader sim --view`."""
         await self.turtlesim.start("-m", "grader.cli", "sim", "--view")
-        # A node that started before would start a turtlesim of its own.
+        # Wait for turtlesim, because a node that starts earlier would start a second one.
         for _ in range(round(READY_S / _LOOK_S)):
             if not self.turtlesim.running or any("Spawning turtle" in line for line in self.turtlesim.lines):
                 return
@@ -140,11 +140,11 @@ class Programs:
         await self.node.start("-m", "grader.cli", "run", *given, "--no-view", step, executable, says=NO_CELL)
 
     async def stop(self) -> None:
-        """Stop both."""
+        """Stop both programs."""
         await asyncio.gather(self.node.stop(), self.turtlesim.stop())
 
     def data(self) -> Mapping[str, object]:
-        """Return what a page shows, ready for JSON."""
+        """Return the data for a page, ready for JSON."""
         return {
             "turtlesim": self.turtlesim.running,
             "problem": "" if self.turtlesim.running else "\n".join(self.turtlesim.lines).strip()[-LONGEST:],

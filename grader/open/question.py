@@ -1,4 +1,4 @@
-"""Questions to ROS 2 that a page may ask: a fixed list of verbs of `ros2` that change nothing. Never a shell."""
+"""The commands of `ros2` that a page may run: a fixed list of verbs that change nothing, never a shell."""
 
 from __future__ import annotations
 
@@ -23,48 +23,48 @@ VERBS: Mapping[str, tuple[str, ...]] = {
     "param": ("list", "get", "describe"),
     "action": ("list", "info", "type"),
 }
-"""What may be asked."""
+"""The allowed groups and verbs."""
 _OPTIONS = frozenset(
     {*("-t", "-v", "-c", "-a"), *("--show-types", "--verbose", "--count-topics", "--no-comments", "--all", "--once")}
 )
 _WORD = re.compile(r"[A-Za-z0-9_/~.][A-Za-z0-9_/~.\-]*")
 _MOST_WORDS = 8
 LONGEST = 20_000
-"""The maximum length of an answer (characters)."""
+"""The maximum length of an answer in characters."""
 HZ_S = 5.0
-"""How long `ros2 topic hz` measures (s)."""
+"""The time for which `ros2 topic hz` measures (s)."""
 PATIENCE_S = 15.0
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What the command has printed, and whether it was stopped because it does not end by itself."""
+    """The output of the command, and whether the command was stopped because it did not end."""
 
     output: str
     stopped: bool
 
 
 def arguments(text: str) -> list[str]:
-    """Return the arguments of `ros2` for a question.
+    """Return the arguments of `ros2` for a typed command.
 
         arguments("ros2 topic echo /turtle1/pose")  # ["topic", "echo", "/turtle1/pose", "--once"]
 
     Raises:
-        UsageError: the text is not one of the questions.
+        UsageError: the command is not allowed.
     """
     try:
         words = shlex.split(text)
     except ValueError as error:
-        message = f"A quote is not closed: {text}."
+        message = f"The command has a quote that is not closed: {text}."
         raise UsageError(message) from error
     words = words[1:] if words[:1] == ["ros2"] else words
     if len(words) < 2 or words[1] not in VERBS.get(words[0], ()):
         allowed = "; ".join(f"{group} {', '.join(verbs)}" for group, verbs in VERBS.items())
-        message = f"Only questions that change nothing can be asked here. These are: {allowed}."
+        message = f"Only commands that change nothing can be run here: {allowed}."
         raise UsageError(message)
     wrong = [each for each in words[2:] if each not in _OPTIONS and not _WORD.fullmatch(each)]
     if wrong or len(words) > _MOST_WORDS:
-        message = f"{(wrong or words[_MOST_WORDS:])[0]!r} cannot be part of a question here. Use a terminal for it."
+        message = f"{(wrong or words[_MOST_WORDS:])[0]!r} is not allowed here. Use a terminal for this command."
         raise UsageError(message)
     if words[:2] == ["topic", "echo"] and "--once" not in words:
         words.append("--once")
@@ -72,7 +72,7 @@ def arguments(text: str) -> list[str]:
 
 
 def answer(words: list[str], env: Mapping[str, str]) -> Answer:
-    """Run `ros2` with these arguments, from `arguments`, and return what it prints."""
+    """Run `ros2` with arguments from `arguments`, and return its output."""
     start = interpreter("-m", "grader.ros2.main", *words, env=env, searches=True)
     endless = words[:2] == ["topic", "hz"]
     process = subprocess.Popen(

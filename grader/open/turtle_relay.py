@@ -1,4 +1,4 @@
-"""Connect the turtle pane of a page to the view of turtlesim, so that the page needs only one address."""
+"""Connect the turtle pane of a page to the view of turtlesim, so that the page uses only one address."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from grader.view.address import Address
 
 LARGEST = 1 << 24
-"""The maximum size of a message of the view (bytes). The first one holds the whole trail."""
+"""The maximum size of a message of the view (bytes). The first message contains the whole trail."""
 
 
 async def relay(page: WebSocket, address: Address) -> None:
-    """Pass messages on in both directions until one side closes. The page has been accepted already."""
+    """Forward messages in both directions until one side closes. The page has already been accepted."""
     here = f"{HOST}:{address.port}"
     try:
         async with connect(

@@ -23,9 +23,9 @@ TEMPLATE = "verdict.html"
 
 
 def verdict_html(evidence: Evidence, report: Report, folder: Path) -> str:
-    """Return the HTML. `folder` is the package's folder: links open its files in VS Code.
+    """Return the HTML. `folder` is the folder of the package, whose files the links open in VS Code.
 
-    If the output of the submission cannot be drawn, the HTML has no drawings.
+    If the recorded data cannot be drawn, the HTML has no drawings.
     """
     compiled(TEMPLATE)
     try:
@@ -36,7 +36,7 @@ def verdict_html(evidence: Evidence, report: Report, folder: Path) -> str:
 
 def _html(evidence: Evidence, report: Report, folder: Path) -> str:
     def opens(where: Where) -> str:
-        """Return the URL that opens the place in VS Code, or an empty string for a path out of the folder."""
+        """Return the URL that opens the place in VS Code, or an empty string for a path outside the folder."""
         file = folder / where.file
         if not file.resolve().is_relative_to(folder.resolve()):
             return ""

@@ -15,11 +15,13 @@ def main() -> int:
     """Run the view until the simulator exits; return the exit code."""
     # Ctrl-C terminates the program without a traceback, even while ROS 2 is being imported.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    parser = argparse.ArgumentParser(prog="python -m grader.view", description="Started by turtlesim_node --view.")
+    parser = argparse.ArgumentParser(
+        prog="python -m grader.view", description="The process of a view, which turtlesim_node --view starts."
+    )
     parser.add_argument("kind", choices=("page", "terminal"))
     parser.add_argument("--feed", type=int, required=True, help="the socket to the simulator")
     parser.add_argument("--listen", type=int, help="the socket to serve the page on")
-    parser.add_argument("--before", action="store_true", help="whether a tab from the last run may still be open")
+    parser.add_argument("--before", action="store_true", help="a tab from the last run may still be open")
     parser.add_argument("--said", type=int, help="a pipe with the output of the simulator")
     options = parser.parse_args()
     feed = socket.socket(fileno=options.feed)
@@ -42,7 +44,7 @@ def main() -> int:
 
         asyncio.run(serve())
     except GraderError as error:
-        print(f"The view has ended: {error}", file=sys.stderr)
+        print(f"The view has stopped: {error}", file=sys.stderr)
         return error.exit_code
     return 0
 

@@ -1,7 +1,7 @@
-"""The address of a view. It is reachable only from this machine, and it stays the same if possible.
+"""The address of a view. It is reachable only from this machine, and does not change if possible.
 
-The port and the token are stored for each user and kind of view, so that an open tab can connect to a simulator that
-is started again.
+The port and the token are stored for each user and kind of view, so that an open tab can connect to a restarted
+simulator.
 """
 
 from __future__ import annotations
@@ -23,25 +23,25 @@ if TYPE_CHECKING:
 HOST = "127.0.0.1"
 _TOKEN_BYTES = 16
 _TOKEN_CHARS = 22
-"""The length of the token: 16 bytes in base 64."""
+"""The length of the token in characters: 16 bytes in base 64."""
 
 
 @dataclass(frozen=True)
 class Address:
-    """A port on 127.0.0.1, and the token that a page must send to be allowed to read and drive."""
+    """A port on 127.0.0.1, and the token that a page needs to read and drive."""
 
     port: int
     token: str
 
     @property
     def url(self) -> str:
-        """The URL to open. Browsers do not send the part after the #, so only requests of the page have the token."""
+        """The URL to open. Browsers do not send the part after the #, so only scripts of the page send the token."""
         return f"http://{HOST}:{self.port}/#{self.token}"
 
 
 @dataclass(frozen=True)
 class Place:
-    """An address and its listening socket. `before` is true if a view used it before, so a tab may still be open."""
+    """An address and its listening socket. `before` is whether an earlier view used it, so a tab may still be open."""
 
     address: Address
     listening: socket.socket
@@ -49,7 +49,7 @@ class Place:
 
 
 def listen(kind: str, port: int | None = None) -> Place:
-    """Listen on `port`, or else on the last port of this kind of view, or else on any free port.
+    """Listen on `port`, or else on the last port of this kind of view, or else on a free port.
 
     Raises:
         UsageError: the port is not available.
@@ -58,7 +58,7 @@ def listen(kind: str, port: int | None = None) -> Place:
     token = kept.token if kept else secrets.token_urlsafe(_TOKEN_BYTES)
     listening = _bound(port) if port is not None else _free(kept.port if kept else 0)
     address = Address(listening.getsockname()[1], token)
-    # If a second view uses another port, that port is not stored. The next view should use the port of the first one.
+    # Do not store the port of a second view. The next view should use the port of the first one.
     if kept is None or port is not None:
         _remember(kind, address)
     return Place(address, listening, before=kept == address)
@@ -83,7 +83,7 @@ def _free(preferred: int) -> socket.socket:
 def _socket(port: int) -> socket.socket:
     with contextlib.ExitStack() as stack:
         made = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_STREAM))
-        # Connections of the last view may still be closing. A port on which another process listens is still refused.
+        # Allow a port on which connections of the last view are closing. A port on which another process listens fails.
         made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         made.bind((HOST, port))
         made.listen(128)
@@ -96,7 +96,7 @@ def _file(kind: str) -> Path:
 
 
 def remembered(kind: str) -> Address | None:
-    """Return the last address of this kind of view, or None. Whether it is still served is not known."""
+    """Return the last address of this kind of view, or None. The view may no longer be running."""
     file = _file(kind)
     try:
         stat = file.stat()

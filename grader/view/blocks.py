@@ -1,4 +1,4 @@
-"""The canvas as characters. Each character is a half block that shows two pixels, so that pixels are square."""
+"""The canvas as characters. Each character is a half block that shows two square pixels."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ if TYPE_CHECKING:
     from grader.view.trail import Stroke
 
 FINER = 4
-"""The factor by which the picture is drawn larger before it is scaled down, which makes the edges smooth."""
+"""The factor by which the canvas is drawn larger before it is scaled down, which makes the edges smooth."""
 _TURTLE_PX = 11
-"""The minimum length of a turtle, in pixels of the terminal. It ensures that the turtle's direction is visible."""
+"""The minimum length of a turtle in pixels of the terminal, at which its direction is visible."""
 _SHELL, _SKIN, _EDGE = (47, 125, 50), (124, 197, 118), (255, 255, 255)
 
 Rgb = tuple[int, int, int]
 
 
 class Picture:
-    """A picture that is extended with the trail. It is repainted only if the trail is cleared or the size changes."""
+    """An image to which the trail is added. It is repainted only if the trail is cleared or the size changes."""
 
     def __init__(self, side: int) -> None:
-        """Create the picture. `side` is in pixels of the terminal, which means `side` columns and half as many rows."""
+        """Create the image. `side` is in pixels of the terminal, so it has `side` columns and half as many rows."""
         self.side = side
         self._trail = Image.new("RGBA", (side * FINER, side * FINER))
 

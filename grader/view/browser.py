@@ -1,4 +1,4 @@
-"""Open a page in the user's browser, if there is one."""
+"""Open a page in the user's browser."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import subprocess
 from grader.common.interpreter import clean, interpreter
 
 _OPENED_S = 3.0
-"""A browser that has not failed after this time is considered to have opened the page."""
+"""The time (s) after which a browser that has not failed is considered to have opened the page."""
 
 
 def there_is_one() -> bool:
-    """Return whether a page can be shown on a screen, or by a program that BROWSER names (as in a remote editor)."""
+    """Return whether a page can be opened on a screen, or by the program in BROWSER (as in a remote editor)."""
     return bool(os.environ.get("BROWSER")) or _screen()
 
 
@@ -27,20 +27,20 @@ def over_ssh() -> bool:
 
 
 def from_elsewhere(port: int) -> str:
-    """Return how to open a page of this machine from another machine, for a terminal without a browser."""
+    """Return a message about opening a page of this machine from another machine."""
     if over_ssh():
         user = os.environ.get("USER") or "USER"
         server = os.environ["SSH_CONNECTION"].split()[2:3] or ["THIS_MACHINE"]
         login = f"{user}@{server[0]}"
         return (
-            "There is no browser here. On the machine in front of you, type this in a new terminal, and then open the "
+            "This machine has no browser. On your own machine, type this in a new terminal, and then open the "
             f"address: ssh -N -L {port}:127.0.0.1:{port} {login}"
         )
-    return "There is no browser here. Open the address in a browser on this machine."
+    return "No browser was found. Open the address in a browser on this machine."
 
 
 def open_page(url: str) -> bool:
-    """Open a page; return whether this was successful. Browsers that draw in the terminal are never used."""
+    """Open a page. Return whether this was successful. Text browsers are never used."""
     if not there_is_one():
         return False
     opener = shutil.which("xdg-open")

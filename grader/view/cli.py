@@ -12,12 +12,12 @@ import typer
 PANEL = "Learn"
 Image = Annotated[
     Optional[Path],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
-    typer.Option(help="Draw the turtle's path as a PNG.", metavar="FILE.png"),
+    typer.Option(help="Write the canvas with the turtle's path to a PNG file on exit.", metavar="FILE.png"),
 ]
 
 
 def add_to(app: typer.Typer) -> None:
-    """Add these verbs to the command."""
+    """Add the command to `app`."""
     app.command(
         context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
         epilog="Examples: grader sim --view; in a terminal without a browser: grader sim --view terminal",
@@ -30,7 +30,9 @@ def sim(
     image: Image = None,
     view: Annotated[
         bool,
-        typer.Option("--view", help="Show the turtles on a page on this machine; `--view terminal`: in this terminal."),
+        typer.Option(
+            "--view", help="Show the turtles on a page on this machine, or in this terminal with `--view terminal`."
+        ),
     ] = False,
     port: Annotated[Optional[int], typer.Option(help="Port of the page. Default: the same as the last time.")] = None,  # noqa: UP045
 ) -> None:
@@ -44,12 +46,12 @@ def sim(
     check_writable(image)
     with progress() as tell:
         ros = with_turtlesim(find_ros(), tell)
-    # typer has no option with an optional value.
+    # typer does not support options with an optional value.
     where = context.args.pop(0) if view and context.args[:1] in (["page"], ["terminal"]) else "page"
     given = [("--image", image), ("--view", where if view else None), ("--port", port)]
     options = [text for name, value in given if value is not None for text in (name, str(value))]
     env = users_environment(ros)
-    print(f"turtlesim in {who_hears(env)}. It stops with Ctrl-C.", file=sys.stderr, flush=True)
+    print(f"turtlesim in {who_hears(env)}. Press Ctrl-C to stop it.", file=sys.stderr, flush=True)
     start = interpreter(
         "-m", "grader.view.turtlesim_node", *options, *context.args, python=str(ros.python), env=env, searches=True
     )

@@ -1,4 +1,4 @@
-"""The input from a view: keys that drive while they are held, keys that turn, and buttons for the simulator."""
+"""The input from a view: held keys that drive, keys that turn, and buttons for the simulator."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ ARROWS = {
 
 
 def together(held: list[str]) -> Drive:
-    """Return the drive command for all held arrow keys combined."""
+    """Return the drive command for the combination of all held arrow keys."""
     drives = [ARROWS[key] for key in dict.fromkeys(held) if key in ARROWS]
     return Drive(sum(drive.linear for drive in drives), sum(drive.angular for drive in drives))
 
 
 class Hands:
-    """Passes keys on to ROS and buttons on to the simulator. `state` contains the turtles.
+    """Passes keys to ROS and buttons to the simulator. `state` contains the turtles.
 
-    `listen` is called when a page wants the log messages of all nodes.
+    `listen` is called when a page requests the log messages of all nodes.
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class Hands:
         self._drivers: set[object] = set()
 
     def receive(self, page: object, said: dict[str, Any]) -> bool:
-        """Handle a message from a page: the keys that are held, a key that acts once, or a button."""
+        """Handle a message from a page: held keys, a pressed key, or a button. Return whether keys are held."""
         if "held" in said:
             keys = [str(key) for key in said["held"]]
             self.held(page, str(said["turtle"]), keys)
@@ -62,7 +62,7 @@ class Hands:
         return page in self._driving
 
     def held(self, page: object, turtle: str, keys: list[str]) -> None:
-        """Drive while keys are held; stop when they are released."""
+        """Drive while keys are held. Stop when they are released."""
         topic = self._full(turtle)
         if topic is None:
             return
@@ -81,7 +81,7 @@ class Hands:
             self._ears.drive(topic, Drive(0.0, 0.0))
 
     def gone(self, page: object) -> None:
-        """Forget a closed page. When the last page that drove a turtle is closed, the driving node leaves the graph."""
+        """Remove a closed page. If it was the last page that drove a turtle, the driving node leaves the graph."""
         self.let_go(page)
         if page in self._drivers:
             self._drivers.discard(page)
@@ -89,26 +89,26 @@ class Hands:
                 self._ears.leave()
 
     def pressed(self, turtle: str, key: str) -> None:
-        """Turn towards the key, as seen from the key F, or stop turning."""
+        """Turn in the direction of the key, as seen from the key F, or stop turning."""
         typed, _ = keys(key[:1])
         if typed:
             self.turn(turtle, typed[0])
 
     def turn(self, turtle: str, key: Key) -> None:
-        """Handle a key that acts once when it is pressed, not while it is held."""
+        """Handle a key that has an effect only when it is pressed."""
         topic = self._full(turtle)
         if topic is not None and isinstance(key, Turn | Cancel):
             self._ears.drive(topic, key)
 
     def request(self, what: str) -> None:
-        """Ask the simulator to pause, resume, clear or reset."""
+        """Request the simulator to pause, resume, clear or reset."""
         if what in BUTTONS and self._simulator is not None:
             # A simulator that is exiting no longer reads requests.
             with suppress(OSError):
                 self._simulator.send(json.dumps(what).encode())
 
     def _full(self, turtle: str) -> str | None:
-        """Return the turtle's full name, or None if there is no such turtle, since pages must not create topics."""
+        """Return the full name of the turtle, or None if it does not exist, since pages must not create topics."""
         if turtle not in self._state.turtles:
             return None
         return f"{self._state.namespace.rstrip('/')}/{turtle}"

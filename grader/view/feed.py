@@ -1,7 +1,7 @@
-"""The messages between a simulator and its view, which are small JSON messages over a socket.
+"""The messages between a simulator and its view: small JSON messages over a socket.
 
-The simulator never waits for the view. If it cannot send something now, it sends it with a later frame. If the trail
-has become too long in the meantime, it sends a picture of the trail.
+The simulator never waits for the view. Data that cannot be sent now is sent with a later frame. If the trail
+has become too long in the meantime, an image of the trail is sent.
 """
 
 from __future__ import annotations
@@ -24,24 +24,24 @@ if TYPE_CHECKING:
     from grader.turtlesim.turtle import Pen, Turtle
 
 EVERY_FRAMES = 2
-"""While something changes, a view receives every second frame (32 ms), which means 31 pictures per second."""
+"""The number of frames between messages while something changes, for about 31 messages per second."""
 SENT_EVERY_S = 0.25
-"""The interval between messages while nothing changes. They let a view update the rates and show that the simulator
-is running.
+"""The interval between messages while nothing changes (s). With these messages, a view updates the rates and detects
+whether the simulator is running.
 """
 MOST_LINES = 1500
 """The maximum number of lines in a message. Each has 60 bytes, so a message fits into the buffer of a socket."""
 LARGEST = 1 << 20
-"""The buffer size for receiving a message, in bytes. No message is larger."""
+"""The buffer size for receiving a message (bytes). No message is larger."""
 LARGEST_PICTURE = 100_000
-"""The maximum size of a picture in bytes. The message must fit into the buffer of a socket (212,992 by default)."""
+"""The maximum size of an image (bytes). The message must fit into the buffer of a socket (212,992 by default)."""
 
 Line = tuple[float, float, float, float, int, int, int, int]
-"""A line: x and y of its start, x and y of its end (m), red, green, blue, and the width in pixels."""
+"""A line: x and y of the start, x and y of the end (m), red, green, blue, and the width in pixels."""
 
 
 class WatchedCanvas(Canvas):
-    """A canvas that records the lines that were drawn on it since the last message."""
+    """A canvas that records the lines drawn since the last message."""
 
     def clear(self) -> None:
         """Clear the trail."""
@@ -58,7 +58,7 @@ class WatchedCanvas(Canvas):
 
 @dataclass
 class Received:
-    """The commands received on a topic since the last message to the view: their count, and the last one's time (s)."""
+    """The commands on a topic since the last message to the view: their number, and the time of the last one (s)."""
 
     count: int = 0
     last_s: float = 0.0
@@ -67,7 +67,7 @@ class Received:
 
 @dataclass
 class Feed:
-    """The simulator's end of the socket, with hooks for `TurtlesimNode`."""
+    """The simulator's end of the socket, with callbacks for `TurtlesimNode`."""
 
     channel: socket.socket
     namespace: str = "/"
@@ -84,7 +84,7 @@ class Feed:
         self.channel.settimeout(0.0)
 
     def on_command(self, topic: str, _: bytes, twist: Any) -> None:  # noqa: ANN401 - a message of rclpy's
-        """Record a command that has arrived."""
+        """Record a received command."""
         received = self.received.setdefault(topic, Received())
         received.count += 1
         received.last_s = time.monotonic()
@@ -92,11 +92,11 @@ class Feed:
         received.twist = (linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
 
     def on_publish(self, topic: str, _: str, __: bytes) -> None:
-        """Count a message that the simulator publishes."""
+        """Count a published message."""
         self.sent[topic] = self.sent.get(topic, 0) + 1
 
     def show(self, turtles: Mapping[str, Turtle], *, paused: bool) -> None:
-        """Send the state after a frame to the view, if a message is due."""
+        """Send the state after a frame to the view if a message is due."""
         self._frames += 1
         if self._frames % EVERY_FRAMES:
             return
@@ -117,7 +117,7 @@ class Feed:
     def _tell(self, state: dict[str, object], now: float) -> None:
         canvas = self.canvas
         if len(canvas.lines) > MOST_LINES:
-            # The view is too slow. Send a picture of the whole trail instead.
+            # The view is too slow. Send an image of the whole trail instead.
             canvas.lines.clear()
             self._too_long = True
         message = {
@@ -132,7 +132,7 @@ class Feed:
         try:
             self.channel.send(json.dumps(message, separators=(",", ":")).encode())
         except (BlockingIOError, BrokenPipeError):
-            # If the view has exited, reading its requests will detect it.
+            # `requests` detects whether the view has exited.
             return
         self._shown, self._reported_s = state, now
         canvas.lines, canvas.cleared, self._too_long = [], False, False
@@ -163,12 +163,12 @@ def _reported(turtle: Turtle) -> tuple[object, ...]:
 
 
 def _picture(canvas: Canvas) -> str:
-    """Return the trail as a PNG image that is transparent where nothing was drawn."""
+    """Return the trail as a PNG image. Pixels that were not drawn are transparent."""
     trail = canvas.trail()
     while True:
         file = io.BytesIO()
         trail.save(file, format="PNG")
         if file.tell() <= LARGEST_PICTURE:
             return base64.b64encode(file.getvalue()).decode()
-        # A picture with many details is too large, so reduce its resolution.
+        # An image with many details may be too large, so reduce its resolution.
         trail = trail.resize((trail.width // 2, trail.height // 2))

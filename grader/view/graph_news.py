@@ -1,4 +1,4 @@
-"""The news about the ROS graph for pages: the drawn graph, and the table of topics with their rates."""
+"""The news about the ROS graph for pages: the layout of the graph, and the table of topics with their rates."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class GraphNews:
-    """Tells the hub about the graph whenever it has changed. `state` has the rates that the simulator knows."""
+    """Sends the graph to the hub whenever it has changed. `state` has the rates that the simulator reports."""
 
     def __init__(self, hub: Hub, show: Show, state: State) -> None:
         self._hub = hub
@@ -31,7 +31,7 @@ class GraphNews:
         self._drawing: asyncio.Task[None] | None = None
 
     def look(self, system: System) -> None:
-        """Take a new look at the system."""
+        """Update the graph and the topics from the system."""
         self._system = system
         if not self._hub.pages:
             return

@@ -1,8 +1,8 @@
 """Decide whether a request is allowed. Only requests from this machine's own page are allowed.
 
-A page from another site in the same browser can also send requests to 127.0.0.1. Such a page can be detected,
-because the browser sends the site that the page came from (Origin) and the name that it used for this machine (Host).
-In addition, such a page does not know the token.
+A page from another site in the same browser can also send requests to 127.0.0.1. The guard detects such requests,
+because the browser sends the site of the page (Origin) and the name that the page used for this machine (Host).
+In addition, such a page does not have the token.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 NAMES = ("127.0.0.1", "localhost")
-"""The allowed names of this machine. Any port is allowed, since ssh may forward a different one."""
+"""The allowed names of this machine. All ports are allowed, since ssh may forward another one."""
 
 
 def refusal(headers: Mapping[str, str], *, live: bool) -> str | None:
-    """Return why a request is rejected, or None if it is allowed.
+    """Return the reason for rejecting a request, or None if the request is allowed.
 
-    `live` means that the request is for the connection that reads and drives.
+    `live` is whether the request opens the connection that reads and drives.
     """
     host = headers.get("host", "")
     if host.rpartition(":")[0] not in NAMES and host not in NAMES:
@@ -40,9 +40,9 @@ def admitted(token: str, shown: str) -> bool:
 
 
 class Door:
-    """Admits a page that knows the token, and a page that knows a code that can be used only once.
+    """Admits a page that has the token or a code that is valid only once.
 
-    The code is for the browser that this process starts, because every user of the machine can read command lines.
+    The browser that this process starts gets a code, because every user of the machine can read command lines.
     """
 
     def __init__(self, token: str) -> None:
@@ -71,7 +71,7 @@ POLICY = (
 
 
 def answer_headers(host: str) -> dict[str, str]:
-    """Return the headers of every response. The page can load nothing from other sites, and they cannot load it."""
+    """Return the headers of every response. They forbid loading from other sites, and embedding in them."""
     return {
         "content-security-policy": POLICY.format(host=host),
         "x-content-type-options": "nosniff",

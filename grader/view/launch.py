@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 Kind = Literal["page", "terminal"]
 _SERVED_WITH = ("starlette", "uvicorn", "websockets")
 _WITHOUT_COLOURS = ("", "dumb", "unknown")
-"""Values of TERM for terminals without colours."""
+"""The values of TERM of terminals without colours."""
 _ENDS_S = 5.0
-"""How long a view may continue to run after its simulator has exited. Then it is killed."""
+"""The time that a view has to exit after its simulator (s) before it is killed."""
 
 
 class View:
-    """A running view. `paused` is true while a user has paused the simulator, and `open` while the view is running."""
+    """A running view. `paused` is whether the user has paused the simulator, and `open` whether the view is running."""
 
     def __init__(self, kind: Kind, feed: Feed) -> None:
         self.kind = kind
@@ -57,16 +57,16 @@ class View:
         elif wanted in ("pause", "resume") and self.paused != (wanted == "pause"):
             self.paused = wanted == "pause"
             node.get_logger().info(
-                "Paused in the view: no turtle moves, no pose is published." if self.paused else "Resumed."
+                "Paused in the view: the turtles do not move or publish their poses." if self.paused else "Resumed."
             )
 
 
 def see_that_it_can_be_served(instead: str = "--view terminal works without it") -> None:
-    """Raise MachineError if a library that serves the page is not installed. `instead` says what else works."""
+    """Raise MachineError if a library for the page is not installed. `instead` names an alternative."""
     missing = [name for name in _SERVED_WITH if find_spec(name) is None]
     if missing:
         message = (
-            f"the page needs {', '.join(missing)}, which this Python does not have. `make demo` in the "
+            f"the page needs {', '.join(missing)}, but this Python does not have it. `make demo` in the "
             f"course's folder installs it; {instead}."
         )
         raise MachineError(message)
@@ -74,10 +74,10 @@ def see_that_it_can_be_served(instead: str = "--view terminal works without it")
 
 @contextmanager
 def view(kind: Kind, port: int | None = None) -> Iterator[View]:
-    """Start a view, and stop it when the context exits.
+    """Start a view. Stop it when the context exits.
 
     Raises:
-        UsageError: the port is not available, or there is no terminal to draw in.
+        UsageError: the port is not available, or no terminal is available to draw in.
         MachineError: a library that the view needs is not installed.
     """
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -88,7 +88,7 @@ def view(kind: Kind, port: int | None = None) -> Iterator[View]:
             try:
                 yield View(kind, Feed(ours))
             finally:
-                # The view exits when this socket is closed, which happens when the simulator exits.
+                # The view exits when this socket is closed, at the latest when the simulator exits.
                 ours.close()
                 try:
                     process.wait(_ENDS_S)
@@ -103,14 +103,14 @@ def _page(feed: socket.socket, port: int | None) -> Iterator[subprocess.Popen[by
     with place.listening as listening:
         given = ["--feed", str(feed.fileno()), "--listen", str(listening.fileno())]
         before = ["--before"] if place.before else []
-        # The token is secret, and all users can see the arguments of a process.
+        # Pass the token through the environment, because all users can see the arguments of a process.
         start = _start("page", *given, *before, GRADER_VIEW_TOKEN=place.address.token)
         with subprocess.Popen(
             start.argv,
             pass_fds=[feed.fileno(), listening.fileno()],
             env=start.env,
             stdin=subprocess.DEVNULL,
-            # Ctrl-C is meant for the simulator. The view exits when the simulator exits.
+            # Only the simulator handles Ctrl-C. The view exits when the simulator exits.
             start_new_session=True,
         ) as process:
             listening.close()
@@ -120,10 +120,10 @@ def _page(feed: socket.socket, port: int | None) -> Iterator[subprocess.Popen[by
 
 @contextmanager
 def _terminal(feed: socket.socket) -> Iterator[subprocess.Popen[bytes]]:
-    """Let the view use the terminal, and redirect the simulator's output to the view, which shows it."""
+    """Start a view in this terminal. The simulator's output goes to the view, which shows it."""
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         message = (
-            "--view terminal needs a terminal to draw in and to read keys from, but standard input or output is not a "
+            "--view terminal needs a terminal to draw in and read keys from, but standard input or output is not a "
             "terminal (it is a pipe or a file, or the command was started in the background)."
         )
         raise UsageError(message)

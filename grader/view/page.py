@@ -1,4 +1,4 @@
-"""The process that serves the page. It reads from the simulator and from ROS, and handles the requests of the pages."""
+"""The process that serves the page. It reads from the simulator and ROS, and handles the requests of the pages."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 class Page:
-    """The view of a simulator, or of the graph alone."""
+    """The view of a simulator, or of the graph only."""
 
     def __init__(self, feed: socket.socket | None, show: Show | None = None, *, stays: bool = False) -> None:
         self._feed = feed
@@ -44,7 +44,7 @@ class Page:
         self._lines: deque[Line] = deque(maxlen=MOST_LINES)
 
     async def serve(self, place: Place) -> bool:
-        """Serve until the simulator exits, or until Ctrl-C; return whether the page could be opened in a browser.
+        """Serve until the simulator exits or Ctrl-C is pressed. Return whether the page could be opened in a browser.
 
         Without a simulator, return immediately if the page cannot be opened.
         """
@@ -57,7 +57,7 @@ class Page:
                 self._rosout.flush()
 
         def listen(node: Node) -> None:
-            """Subscribe to /rosout once a page asks, in the thread of the node. A subscription is seen on the graph."""
+            """Subscribe to /rosout in the node's thread only on request, since the graph shows subscriptions."""
             if self._rosout is None:
                 self._rosout = Rosout(node, lambda lines: in_loop(loop, self._logged, lines))
 

@@ -1,4 +1,4 @@
-"""The graph for a page. Graphviz lays out the nodes, topics and arrows, so that the graph looks as in rqt_graph."""
+"""The graph for a page. Graphviz lays out the nodes, topics and arrows as in rqt_graph."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from grader.graph.graph import Picture
 
 _INCH = 72.0
-"""Points per inch. Graphviz gives sizes in inches and positions in points, with the y axis pointing upwards."""
+"""Points per inch. Graphviz returns sizes in inches and positions in points, with the y axis pointing up."""
 
 
 def laid_out(drawn: Picture) -> dict[str, Any]:
     """Return the size of the graph (points), its nodes and topics with centre and size, and its arrows.
 
-    The points of an arrow are the start of a Bezier curve, followed by three points per piece. `tip` is the tip of its
+    The points of an arrow are the start of a Bezier curve and three points for each segment. `tip` is the tip of its
     head.
 
     Raises:

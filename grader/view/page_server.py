@@ -1,4 +1,4 @@
-"""The server of the page. It serves a few files, and has a connection to each page for news and for input."""
+"""The server of the page. It serves a few files and has a connection to each page for news and input."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ ASSETS = Path(__file__).parent / "assets"
 STYLE = Path(__file__).parents[1] / "report/assets/page.css"
 """The style sheet of the reports, which this page also uses."""
 HOLD_S = 0.5
-"""A page sends its held keys repeatedly. If no message arrives for this long, no key is considered to be held."""
+"""The time without a message (s) after which no key of a page counts as held. Pages send held keys repeatedly."""
 _LARGEST = 10_000
 
 
 class Controls(Protocol):
-    """The receiver of what a user does on a page."""
+    """The receiver of the user's input on a page."""
 
     def receive(self, page: object, said: dict[str, Any]) -> bool:
-        """Handle a message from this page. Return whether its user holds keys from now on."""
+        """Handle a message from this page. Return whether the user now holds keys."""
 
     def let_go(self, page: object) -> None:
         """Handle the release of all keys on this page."""
@@ -52,7 +52,7 @@ def application(hub: Hub, controls: Controls, door: Door, index: str = "index.ht
         path = STYLE if name == STYLE.name else ASSETS / name
         # Only these files are served. No other path can be requested.
         if path != STYLE and path not in set(ASSETS.iterdir()):
-            return PlainTextResponse("There is no such file.", 404)
+            return PlainTextResponse("The file does not exist.", 404)
         return FileResponse(path)
 
     async def live(socket: WebSocket) -> None:
@@ -62,7 +62,8 @@ def application(hub: Hub, controls: Controls, door: Door, index: str = "index.ht
             return
         await socket.accept()
         if shown != door.token:
-            # The page connected with a code. Send it the token, so that it can also connect to the next simulator.
+            # The page has connected with a code. Send the token, so that the page can also connect to the next
+            # simulator.
             await socket.send_text(json.dumps({"kind": "token", "token": door.token}))
         await _Page(socket, hub, controls).run()
 
@@ -71,13 +72,13 @@ def application(hub: Hub, controls: Controls, door: Door, index: str = "index.ht
 
 
 class Guard:
-    """An application around another one: it rejects forbidden requests, and adds the policy to every response."""
+    """Wraps an application: rejects forbidden requests, and adds the policy to every response."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Handle a request as ASGI defines it."""
+        """Handle a request of ASGI."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
@@ -100,7 +101,7 @@ class Guard:
 
 
 class _Page:
-    """One open page."""
+    """An open page."""
 
     def __init__(self, socket: WebSocket, hub: Hub, controls: Controls) -> None:
         self._socket = socket

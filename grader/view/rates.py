@@ -6,10 +6,10 @@ from collections import deque
 from dataclasses import dataclass, field
 
 WINDOW_S = 5.0
-"""A rate covers this many seconds, or the last two arrivals if they are further apart."""
+"""The time over which a rate is computed (s), or the last two arrivals if the interval between them is longer."""
 _LONGEST_S = 30.0
 _GAPS = 2.5
-"""If nothing arrives for this many average intervals, the messages are considered to have stopped."""
+"""The number of average intervals without an arrival after which the messages are considered to have stopped."""
 _AT_LEAST_S = 1.0
 
 
@@ -18,10 +18,10 @@ class Arrivals:
     """The arrivals of messages on one topic."""
 
     _observed: deque[tuple[float, int]] = field(default_factory=deque)
-    """The time of the last arrival of each group, and the size of the group."""
+    """The time of the last arrival and the number of arrivals of each group."""
 
     def add(self, when_s: float, count: int = 1) -> None:
-        """Record that `count` messages have arrived since the last call, the last of them at `when_s`."""
+        """Record `count` arrivals since the last call. The last one was at `when_s` (s)."""
         self._observed.append((when_s, count))
         while len(self._observed) > 2 and self._observed[1][0] < when_s - WINDOW_S:
             self._observed.popleft()

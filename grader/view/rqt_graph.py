@@ -1,4 +1,4 @@
-"""The command `rqt_graph`: show the ROS graph live on a page, as a picture in a file, or as text."""
+"""The command `rqt_graph`: show the ROS graph live on a page, as an image in a file, or as text."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _FORMATS = (".svg", ".png", ".dot")
 _OURS = ("-o", "--output", "--text", "--port", "--active", "--debug", "--hidden", "--all")
-"""Options that are unknown to the rqt_graph of a sourced ROS 2, which opens a window."""
+"""The options that the rqt_graph of a sourced ROS 2 does not support."""
 _NOTHING = (
     "No node is running (ROS_DOMAIN_ID is {domain}). Start one in another terminal, with the same domain id: "
     "ros2 run turtlesim turtlesim_node"
@@ -29,13 +29,13 @@ _NOTHING = (
 
 
 _MISSING = (
-    "rqt_graph: a program on this machine did not say in time what it publishes and subscribes to, so something may be "
-    "missing below. Type it again."
+    "rqt_graph: a program on this machine did not announce its topics in time, so the graph may be "
+    "incomplete. Repeat the command."
 )
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; return 0 if the graph was drawn, or 1 if no node is running.
+    """Run the command. Return 0 if the graph was drawn, or 1 if no node is running.
 
     Decision 9 in docs/design.md explains the other exit codes.
     """
@@ -56,7 +56,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:
-        # The program that reads the output has exited, as in `rqt_graph | head`.
+        # The reader of the output has exited, as in `rqt_graph | head`.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return 1
 
@@ -68,20 +68,20 @@ def _is_ours(word: str) -> bool:
 def _parse(argv: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="rqt_graph",
-        description="Show which nodes are running, and which topics they publish and subscribe to.",
-        epilog="Without --output, it is shown live in a browser until Ctrl-C. Without a browser, it is printed as text "
-        "or served for a browser on another machine: over ssh, and with --port. "
+        description="Show the running nodes with the topics that they publish and subscribe to.",
+        epilog="Without --output, the graph is live in a browser until Ctrl-C. Without a browser, it is printed as "
+        "text or served for a browser on another machine: over ssh, and with --port. "
         "Example: rqt_graph --output graph.svg",
     )
     parser.add_argument(
-        "-o", "--output", type=Path, metavar="FILE", help="write the picture: graph.svg, graph.png or graph.dot"
+        "-o", "--output", type=Path, metavar="FILE", help="write the graph to a file: graph.svg, graph.png or graph.dot"
     )
-    parser.add_argument("--text", action="store_true", help="print the graph as text, even if there is a browser")
+    parser.add_argument("--text", action="store_true", help="print the graph as text, even on a machine with a browser")
     parser.add_argument("--port", type=int, help="port of the page (default: the same as the last time, or a free one)")
     parser.add_argument("--active", action="store_true", help="hide topics without a publisher or without a subscriber")
-    parser.add_argument("--debug", action="store_true", help="show /rosout, /parameter_events, /clock and tools, too")
+    parser.add_argument("--debug", action="store_true", help="also show /rosout, /parameter_events, /clock and tools")
     parser.add_argument(
-        "--hidden", action="store_true", help='show names that begin with "_", too: the topics of actions'
+        "--hidden", action="store_true", help='also show names that begin with "_", such as the topics of actions'
     )
     parser.add_argument("--all", action="store_true", help="show everything: --debug and --hidden")
     if "_ARGCOMPLETE" in os.environ:
@@ -107,7 +107,7 @@ def _run(options: argparse.Namespace) -> int:
     show = Show(debug=options.debug or options.all, hidden=options.hidden or options.all, dead_ends=not options.active)
     if options.output is None and not options.text and _shown_live(show, options.port):
         return 0
-    # Import these modules here, because rclpy is in the environment only now.
+    # Import these modules here, because rclpy cannot be imported earlier.
     from grader.graph.discovery import cli_node, settle
     from grader.graph.endpoints import observe
 
@@ -141,7 +141,7 @@ def _write(file: Path, drawn: Picture) -> None:
 
 
 def _shown_live(show: Show, port: int | None) -> bool:
-    """Serve the graph on a page until Ctrl-C. Return False immediately if there is no browser to show it in.
+    """Serve the graph on a page until Ctrl-C. Return False immediately if no browser can show it.
 
     With --port, or in a terminal over ssh, the user opens the page in a browser on another machine.
     """
@@ -171,7 +171,7 @@ def _shown_live(show: Show, port: int | None) -> bool:
     if elsewhere:
         print(browser.from_elsewhere(place.address.port), file=sys.stderr, flush=True)
     shown = asyncio.run(serve())
-    # From here on, Python handles Ctrl-C again.
+    # From now on, Python handles Ctrl-C again.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     return shown
 

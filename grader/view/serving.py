@@ -1,4 +1,4 @@
-"""Serve a page until Ctrl-C, or until the program behind it exits, and open it in the user's browser."""
+"""Serve a page until Ctrl-C or until its program exits, and open it in the user's browser."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ if TYPE_CHECKING:
     from grader.view.hub import Hub
 
 _RECONNECTS_S = 2.0
-"""How long a tab that is still open from an earlier view needs to reconnect."""
+"""The time that a tab from an earlier view needs to reconnect (s)."""
 _TIMES = 20
 _SETTINGS: dict[str, Any] = {
     "log_level": "warning",
     "access_log": False,
     "ws": "websockets-sansio",
-    # Compression would only waste time, since the page is on the same machine.
+    # Do not compress, since the page is on the same machine.
     "ws_per_message_deflate": False,
     "ws_max_size": 65536,
     "lifespan": "off",
     "timeout_graceful_shutdown": 1,
-    # More are refused, so that clients that never finish cannot use up the files of the process.
+    # Limit the connections, so that clients that never finish cannot use up the process's files.
     "limit_concurrency": 200,
 }
 
@@ -47,7 +47,7 @@ def ended_by_signals() -> asyncio.Event:
 
 
 def in_loop(loop: asyncio.AbstractEventLoop, call: Callable[..., object], *arguments: object) -> None:
-    """Call a function in the thread of the event loop. Do nothing if the loop has been closed already."""
+    """Call a function in the thread of the event loop. Do nothing if the loop is closed."""
     with suppress(RuntimeError):
         loop.call_soon_threadsafe(call, *arguments)
 
@@ -55,9 +55,9 @@ def in_loop(loop: asyncio.AbstractEventLoop, call: Callable[..., object], *argum
 async def serve(
     place: Place, app: ASGIApp, door: Door, hub: Hub, ended: asyncio.Event, *, stays: bool, opens: bool = True
 ) -> bool:
-    """Serve until `ended` is set; return whether the page could be opened in a browser. It is opened if it `opens`.
+    """Serve until `ended` is set. Return whether the page could be opened in a browser.
 
-    If it cannot be opened, return immediately, unless it `stays`: then the user opens its address elsewhere.
+    The page is opened only if `opens` is true. If this fails, return immediately unless `stays` is true.
     """
     server = _Server(uvicorn.Config(app, **_SETTINGS))
     serving = asyncio.create_task(server.serve([place.listening]))
@@ -77,7 +77,7 @@ async def serve(
 
 
 async def _open(place: Place, door: Door, hub: Hub, *, opens: bool) -> bool:
-    """Open the page if there is a browser and it `opens`, unless a tab from an earlier view reconnects."""
+    """Open the page if `opens` is true and a browser exists, unless a tab from an earlier view reconnects."""
     if not opens:
         return True
     for _ in range(_TIMES if place.before else 0):
@@ -88,9 +88,9 @@ async def _open(place: Place, door: Door, hub: Hub, *, opens: bool) -> bool:
 
 
 class _Server(uvicorn.Server):
-    """A uvicorn server that lets its caller handle the signals."""
+    """A uvicorn server that does not handle signals."""
 
     @contextmanager
     def capture_signals(self) -> Iterator[None]:
-        """Capture no signals."""
+        """Leave the signal handlers unchanged."""
         yield

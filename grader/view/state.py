@@ -1,4 +1,4 @@
-"""What a view knows about its simulator, built from the messages of feed.py. Pages and terminals use it."""
+"""The state of a simulator in its view, built from the messages of feed.py. Pages and terminals use it."""
 
 from __future__ import annotations
 
@@ -49,10 +49,10 @@ class State:
     """The lines that the last message added."""
     commands: dict[str, Command] = field(default_factory=dict)
     rates: dict[str, Arrivals] = field(default_factory=dict)
-    """The arrivals on the simulator's own topics, so that no subscription is needed to measure their rates."""
+    """The arrivals on the simulator's topics. No subscription is needed to measure these rates."""
 
     def take(self, message: dict[str, Any]) -> dict[str, object]:
-        """Apply a message from the simulator; return the news for a page that knows the previous state."""
+        """Apply a message from the simulator. Return the news for pages that have the previous state."""
         self.now_s = float(message["t"])
         self.paused = bool(message["paused"])
         self.namespace = str(message["namespace"])
@@ -94,7 +94,7 @@ class State:
 
 
 def _numbers(values: tuple[Any, ...]) -> list[object]:
-    """Round to four decimal places, which is precise enough for a view. Replace infinity, which JSON does not have."""
+    """Round to four decimal places, which are sufficient for a view. Replace infinity, which JSON does not support."""
     return [_number(value) if isinstance(value, float) else value for value in values]
 
 

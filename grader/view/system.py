@@ -1,7 +1,7 @@
-"""The whole ROS system for a view: the graph, the rates of topics, and the node that drives for the user.
+"""The ROS system for a view: the graph, the rates of topics, and the node that drives for the user.
 
-The listening node is hidden and offers nothing, so that it does not change what others see. It subscribes to a topic
-only while somebody is looking at the rates, and only if the simulator does not know the rate of the topic.
+The listening node is hidden and offers nothing, so that it does not change the visible graph. It subscribes to a topic
+only while a page shows the rates, and only if the simulator does not report the rate of the topic.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ if TYPE_CHECKING:
 
 LOOKED_EVERY_S = 0.4
 MOST_HZ = 500.0
-"""Topics with a higher rate are not measured, because counting their messages would be too expensive."""
+"""The maximum rate that is measured (Hz). Counting more messages would be too expensive."""
 _SPARED_S = 10.0
 _LAST_WORD_S = 1.0
-"""How long the driving node waits for its last command to arrive."""
+"""The time that the driving node waits until its last command has arrived (s)."""
 DRIVER = "view_keys"
 """The name of the driving node in the graph."""
 
@@ -53,9 +53,9 @@ class System:
 
 
 class Ears:
-    """A thread that spins `node`. It looks at the graph at regular intervals and passes the result to `tell`.
+    """A thread that spins `node`. It reads the graph at regular intervals and passes it to `tell`.
 
-    `known` returns the topics that are counted elsewhere. `looking` returns whether somebody looks at the rates.
+    `known` returns the topics that are counted elsewhere. `looking` returns whether a page shows the rates.
     """
 
     def __init__(
@@ -95,7 +95,7 @@ class Ears:
                 self._executor.spin_once(timeout_sec=1.0)
 
     def later(self, call: Callable[..., object], *arguments: object) -> None:
-        """Call a function in the thread of the node."""
+        """Call a function later in the thread of the node."""
         self._executor.create_task(call, *arguments)
 
     # --- the graph and the rates --------------------------------------------------------------------------------
@@ -129,17 +129,17 @@ class Ears:
     # --- driving ------------------------------------------------------------------------------------------------
 
     def drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:
-        """Do what a key of turtle_teleop_key does. `turtle` is the full name of the turtle, such as "/turtle1"."""
+        """Execute a key of turtle_teleop_key. `turtle` is the full name of the turtle, such as "/turtle1"."""
         self._leave_s = math.inf
         self._executor.create_task(self._drive, turtle, key)
 
     def leave(self) -> None:
-        """Stop driving. The driving node leaves the graph after its last command has had time to arrive."""
+        """Stop driving. The driving node leaves the graph after its last command has arrived."""
         self._leave_s = time.monotonic() + _LAST_WORD_S
 
     async def _drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:
         if self._driver is None or self._driver[0] != turtle:
-            # Import it only here, since it needs turtlesim, which may not be available in a view of the graph alone.
+            # Import this here, since it needs turtlesim, which may be missing in a view of only the graph.
             from grader.turtlesim.programs.turtle_teleop_key import Teleop
 
             self._leave()
@@ -175,7 +175,7 @@ class _Counter:
         try:
             self._class = message_values.load_type(type_name, "msg", "message type")
         except Ros2Error:
-            # The type is from a package that is not sourced here.
+            # The package of the type is not sourced.
             self._class = None
 
     def _arrived(self, _: bytes) -> None:
@@ -183,7 +183,7 @@ class _Counter:
         self._arrivals.add(time.monotonic())
 
     def look(self, node: Node, now: float) -> None:
-        """Subscribe if there is no subscription, but unsubscribe for a while if there are too many messages."""
+        """Subscribe if not subscribed, but unsubscribe for a while if the rate is too high."""
         flood = self._count > MOST_HZ * max(now - self._looked_s, LOOKED_EVERY_S)
         self._count, self._looked_s = 0, now
         if flood:

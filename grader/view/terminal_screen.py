@@ -1,4 +1,4 @@
-"""The content of the terminal: the canvas with the turtle, command and topics beside it, and the output below it."""
+"""The content of the terminal: the canvas, the turtle, the command and the topics beside it, and the output below."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ if TYPE_CHECKING:
 BESIDE = 38
 """The number of columns beside the canvas."""
 _BELOW = 6
-"""The number of rows for the title, the simulator's output, and the keys."""
+"""The number of rows for the title, the simulator's output and the keys."""
 _LEAST = 8
 _LASTS_S = 1.0
-"""The time after the last command at which turtlesim stops the turtle."""
+"""The time after the last command at which turtlesim stops the turtle (s)."""
 _KEYS = "↑ ↓ ← → drive · E R T D G C V B turn, F stops · Space pause · X clear · Z reset · Tab turtle · Q quit"
 
 
 class Shown(Protocol):
-    """Everything that the screen shows."""
+    """The data that the screen shows."""
 
     @property
     def state(self) -> State:
@@ -58,14 +58,14 @@ class Shown(Protocol):
 
 
 def side_for(console: Console) -> int:
-    """Return the width of the canvas in columns, which is the largest even number that fits into the terminal."""
+    """Return the width of the canvas in columns: the largest even number that fits into the terminal."""
     width, height = console.size
     beside = BESIDE if width >= 2 * BESIDE else 0
     return max(min(width - beside, 2 * (height - _BELOW)), _LEAST) // 2 * 2
 
 
 class Screen:
-    """The whole screen, which rich can print."""
+    """The whole screen for rich."""
 
     def __init__(self, shown: Shown) -> None:
         self._shown = shown
@@ -101,7 +101,7 @@ class Screen:
         state, name = self._shown.state, self._shown.chosen
         turtle = state.turtles.get(name)
         if turtle is None:
-            return [Text(f"There is no {name}; press Tab to choose another turtle.")]
+            return [Text(f"{name} does not exist. Press Tab to choose another turtle.")]
         others = f"  (1 of {len(state.turtles)})" if len(state.turtles) > 1 else ""
         lines = [
             Text.assemble((printable(name), "bold"), others),

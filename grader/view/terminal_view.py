@@ -1,6 +1,7 @@
-"""The view in a terminal: the turtle drawn with half blocks, the topics beside it, and keys that drive.
+"""The view in a terminal: the turtle as half blocks, the topics beside it, and keys that drive.
 
-A terminal does not report when a key is released. A held key repeats, so a key that stops repeating has been released.
+A terminal does not report when a key is released. A held key repeats, so a key counts as released when it stops
+repeating.
 """
 
 from __future__ import annotations
@@ -33,15 +34,15 @@ if TYPE_CHECKING:
 
 FRAME_S = 0.066
 FIRST_HOLD_S = 0.6
-"""The time until a held key begins to repeat, which is half a second on most machines."""
+"""The time until a held key begins to repeat (s), which is half a second on most machines."""
 HOLD_S = 0.25
-"""The time between two repeats of a key with the slowest settings."""
+"""The interval between two repeats of a key with the slowest settings (s)."""
 _LINES = 3
 
 
 @dataclass
 class Held:
-    """The held arrow key, and the time (s) until which it is assumed to be held."""
+    """The held arrow key, and the time until which it counts as held (s)."""
 
     key: str = ""
     until_s: float = 0.0
@@ -52,7 +53,7 @@ class Held:
         self.key, self.until_s = key, now + (HOLD_S if again else FIRST_HOLD_S)
 
     def over(self, now: float) -> bool:
-        """Return whether the key is no longer assumed to be held."""
+        """Return whether the key does not count as held any more."""
         return bool(self.key) and now >= self.until_s
 
 
@@ -73,7 +74,7 @@ class Terminal:
     _rest: str = ""
 
     def hear(self) -> bool:
-        """Read the messages from the simulator; return False if the simulator has exited."""
+        """Read the messages from the simulator. Return False if the simulator has exited."""
         while True:
             try:
                 data = self.feed.recv(LARGEST)
@@ -101,7 +102,7 @@ class Terminal:
         self.changed |= bool(lines)
 
     def next_turtle(self) -> None:
-        """Let the keys drive the next turtle."""
+        """Select the next turtle for the keys."""
         names = list(self.state.turtles)
         if names:
             at = names.index(self.chosen) + 1 if self.chosen in names else 0
@@ -109,7 +110,7 @@ class Terminal:
 
 
 def watch(feed: socket.socket, said: int) -> int:
-    """Draw until the simulator exits, or until Q or Ctrl-C is pressed; return the exit code."""
+    """Draw until the simulator exits, or until Q or Ctrl-C is pressed. Return the exit code."""
     console = Console(highlight=False, no_color=False)
     signal.signal(signal.SIGINT, signal.default_int_handler)
     feed.settimeout(0.0)
@@ -156,7 +157,7 @@ def _loop(shown: Terminal, read: Callable[..., bytes | None], live: Live, hands:
 
 
 def _do(shown: Terminal, data: bytes, hands: Hands) -> bool:
-    """Handle the keys; return False if one of them quits the program."""
+    """Handle the keys. Return False if one of them quits the program."""
     text = data.decode("latin-1")
     for char, what in ((" ", "resume" if shown.state.paused else "pause"), ("x", "clear"), ("z", "reset")):
         if char in text.lower():

@@ -1,6 +1,6 @@
-"""The trail in a view: strokes that stay sharp at any size, and a picture of the older trail below them.
+"""The trail in a view: strokes that are sharp at any size, and an image of the older trail below them.
 
-The coordinates are whole numbers in tenths of the canvas's pixels, with the y axis pointing downwards. They are short
+The coordinates are integers in tenths of the canvas's pixels, with the y axis pointing down. They are short
 in JSON and precise enough.
 """
 
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 UNIT = 10
 """Units per pixel."""
 FAR = 20 * SIDE_PX * UNIT
-"""The limit of coordinates. Points that are further outside are moved to this limit."""
+"""The limit of coordinates. Points further outside are moved to this limit."""
 MOST_POINTS = 20_000
-"""The maximum number of points in all strokes. If there are more, the strokes are merged into the picture."""
+"""The maximum number of points in all strokes. If it is exceeded, the strokes are merged into the image."""
 _SCALE = 3
-"""The number of pixels in the picture per pixel of the canvas."""
+"""The number of pixels in the image per pixel of the canvas."""
 _SLACK = 1.0
 """The maximum distance (in units) of an omitted point from the line that replaces it."""
 _MOST_SKIPPED = 40
@@ -38,14 +38,14 @@ Point = tuple[int, int]
 
 @dataclass
 class Stroke:
-    """A line with one pen (red, green, blue, width in px). `skipped` has the points omitted from the last segment."""
+    """A line with one pen (red, green, blue, width in px). `skipped` has the omitted points of the last segment."""
 
     pen: tuple[int, int, int, int]
     points: list[Point]
     skipped: list[Point] = field(default_factory=list)
 
     def add(self, point: Point) -> None:
-        """Continue the stroke to a point, and omit the last point if it is on the line to the new point."""
+        """Continue the stroke to a point. Omit the last point if it is on the line to the new point."""
         if point == self.points[-1]:
             return
         if len(self.points) >= 2:
@@ -70,7 +70,7 @@ def _beside(point: Point, begin: Point, end: Point) -> float:
 
 
 class Trail:
-    """Everything that has been drawn."""
+    """All lines that have been drawn."""
 
     def __init__(self) -> None:
         self.clear()
@@ -83,7 +83,7 @@ class Trail:
         self._points = 0
 
     def draw(self, lines: Iterable[Line]) -> list[Stroke]:
-        """Add lines, and return them as strokes. A line that begins at the end of a stroke continues that stroke."""
+        """Add lines, and return them as strokes. A line that starts at the end of a stroke continues that stroke."""
         new: dict[int, Stroke] = {}
         for x0, y0, x1, y1, red, green, blue, width in lines:
             pen = (red, green, blue, width)
@@ -99,14 +99,14 @@ class Trail:
             self._points += len(stroke.points) - before
             self._open[x1, y1, pen] = stroke
         if len(self._open) > 4 * len(new) + 256:
-            # Forget old ends that have not been continued.
+            # Remove old ends that have not been continued.
             self._open = dict(list(self._open.items())[-256:])
         if self._points > MOST_POINTS:
             self._flatten()
         return list(new.values())
 
     def take_picture(self, png: bytes) -> None:
-        """Replace the trail with a picture of everything that was drawn."""
+        """Replace the trail with an image of the whole trail."""
         self.clear()
         self.picture = png
 
@@ -116,7 +116,7 @@ class Trail:
         self.take_picture(file.getvalue())
 
     def painted(self, side: int, least: int = 1) -> Image.Image:
-        """Return the trail as an RGBA picture that is `side` pixels wide. Strokes are at least `least` pixels wide."""
+        """Return the trail as an RGBA image that is `side` pixels wide. Strokes are at least `least` pixels wide."""
         picture = Image.new("RGBA", (side, side), (0, 0, 0, 0))
         if self.picture:
             below = Image.open(io.BytesIO(self.picture)).convert("RGBA")
@@ -133,18 +133,18 @@ class Trail:
 
 
 def as_lists(strokes: Iterable[Stroke]) -> list[list[int]]:
-    """Convert strokes for a page: each is a list of red, green, blue, width, and x, y of each point."""
+    """Convert strokes to lists for a page: red, green, blue, width, and x, y of each point."""
     return [[*stroke.pen, *(value for point in stroke.points for value in point)] for stroke in strokes]
 
 
 def place(x: float, y: float) -> Point:
-    """Convert the position of a point (m) to units of the trail."""
+    """Convert the coordinates of a point (m) to units of the trail."""
     column, row = x * PIXELS_PER_M * UNIT, (SIDE_M - y) * PIXELS_PER_M * UNIT
     return round(min(max(column, -FAR), FAR)), round(min(max(row, -FAR), FAR))
 
 
 def paint(picture: Image.Image, strokes: Sequence[Stroke], scale: float, least: int = 1) -> None:
-    """Paint strokes with a width of at least `least` into a picture with `scale` pixels per pixel of the canvas."""
+    """Paint strokes with a width of at least `least` into an image with `scale` pixels per pixel of the canvas."""
     draw = ImageDraw.Draw(picture)
     for stroke in strokes:
         ink = (*stroke.pen[:3], 255)

@@ -1,4 +1,4 @@
-"""The program that `ros2 run turtlesim turtlesim_node` and `grader sim` run, as `python -m grader.view.turtlesim_node`.
+"""`python -m grader.view.turtlesim_node`: the program of `ros2 run turtlesim turtlesim_node` and `grader sim`.
 
 The simulator itself does not import the view. This module adds the view for `--view`.
 """
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def open_view(kind: Kind, port: int | None) -> AbstractContextManager[View]:
-    """Import and start a view. This raises the same errors as `grader.view.launch.view`."""
+    """Import and start a view. Raises the same exceptions as `grader.view.launch.view`."""
     from grader.view.launch import view
 
     return view(kind, port)

@@ -1,4 +1,4 @@
-// What a page of the book can do with a script: copy code, search, and open the lists on a wide screen.
+// The functions of a page of the book that need a script: copy code, search, and open the lists on a wide screen.
 // Without the script, the page can still be read.
 
 import { addCopyButtons } from "./copy.js";
@@ -7,8 +7,8 @@ import { addSearch } from "./search.js";
 
 const WIDE = "(min-width: 62rem)";
 
-// A wide screen has room for the lists of steps and sections; on a narrow one, the reader opens them. Beside other
-// panes, there is room for the steps only.
+// On a wide screen, the lists of steps and sections are open. On a narrow screen, the reader opens them. Beside other
+// panes, only the list of steps is open.
 function unfold() {
   const beside = document.body.classList.contains("desk");
   const wide = window.matchMedia(WIDE);

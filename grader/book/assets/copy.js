@@ -1,4 +1,4 @@
-// A button next to each block of code. Of a terminal, it copies what is typed, without the prompt and the output.
+// A copy button next to each block of code. For a terminal, it copies only the commands, without prompt and output.
 
 const SHOWN_MS = 2000;
 
@@ -9,7 +9,7 @@ export function textOf(block) {
 }
 
 export function addCopyButtons(root) {
-  // The clipboard is available only on this machine and with https.
+  // Browsers allow the clipboard only for pages of this machine and with https.
   if (!navigator.clipboard) return;
   for (const block of root.querySelectorAll(".code")) {
     if (!textOf(block)) continue;

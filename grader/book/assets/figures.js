@@ -1,5 +1,5 @@
-// Figures that the reader changes with sliders. Each is a pure function: from the values to shapes and a text that says
-// the same.
+// Figures that the reader changes with sliders. Each is a pure function from the values to shapes and a text with
+// the same content.
 
 import { drive, errors, SIDE_M, START, toWorld } from "./motion.js";
 import { element } from "./svg.js";
@@ -45,7 +45,7 @@ export const FIGURES = {
         shapes,
         text: `Radius = v / w = ${said(Math.abs(v))} / ${said(Math.abs(w))} = ${said(Math.abs(v / w))} m. `
           + `One turn takes 2π / w = ${said(2 * Math.PI / Math.abs(w))} s. The circle is on the turtle's ${w > 0 ? "left" : "right"}.`
-          + `${v < 0 ? ` It drives backwards, so the circle bends to the ${side} of its way.` : ""}${wall}`,
+          + `${v < 0 ? ` The turtle drives backwards, so its path bends to the ${side}.` : ""}${wall}`,
       };
     },
   },

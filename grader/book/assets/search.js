@@ -1,11 +1,11 @@
-// The search: all words must occur in a section. A word in a heading counts more than one in the text.
+// The search. All words must occur in a section. A word in a heading has a higher weight than a word in the text.
 
 const MOST = 8;
 const AROUND = 60;
 
 const words = (text) => text.toLowerCase().split(/\s+/).filter(Boolean);
 
-// The sections that have all words, the best first.
+// Return the sections that contain all words, best match first.
 export function find(index, query) {
   const wanted = words(query);
   if (wanted.length === 0) return [];
@@ -21,7 +21,7 @@ export function find(index, query) {
   return found.slice(0, MOST).map((each) => each.entry);
 }
 
-// The text around the first word.
+// Return the text around the first word.
 export function excerpt(text, query) {
   const at = Math.max(...words(query).map((word) => text.toLowerCase().indexOf(word)), 0);
   const from = Math.max(at - AROUND, 0);
@@ -63,7 +63,7 @@ export function addSearch(box, root) {
       if (query !== input.value) return;
       const list = document.createElement(entries.length ? "ul" : "p");
       if (entries.length) list.append(...entries.map((entry) => result(entry, query, root)));
-      else list.textContent = "No section has all of these words.";
+      else list.textContent = "No section contains all of these words.";
       found.replaceChildren(list);
     } catch {
       index = null;
@@ -78,7 +78,7 @@ export function addSearch(box, root) {
     found.replaceChildren();
     input.focus();
   });
-  // A link to a section of the same page does not load another page.
+  // A link to a section of the same page does not load a page, so close the list.
   found.addEventListener("click", (event) => {
     if (event.target.closest("a")) found.replaceChildren();
   });

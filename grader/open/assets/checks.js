@@ -1,4 +1,4 @@
-// The checks of the step as a list that fills while the learner works.
+// The list of the checks of the step, with their results so far.
 
 import { update } from "./keyed.js";
 

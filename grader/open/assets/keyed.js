@@ -1,6 +1,6 @@
-// Lists whose elements stay in place: an element is replaced only if its content has changed.
+// Lists whose elements are replaced only if their content has changed.
 
-// `wanted` is a list of { key, text, make }; `text` says whether the content is the same as before.
+// `wanted` is a list of { key, text, make }. If `text` is unchanged, the element is kept.
 export function update(place, wanted) {
   const before = new Map([...place.children].map((each) => [each.dataset.key, each]));
   let at = place.firstElementChild;

@@ -1,4 +1,4 @@
-// The log messages of all nodes, from /rosout, as ros2 prints them.
+// The log messages of all nodes, from /rosout, in the format of ros2.
 
 const MOST = 200;
 
@@ -13,7 +13,7 @@ export class LogLines {
     this.add(lines);
   }
 
-  // The last line stays in sight, unless the reader has scrolled up.
+  // Keep the last line visible unless the reader has scrolled up.
   add(lines) {
     this.lines = [...this.lines, ...lines].slice(-MOST);
     const below = this.place.scrollTop + this.place.clientHeight >= this.place.scrollHeight - 4;

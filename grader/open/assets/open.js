@@ -1,4 +1,4 @@
-// The page to learn on: it passes the server's news to its parts, and the clicks to the server.
+// The page of grader open passes the server's news to its parts, and the clicks to the server.
 
 import { showChecks } from "./checks.js";
 import { update } from "./keyed.js";
@@ -43,7 +43,7 @@ function showHints(state) {
   find("hint").disabled = !state.more_hints;
 }
 
-// The checks are shown with the lesson that they belong to; the verdict is always that of the current step.
+// Show the checks with their lesson. The verdict is always that of the current step.
 function show(state) {
   if (!state.steps) return;
   showSteps(state.steps);
@@ -51,7 +51,7 @@ function show(state) {
   const here = state.exercise === step;
   task.show(state);
   find("verdict-title").textContent = state.exercise ? `Verdict on step ${state.exercise.slice(0, 2)}: ${state.title}` : "Verdict";
-  if (!state.exercise) tell("Start a step: its verdict appears here.");
+  if (!state.exercise) tell("Start a step. Its verdict appears here.");
   else if (find("answer").textContent.startsWith("Start a step")) tell("");
   for (const name of ["hint", "rerun"]) find(name).hidden = !state.exercise;
   find("next").hidden = !state.passed;
@@ -68,7 +68,7 @@ async function next() {
   else location.href = `/${answer.step}/index.html`;
 }
 
-// Which pane a narrow page shows. A phone shows one at a time, a wide screen several.
+// The pane that a narrow page shows. A phone shows one at a time, and a wide screen several.
 function addTabs() {
   const buttons = [...document.querySelectorAll("[data-shows]")];
   const choose = (name) => {

@@ -1,10 +1,10 @@
-// Requests to the server, with the token in a header that no page of another site can send.
+// Requests to the server, with the token in a header that pages of other sites cannot send.
 
 import { session } from "./session.js";
 
 const HEADER = "X-Course-Token";
 
-// Returns the answer, or { problem } with a sentence.
+// Return the answer, or { problem } with a message.
 export async function act(name, wanted = {}) {
   try {
     const answer = await fetch(`/do/${name}`, {
@@ -14,11 +14,11 @@ export async function act(name, wanted = {}) {
     });
     return await answer.json();
   } catch {
-    return { problem: "The server does not answer. Is grader open still running?" };
+    return { problem: "The server does not respond. Check that grader open is still running." };
   }
 }
 
-// Returns a part of the page as a document. A document has no scripts that run.
+// Return a part of the page as a document, in which scripts do not run.
 export function fragment(path) {
   return new Promise((resolve) => {
     const request = new XMLHttpRequest();

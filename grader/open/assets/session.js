@@ -1,4 +1,4 @@
-// The token that this page shows to the server. It comes in the address after #, is kept for this tab, and is
+// The token that this page sends to the server. It is in the address after #, is stored for this tab, and is
 // shared with other tabs of the same address, so that a lesson can be opened in a new tab.
 
 const NAME = "token";
@@ -7,9 +7,9 @@ const waiting = new Set();
 
 function fromAddress() {
   const found = /^#([\w-]{22})$/.exec(location.hash);
-  // The address of a section ends with # and its name.
+  // The address of a section also ends with # and a name.
   if (!found || document.getElementById(found[1])) return null;
-  // The address stays free for the anchors of the lesson.
+  // Remove the token from the address, which the anchors of the lesson use.
   history.replaceState(null, "", location.pathname);
   return found[1];
 }
@@ -24,7 +24,7 @@ export function keep(token) {
   for (const each of waiting) each();
 }
 
-// Call `then` when another tab has told the token.
+// Call `then` when another tab has sent the token.
 export function ask(then) {
   waiting.add(then);
   channel.postMessage({ ask: true });
@@ -38,7 +38,7 @@ channel.addEventListener("message", ({ data }) => {
   }
 });
 
-// A code from the address works only once, so it is not told to others: the server answers with the token.
+// A code from the address works only once, so it is not sent to other tabs. The server answers with the token.
 let known = read() !== "";
 const given = fromAddress();
 if (given) sessionStorage.setItem(NAME, given);

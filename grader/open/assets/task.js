@@ -22,7 +22,7 @@ function button(text, click) {
   return made;
 }
 
-// The lines that a package file needs for this step, which the learner has to add.
+// Return a box with the lines that the learner has to add to a package file for this step.
 function lacking({ file, lines }) {
   const code = document.createElement("code");
   code.textContent = lines.join("\n");
@@ -53,7 +53,7 @@ export class Task {
     if (here) {
       parts.push(paragraph("Edit these files in your own editor. Each save is graded:"), this.folder(state.folder));
     } else if (step.state === "new") {
-      parts.push(paragraph("You can read the lesson first. When you start the step, its files are added to your workspace."),
+      parts.push(paragraph("You can read the lesson first. Starting the step adds its files to your workspace."),
         button("Start this step", () => this.start()));
     } else {
       parts.push(paragraph(step.state === "passed" ? "You have passed this step." : "You have started this step."),

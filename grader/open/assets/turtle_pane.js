@@ -1,4 +1,4 @@
-// The turtle: start and stop turtlesim and one's own node, drive, and ask ROS 2.
+// The turtle pane: start and stop turtlesim and the learner's node, drive, and run ros2.
 
 import { Link } from "./link.js";
 import { LogLines } from "./log_lines.js";
@@ -54,7 +54,7 @@ export class TurtlePane {
     select.replaceChildren(...names.map((name) => new Option(name, name, false, name === before)));
   }
 
-  // The last line stays in sight, unless the reader has scrolled up.
+  // Keep the last line visible unless the reader has scrolled up.
   lines(text) {
     const place = find("node-lines");
     if (place.textContent === text) return;
@@ -92,6 +92,6 @@ export class TurtlePane {
     place.hidden = false;
     place.textContent = "Asking …";
     const { problem, command, output, stopped } = await act("ask", { text });
-    place.textContent = problem ?? `$ ${command}\n${output}${stopped ? "\n(It was stopped: no answer came.)" : ""}`;
+    place.textContent = problem ?? `$ ${command}\n${output}${stopped ? "\n(The command was stopped, because it did not end.)" : ""}`;
   }
 }

@@ -27,7 +27,7 @@ export class Verdict {
     if (state.number !== this.number) this.load(state);
   }
 
-  // What has passed now needs no reasons any more. The other details come a moment later.
+  // Remove the details of checks that pass now. The other details arrive later.
   dropPassed(checks) {
     const passed = new Set(checks.filter((check) => check.kind === "passed").map((check) => check.id));
     for (const each of [...this.details.children]) if (passed.has(each.dataset.key)) each.remove();
@@ -36,7 +36,7 @@ export class Verdict {
   async load(state) {
     this.number = state.number;
     const made = state.line && !state.problem ? await fragment("/verdict") : null;
-    // Another verdict may have come in the meantime.
+    // Another verdict may have arrived in the meantime.
     if (this.number !== state.number) return;
     const parts = made ? [...made.body.querySelectorAll("[data-key]")] : [];
     const runs = made ? JSON.parse(made.getElementById("data").textContent) : [];

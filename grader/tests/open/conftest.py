@@ -1,4 +1,4 @@
-"""A running `grader open` with step 03 begun, and a browser."""
+"""A running `grader open` with step 03 started, and a browser."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(scope="module")
 def learner(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Course]:
-    """A learner who has not started a step yet, with a server."""
+    """Create a learner who has not started a step yet, with a server."""
     for made in course(tmp_path_factory.mktemp("learner")):
         made.start()
         yield made
@@ -31,7 +31,7 @@ def learner(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Course]:
 
 @pytest.fixture(scope="module")
 def begun(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Course]:
-    """A learner who has started step 03, with a server."""
+    """Create a learner who has started step 03, with a server."""
     for made in course(tmp_path_factory.mktemp("begun")):
         made.run("start", CIRCLE)
         made.start()

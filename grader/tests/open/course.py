@@ -1,4 +1,4 @@
-"""`grader open` as a learner starts it, with a home folder of its own."""
+"""`grader open`, started as by a learner, with a separate home folder."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ GRADER = Path(sys.prefix, "bin/grader")
 
 @dataclass
 class Course:
-    """A home folder with a workspace, and the server that was started last."""
+    """A home folder with a workspace, and the last server that was started."""
 
     home: Path
     processes: list[subprocess.Popen[str]] = field(default_factory=list)
@@ -76,14 +76,14 @@ class Course:
         return self.url
 
     def end(self, number: int = signal.SIGINT) -> int:
-        """Send a signal to the server that was started last. Return its exit code."""
+        """Send a signal to the last server. Return its exit code."""
         process = self.processes[-1]
         if process.poll() is None:
             process.send_signal(number)
         return process.wait(HANG_S)
 
     def run(self, *arguments: str) -> str:
-        """Run another command of the grader with the same home folder."""
+        """Run another command of the grader with the same home folder. Return its output."""
         done = subprocess.run(
             [str(GRADER), *arguments], env=self.env, cwd=self.home, capture_output=True, text=True, check=True
         )
@@ -98,7 +98,7 @@ class Course:
         new_file.replace(self.node)
 
     def opened(self, browser: Browser, path: str = "", width: int = 1400) -> Page:
-        """Open a page in a new window that shares nothing with other windows."""
+        """Open a page in a new window without cookies or storage of other windows."""
         tab = browser.new_page(viewport={"width": width, "height": 900})
         tab.set_default_timeout(HANG_S * 1000)
         tab.goto(f"http://{self.host}/{path}#{self.token}")

@@ -1,4 +1,4 @@
-"""Only the page itself can read the learner's work or start anything."""
+"""Only the page itself can read the learner's work or start programs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ HEADER = "X-Course-Token"
 
 
 def answer(course: Course, method: str, path: str, headers: dict[str, str], body: bytes = b"") -> tuple[int, str]:
-    """Send a request exactly as given: the path is not normalized, and only the header with the length is added."""
+    """Send a request exactly as given: the path is not normalized, and only the Content-Length header is added."""
     link = HTTPConnection("127.0.0.1", int(course.host.partition(":")[2]), timeout=HANG_S)
     link.putrequest(method, path, skip_host="Host" in headers, skip_accept_encoding=True)
     for name, value in headers.items():
@@ -40,7 +40,7 @@ def answer(course: Course, method: str, path: str, headers: dict[str, str], body
 
 
 def own(course: Course) -> dict[str, str]:
-    """The headers that the page sends."""
+    """Return the headers that the page sends."""
     return {"Host": course.host, "Origin": f"http://{course.host}", HEADER: course.token}
 
 
@@ -72,7 +72,7 @@ def test_a_request_that_is_not_the_pages_is_refused(begun: Course, wrong: dict[s
 
 
 def evil(browser: Browser, body: str) -> Page:
-    """A page of another site."""
+    """Open a page of another site."""
     tab = browser.new_page()
     tab.route("http://evil.example/", lambda route: route.fulfill(body=body, content_type="text/html"))
     tab.goto("http://evil.example/")
@@ -163,7 +163,7 @@ def test_clients_that_never_finish_do_not_stop_the_page(begun: Course) -> None:
     for each in slow[20:]:
         each.sendall(f"POST /do/rerun HTTP/1.1\r\n{head}Content-Length: 100\r\n\r\n{{".encode())
     assert answer(begun, "GET", "/verdict", own(begun))[0] == 200
-    # A request whose body never arrives gets a response, too.
+    # A request whose body never arrives also gets a response.
     assert b" 408 " in slow[-1].recv(65536)
     for each in slow:
         each.close()

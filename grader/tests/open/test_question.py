@@ -1,4 +1,4 @@
-"""The questions to ROS 2 that a page may ask."""
+"""The commands of `ros2` that a page may run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The story of step 03 in the page: from start to 100 points, with two mistakes on the way."""
+"""A learner solves step 03 in the page, with two mistakes on the way."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def verdict(page: Page, text: str) -> None:
 
 
 def stays(page: Page, key: str) -> None:
-    """Mark an element, so that `stayed` can tell whether it was replaced."""
+    """Mark an element, so that `stayed` detects whether it was replaced."""
     page.locator(f'[data-key="{key}"]').first.evaluate("each => { each.marked = true; }")
 
 
@@ -35,7 +35,7 @@ def test_the_story_of_step_03(learner: Course, browser: Browser) -> None:
     page.on("pageerror", lambda error: problems.append(str(error)))
     page.get_by_role("main").get_by_role("link", name="03 A node that draws a circle").click()
 
-    # A lesson can be read before its step is begun.
+    # A lesson can be read before its step is started.
     page.get_by_role("heading", name="Why programs talk through topics").wait_for()
     page.get_by_role("button", name="Start this step").click()
     verdict(page, "Not passed yet: 15 of 100 points")
@@ -59,7 +59,7 @@ def test_the_story_of_step_03(learner: Course, browser: Browser) -> None:
     page.get_by_role("article").filter(has_text="The turtle drives a circle").get_by_text("radius").first.wait_for()
     assert page.locator("#hints li").count() == 1
     stays(page, "run-1")
-    # If a save changes nothing, the verdict stays in place. A comment changes only what it concerns.
+    # If a save changes nothing, the verdict is not replaced. Adding a comment replaces only the affected parts.
     learner.save("2.0", "3.0  # fast")
     page.locator(".line.marked").get_by_text("# fast").first.wait_for()
     assert stayed(page, "run-1")
@@ -84,7 +84,7 @@ def test_the_story_of_step_03(learner: Course, browser: Browser) -> None:
 def test_the_files_are_judged_before_the_trial(begun: Course, browser: Browser) -> None:
     page = begun.opened(browser)
     verdict(page, "Not passed yet")
-    # While the package is built and run, the list already shows what the files alone prove.
+    # While the package is built and run, the list already shows failures in the files.
     page.evaluate(
         """() => {
             globalThis.early = false;

@@ -1,4 +1,4 @@
-"""What people do to a page: they reload it, open two tabs, rename a folder, kill the server and start it again."""
+"""The page survives reloading, a second tab, a renamed folder, and a server that is killed and started again."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture
 def own(tmp_path: Path) -> Iterator[Course]:
-    """A learner of one test, with step 03 begun."""
+    """Create a learner for one test, with step 03 started."""
     for made in course(tmp_path):
         made.run("start", CIRCLE)
         made.start()
@@ -67,7 +67,7 @@ def test_the_page_survives_what_people_do(own: Course, browser: Browser) -> None
     own.save()
     verdict(page, "Passed: 100")
 
-    # A terminal starts another step.
+    # Start another step in a terminal.
     own.run("start", "04")
     page.get_by_text("Verdict on step 04").wait_for()
 

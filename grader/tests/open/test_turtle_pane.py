@@ -1,4 +1,4 @@
-"""The live turtle in the page: turtlesim, the learner's node, the keys, and questions to ROS 2."""
+"""The live turtle in the page: turtlesim, the learner's node, the keys, and commands of ROS 2."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ AGAIN_MS = 3000
 
 
 def of_home(home: Path) -> list[int]:
-    """The processes with this HOME."""
+    """Return the processes with this HOME."""
     found = []
     for place in Path("/proc").glob("[0-9]*"):
         try:
@@ -40,7 +40,7 @@ def of_home(home: Path) -> list[int]:
 
 
 def reset(page: Page) -> bool:
-    """Press Reset, and return whether the turtle stays at its start. A last command of the keys may still move it."""
+    """Press Reset. Return whether the turtle stays at its start, because a last key command may still move it."""
     page.get_by_role("button", name="Reset").click()
     with suppress(NotInTime):
         page.get_by_text(AT_START).wait_for(timeout=AGAIN_MS)
@@ -95,7 +95,7 @@ def drive(learner: Course, browser: Browser) -> None:
     page.locator("#asked").get_by_text("/turtle1/cmd_vel: geometry_msgs/msg/Twist").wait_for()
     page.get_by_label("ros2").fill("topic pub /turtle1/cmd_vel")
     page.keyboard.press("Enter")
-    page.locator("#asked").get_by_text("Only questions that change nothing").wait_for()
+    page.locator("#asked").get_by_text("Only commands that change nothing").wait_for()
     assert violations(page) == []
 
     page.get_by_role("button", name="Stop it").click()

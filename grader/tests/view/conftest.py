@@ -24,7 +24,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(scope="module")
 def system(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """A world with only turtlesim and its view."""
+    """Create a world with only turtlesim and its view."""
     for made in world(tmp_path_factory.mktemp("view")):
         made.start(VIEW, "Spawning turtle")
         yield made
@@ -32,13 +32,13 @@ def system(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
 
 @pytest.fixture
 def fresh(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """An empty world."""
+    """Create an empty world."""
     yield from world(tmp_path_factory.mktemp("fresh"))
 
 
 @pytest.fixture
 def page(browser: Browser, system: World) -> Iterator[Page]:
-    """The page with a clean canvas."""
+    """Open the page with a clean canvas."""
     tab = opened(browser, address(system))
     tab.get_by_role("button", name="Reset").click()
     tab.get_by_text("turtle1: x 5.54 m, y 5.54 m, heading 0.00 rad").wait_for()

@@ -1,6 +1,6 @@
-"""Takes the picture of the live view for README and the lessons: `python -m grader.tests.view.pictures`.
+"""Take the screenshot of the live view for README and the lessons: `python -m grader.tests.view.pictures`.
 
-It starts turtlesim, the solution of step 03 and the system's Chromium. It needs the same programs as the tests.
+This starts turtlesim, the solution of step 03 and the system's Chromium, and needs the same programs as the tests.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def main() -> int:
     """Write the picture. Return the exit code."""
     browser = find_browser()
     if browser is None:
-        print("There is no Chromium here: apt-get install chromium", file=sys.stderr)
+        print("Chromium is not installed. Install it with: apt-get install chromium", file=sys.stderr)
         return 3
     with tempfile.TemporaryDirectory() as folder:
         # User id 0 gives this domain, so the picture is the same on every machine.
@@ -35,7 +35,7 @@ def main() -> int:
 
 
 def take(world: World, browser: str) -> None:
-    """Wait until the turtle has driven most of its circle, then take the picture."""
+    """Wait until the turtle has driven most of its circle, and then take the screenshot."""
     simulator = world.start(f"{OUR_TURTLESIM} --view", "Spawning turtle")
     url = next(word for line in simulator.lines for word in line.split() if word.startswith("http://"))
     world.start(f"python3 {SOLUTION}/my_robot_controller/draw_circle.py", "Draw")
@@ -44,7 +44,7 @@ def take(world: World, browser: str) -> None:
         page.goto(url)
         page.locator(".arrow.flows[data-from='/draw_circle']").wait_for()
         page.locator("[data-topic='/turtle1/cmd_vel'] .rate", has_text="2 Hz").wait_for()
-        # One round, and then on until the turtle faces the upper left.
+        # Wait for one round, and then until the turtle faces the upper left.
         page.get_by_text("heading -2.").wait_for()
         page.get_by_text("heading 2.").wait_for()
         page.screenshot(path=FILE)

@@ -21,7 +21,7 @@ PEN = (179, 184, 255)
 
 
 def address(of: World) -> str:
-    """Return what the turtlesim that was started last has printed."""
+    """Return the address that the last turtlesim has printed."""
     started = of.running[-1] if len(of.running) == 1 else next(each for each in reversed(of.running) if url(each))
     return url(started)
 
@@ -50,7 +50,7 @@ def drawn(page: Page) -> int:
 
 
 def turtle(page: Page, name: str = "turtle1") -> str:
-    """Return where the turtle is drawn."""
+    """Return the position of the turtle on the page."""
     return page.locator(f'.turtle[data-name="{name}"]').get_attribute("transform") or ""
 
 

@@ -88,7 +88,7 @@ def test_without_grader_env_it_finds_ros_by_itself(tutorial: World) -> None:
 
 @pytest.fixture
 def before_a_screen(tutorial: World, tmp_path: Path) -> Iterator[World]:
-    """A desktop whose browser writes down the address, or fails if BROKEN is set."""
+    """Create a desktop whose browser writes the address to a file, or fails if BROKEN is set."""
     program = tmp_path / "xdg-open"
     program.write_text(f'#!/bin/sh\necho "$1" > {tmp_path}/opened\nexit ${{BROKEN:-0}}\n')
     program.chmod(0o755)
@@ -103,14 +103,14 @@ def test_where_there_is_a_browser_the_graph_is_shown_live_until_ctrl_c(before_a_
     address = (tmp_path / "opened").read_text().strip()
     (reported,) = graph.lines
     printed = reported.removeprefix("The graph, live until Ctrl-C: ")
-    # The same page. Other users can read a command line, so the address has a code that works only once.
+    # The page is the same, but since other users can read command lines, the address has a code that works only once.
     assert printed.partition("/#")[0] == address.partition("/#")[0]
     assert printed != address
     host, _, token = address.removeprefix("http://").partition("/#")
     with connect(f"ws://{host}/live?token={token}", origin=Origin(f"http://{host}")) as page:
         assert json.loads(page.recv()) == {"kind": "token", "token": printed.partition("/#")[2]}
         graphs = (news["graph"] for news in map(json.loads, page) if news["kind"] == "graph")
-        # The first drawing may not show everything, because it may come before discovery is complete.
+        # The first drawing may be incomplete, because discovery may still be running.
         shown = next(each for each in graphs if len(each["arrows"]) == len(TUTORIAL))
     with pytest.raises(InvalidStatus), connect(f"ws://{host}/live?token={token}", origin=Origin(f"http://{host}")):
         pass
@@ -173,7 +173,7 @@ def test_a_broken_pipe_and_an_unknown_option_end_without_a_traceback(tutorial: W
 
 
 def real_one(prefix: Path) -> None:
-    """A ROS 2 that has its own rqt_graph."""
+    """Create a ROS 2 that has its own rqt_graph."""
     (prefix / "share/ament_index/resource_index/packages").mkdir(parents=True)
     (prefix / "share/ament_index/resource_index/packages/rqt_graph").touch()
     (prefix / "bin").mkdir()
@@ -204,4 +204,4 @@ def test_what_may_be_missing_is_reported(tutorial: World) -> None:
         silent.bind(("127.0.0.1", port))
         done = tutorial.run("rqt_graph --text")
     assert done.code == 0
-    assert "something may be missing below" in done.stderr
+    assert "the graph may be incomplete" in done.stderr

@@ -1,4 +1,4 @@
-"""Only the page with the right address may connect to the live view, and no page of another site."""
+"""Only the page with the right address may connect to the live view. Pages of other sites may not."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def test_who_has_not_all_three_is_refused(system: World, wrong: dict[str, Any]) 
     wrong = dict(wrong)
     host, token, path = live(system)
     port = host.partition(":")[2]
-    # As after DNS rebinding: a foreign host name that leads to this machine.
+    # After DNS rebinding, a foreign host name leads to this machine.
     name = f"{wrong.pop('name')}:{port}" if "name" in wrong else host
     requested = {"origin": f"http://{name}", "sock": socket.create_connection(("127.0.0.1", int(port))), **wrong}
     path = path.replace(host, name).replace(token, str(requested.pop("token", token)))
@@ -81,7 +81,7 @@ def test_a_page_with_a_wrong_token_says_what_to_do(browser: Browser, system: Wor
 
 
 def test_the_browser_is_opened_with_a_code_for_which_it_gets_the_token(browser: Browser, fresh: World) -> None:
-    """Every user of the machine can read command lines."""
+    """Every user of the machine can read command lines, so the token must not be in them."""
     program = fresh.home / "xdg-open"
     program.write_text(f'#!/bin/sh\necho "$1" > {fresh.home}/opened\n')
     program.chmod(0o755)

@@ -1,4 +1,4 @@
-"""Other ways to start the view: `grader sim --view`. A view that is killed does not stop its simulator."""
+"""`grader sim --view` starts the view. A view that is killed does not stop its simulator."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
 
 
 def program(of: Running) -> int:
-    """Return the id of the process that simulates: `grader sim` becomes this process, `ros2 run` starts it."""
+    """Return the process id of the simulator: `grader sim` becomes this process, and `ros2 run` starts it."""
     return of.process.pid if REAL_TURTLESIM else of.program
 
 
 def whole(of: Running) -> dict[str, Any]:
-    """Return the first message that a page gets."""
+    """Return the first message that a page receives."""
     url = next(word for line in of.lines for word in line.split() if word.startswith("http://"))
     host, _, token = url.removeprefix("http://").partition("/#")
     with connect(f"ws://{host}/live?token={token}", origin=Origin(f"http://{host}")) as page:
@@ -43,7 +43,7 @@ def whole(of: Running) -> dict[str, Any]:
 
 
 def test_grader_sim_shows_its_turtle_and_takes_parameters(alone: World) -> None:
-    # The cache is shared, because building takes long.
+    # Share the cache, because building takes a long time.
     cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     simulator = alone.start("grader sim --view --ros-args -p background_r:=7", "Spawning turtle", XDG_CACHE_HOME=cache)
     while not (reported := whole(simulator))["turtles"]:
@@ -67,7 +67,7 @@ def test_a_simulator_outlives_its_view(alone: World) -> None:
     simulator = alone.start(f"{OUR_TURTLESIM} --view", "Spawning turtle")
     (view,) = children(program(simulator))
     os.kill(view, signal.SIGKILL)
-    simulator.wait_for("The view has ended; turtlesim continues without it.")
+    simulator.wait_for("The view has ended. turtlesim continues without it.")
     assert alone.run("ros2 topic echo /turtle1/pose --once").code == 0
     assert simulator.stop() == 0
 

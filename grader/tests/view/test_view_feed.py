@@ -1,4 +1,4 @@
-"""The simulator sends to its view through a real socket. It continues if the other end does not read."""
+"""The simulator sends to its view through a real socket. It continues even if the other end does not read."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Simulator:
             self.feed.show(self.world.turtles, paused=paused)
 
     def reported(self) -> list[dict[str, object]]:
-        """Return everything that can be read now."""
+        """Return all messages that can be read now."""
         messages = []
         with suppress(BlockingIOError):
             while True:
@@ -88,7 +88,7 @@ def test_the_view_knows_what_the_simulator_knows(simulator: Simulator) -> None:
 def test_a_turtle_at_rest_costs_no_messages(simulator: Simulator) -> None:
     simulator.run(2)
     simulator.reported()
-    simulator.feed._reported_s = math.inf  # the time must not matter
+    simulator.feed._reported_s = math.inf  # send a message regardless of the time
     simulator.run(40)
     assert simulator.reported() == []
 

@@ -1,4 +1,4 @@
-"""Pages that receive, pages that are slow, and pages that sleep."""
+"""The news for pages that receive them, pages that are slow, and pages that are hidden."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from grader.view.hub import KEPT, Hub
 
 
 class Page:
-    """The messages that a page was sent. While `gate` is closed, the page receives nothing."""
+    """The messages that a page has received. While `gate` is closed, the page receives nothing."""
 
     def __init__(self) -> None:
         self.reported: list[dict[str, object]] = []

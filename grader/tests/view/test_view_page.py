@@ -1,4 +1,4 @@
-"""The page as a learner sees it: turtlesim_node --view on the real ROS 2, in the system's Chromium."""
+"""The page in the system's Chromium, with turtlesim_node --view on the real ROS 2."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from grader.tests.ros2.world import World
 
 FEW = 60
-"""Pixels at the turtle's edge have nearly this colour."""
+"""The approximate colour of pixels at the turtle's edge."""
 DRAW_CIRCLE = f"python3 {SOLUTION}/my_robot_controller/draw_circle.py"
 
 
@@ -78,7 +78,7 @@ STANDS = "0.0,0.0,0.0,0.0,0.0,0.0"
 def test_keys_drive_while_they_are_held(page: Page, system: World) -> None:
     echo = system.start("ros2 topic echo /turtle1/cmd_vel --csv")
     page.keyboard.down("ArrowUp")
-    # This takes longer than one second, after which turtlesim would stop the turtle.
+    # Wait longer than one second, after which turtlesim would stop the turtle.
     echo.wait_for("2.0,0.0,0.0,0.0,0.0,0.0", times=12)
     page.keyboard.down("ArrowLeft")
     echo.wait_for("2.0,0.0,0.0,0.0,0.0,2.0")
@@ -109,7 +109,7 @@ def test_a_page_that_hangs_lets_go(page: Page, system: World) -> None:
     echo = system.start("ros2 topic echo /turtle1/cmd_vel --csv")
     page.keyboard.down("ArrowDown")
     echo.wait_for("-2.0,0.0,0.0,0.0,0.0,0.0", times=3)
-    # The page runs no code meanwhile.
+    # The page runs no other code in the meantime.
     page.evaluate("() => { const until = performance.now() + 1500; while (performance.now() < until); }")
     echo.wait_for(STANDS)
     page.keyboard.up("ArrowDown")
@@ -131,7 +131,7 @@ def test_pause_stops_the_time_clear_wipes_and_reset_begins_anew(page: Page, syst
     page.get_by_role("button", name="Pause").click()
     page.get_by_role("status").get_by_text("Paused").wait_for()
     stands, observed = turtle(page), len(poses.lines)
-    # As many commands as would have moved the turtle.
+    # Send enough commands to move a turtle that is not paused.
     page.locator('[data-topic="/turtle1/pose"] .rate', has_text=re.compile("^\u2013$")).wait_for()
     assert turtle(page) == stands
     assert len(poses.lines) - observed < 20
@@ -155,7 +155,7 @@ SLEEP = """state => {
 
 
 COUNT = "() => { window.told = 0; const parse = JSON.parse; JSON.parse = text => { told++; return parse(text); } }"
-"""Count in `told` the messages that the page gets from now on."""
+"""Count the messages to the page from now on in `told`."""
 
 
 def test_a_tab_that_slept_catches_up_at_once(page: Page, browser: Browser, system: World) -> None:
@@ -174,7 +174,7 @@ def test_a_tab_that_slept_catches_up_at_once(page: Page, browser: Browser, syste
     asleep.evaluate(SLEEP, "visible")
     until(lambda: turtle(asleep) == turtle(page))
     until(lambda: drawn(asleep) == pytest.approx(drawn(page), rel=0.05))
-    # All tabs get the messages from now on. They do not get the missed ones one by one.
+    # All tabs receive new messages from now on, but not the missed ones.
     assert asleep.evaluate("told") - before < page.evaluate("told") - missed + missed / 2
     asleep.close()
 
@@ -205,7 +205,7 @@ def test_a_simulator_that_was_started_again_is_found_by_the_same_tab(browser: Br
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_axe_finds_nothing(page: Page, system: World, scheme: str) -> None:
     page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
-    # A single message may be lost, since the subscription may not know the new publisher yet.
+    # A single message may be lost, since the subscription may not have discovered the new publisher yet.
     driver = system.start(
         "ros2 topic pub -r 10 /turtle1/cmd_vel geometry_msgs/msg/Twist '{linear: {x: 1.0}, angular: {z: -1.0}}'"
     )

@@ -1,4 +1,4 @@
-"""turtlesim_node --view terminal in a terminal of its own: it draws, drives, and restores the terminal."""
+"""turtlesim_node --view terminal in a separate terminal: it draws, drives, and restores the terminal."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def shell(of: World, **env: str) -> pexpect.spawn:
         env={**of.env, **COLOURS, **env},
         cwd=of.home,
         encoding="utf-8",
-        # Ctrl-C may cut a picture inside a character. This happens on the alternate screen, which is closed then.
+        # Ctrl-C may truncate an image inside a character. This happens on the alternate screen, which is then closed.
         codec_errors="replace",
         timeout=HANG_S,
         dimensions=(36, 120),
@@ -44,7 +44,7 @@ def shell(of: World, **env: str) -> pexpect.spawn:
 
 
 def see_it_restored(terminal: pexpect.spawn, of: World) -> None:
-    # The alternate screen is closed, and the cursor is visible again.
+    # Expect that the alternate screen is closed, and that the cursor is visible again.
     terminal.expect(re.escape("\x1b[?1049l"))
     terminal.expect("ready")
     terminal.sendline("stty -a > after; exit")
@@ -58,7 +58,7 @@ def test_the_turtle_is_drawn_and_driven_and_the_terminal_left_as_it_was(system: 
     terminal.sendline(VIEW)
     terminal.expect("live")
     terminal.expect(SEA)
-    # Messages of the simulator do not appear inside the picture.
+    # The simulator's messages do not appear inside the canvas.
     terminal.expect("Spawning turtle")
     terminal.expect(r"x +5\.54 m")
     terminal.expect("/turtle1/pose")
@@ -86,7 +86,7 @@ def test_it_ends_and_leaves_the_terminal_as_it_was(system: World, how: str) -> N
     if how == "q":
         terminal.send("q")
     else:
-        # This kills the view only. Its simulator restores the terminal.
+        # Kill only the view. Its simulator restores the terminal.
         done = system.run("pkill -KILL -f 'grader.view terminal'")
         assert done.code == 0
         terminal.expect("ready")

@@ -42,7 +42,7 @@ def test_frames_make_one_stroke_with_few_points() -> None:
         trail.draw([line])
     (stroke,) = trail.strokes
     assert len(stroke.points) < len(points) / 3
-    # A fifth of a pixel.
+    # The limit is a fifth of a pixel.
     assert max(distance(place(*point), stroke.points) for point in points) < 2.0
 
 
@@ -92,7 +92,7 @@ def test_a_trail_without_end_becomes_a_picture_and_goes_on() -> None:
     after = trail.painted(500).getbbox()
     assert before is not None
     assert after is not None
-    # The earlier lines, and a line that is higher.
+    # The picture contains the earlier lines and a line that is higher.
     assert after[1] < before[1]
     assert (after[0], *after[2:]) == (before[0], *before[2:])
 

@@ -44,7 +44,7 @@ export class Console {
     clear.addEventListener("click", () => { this.lines = []; this.draw(); });
   }
 
-  // While the table is paused, new messages are kept and shown afterwards.
+  // While the table is paused, new messages are kept and added afterwards.
   hold(held) {
     this.held = held ? [...this.lines] : null;
     this.pause.textContent = held ? "Resume" : "Pause";

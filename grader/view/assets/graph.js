@@ -1,4 +1,4 @@
-// The graph, as Graphviz has laid it out.
+// The graph in the layout of Graphviz.
 
 import { element } from "./svg.js";
 
@@ -42,13 +42,13 @@ export class Graph {
     const about = arrows.map(({ from, to }) => `${from} to ${to}`).join(", ");
     const box = [-PAD, -PAD, width + 2 * PAD, height + 2 * PAD];
     const svg = element("svg", { viewBox: box.join(" "), width: box[2] * ZOOM, height: box[3] * ZOOM, role: "img",
-      "aria-label": `Nodes and topics. Messages go from ${about || "nobody"}.` },
+      "aria-label": `Nodes and topics. Messages: ${about || "none"}.` },
       ...arrows.map(arrow), ...nodes.map(drawn));
     this.place.replaceChildren(svg);
     this.flow(this.busy ?? new Set());
   }
 
-  // Which topics carry messages now.
+  // Mark the topics on which messages arrive now.
   flow(busy) {
     this.busy = busy;
     for (const each of this.place.querySelectorAll(".arrow")) {

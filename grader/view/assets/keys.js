@@ -1,12 +1,12 @@
-// Keys that drive, from the keyboard and from the buttons on the page. The page sends the held keys again and again
-// until they are released; the server releases the keys of a page that sends nothing any more.
+// The keys that drive, on the keyboard and as buttons on the page. The page sends the held keys repeatedly until they
+// are released. The server releases the keys of a page that stops sending.
 
 const AGAIN_MS = 100;
 const ARROWS = { ArrowUp: "up", ArrowDown: "down", ArrowLeft: "left", ArrowRight: "right" };
 const LETTERS = new Set("gtredcvbf");
 
 export class Keys {
-  // Keys count if they are pressed inside of `within`.
+  // Only keys that are pressed inside the element `within` count.
   constructor({ held, press, within = document }) {
     this.said = held;
     this.press = press;
@@ -25,7 +25,7 @@ export class Keys {
   key(event, down) {
     const arrow = ARROWS[event.key];
     if (arrow && !down) this.set(arrow, false);
-    // Fields keep their own keys, and so do shortcuts.
+    // Ignore keys in input fields, and shortcuts.
     if (event.ctrlKey || event.altKey || event.metaKey || event.target.closest?.("select, input, textarea")) return;
     if (arrow) {
       event.preventDefault();

@@ -1,4 +1,4 @@
-// The connection to the server: it tries again until it succeeds, and reports when the page is hidden or shown.
+// The connection to the server. It reconnects automatically, and reports when the page is hidden or shown.
 
 const AGAIN_MS = 700;
 
@@ -8,7 +8,7 @@ const inAddress = {
   keep: (token) => history.replaceState(null, "", `#${token}`),
 };
 
-// `path` is the connection's place on the server; `probe` is a file that the server has if it is the right one.
+// `path` is the path of the connection on the server. `probe` is a file that only the right server has.
 export class Link {
   constructor({ news, up, down, path = "/live", token = inAddress, probe = "/turtle.svg" }) {
     this.news = news;
@@ -40,7 +40,7 @@ export class Link {
     });
     socket.addEventListener("message", (event) => {
       const news = JSON.parse(event.data);
-      // The page was opened with a code, which works only once: put the token into the address for the next time.
+      // The page was opened with a code that works only once. Put the token into the address for later connections.
       if (news.kind === "token") this.token.keep(news.token);
       else this.news(news);
     });
@@ -51,13 +51,13 @@ export class Link {
     });
   }
 
-  // Close the connection for good.
+  // Close the connection permanently.
   close() {
     this.closed = true;
     this.socket.close();
   }
 
-  // A hidden page gets no news, and everything at once when it is shown again.
+  // A hidden page gets no news. When it is shown again, it gets the whole state.
   wake() {
     const awake = document.visibilityState === "visible";
     if (awake === this.awake) return;
@@ -70,7 +70,7 @@ export class Link {
   }
 }
 
-// Whether the server is running, so that the address is wrong.
+// Return whether the server is running. In that case, the address is wrong.
 async function refused(probe) {
   try {
     return (await fetch(probe, { cache: "no-store" })).ok;

@@ -1,4 +1,4 @@
-// The page: it passes the server's news to its parts, and the user's keys and buttons to the server.
+// The page passes the server's news to its parts, and the user's input to the server.
 
 import { Link } from "./link.js";
 import { Simulator } from "./simulator.js";
@@ -32,10 +32,10 @@ function hear(news) {
 function lost(refused) {
   if (refused) {
     say("Wrong address", "ends");
-    simulator.tell("This is not the address of the running simulator. Open the address that it printed.");
+    simulator.tell("This is not the address of the running simulator. Open the address that the simulator has printed.");
   } else {
     say("Not running", "ends");
-    simulator.tell("The simulator has ended. When you start it again with --view, this page continues.");
+    simulator.tell("The simulator has stopped. This page continues when you start it again with --view.");
   }
 }
 

@@ -8,7 +8,7 @@ const KEPT_S = 60;
 const TONES = 6;
 const DASHES = ["", "7 4", "2 3"];
 
-// Steps of 1, 2 or 5 times a power of ten, about `count` of them between the two values.
+// Return about `count` ticks between the two values, at multiples of 1, 2 or 5 times a power of ten.
 export function ticks(low, high, count) {
   const rough = (high - low) / count;
   const power = 10 ** Math.floor(Math.log10(rough));
@@ -18,7 +18,7 @@ export function ticks(low, high, count) {
   return Array.from({ length: last - first + 1 }, (_, index) => (first + index) * step);
 }
 
-// The range of the values, never empty, with a little room above and below.
+// Return the range of the values with a margin. The range is never empty.
 export function range(values) {
   let [low, high] = [Infinity, -Infinity];
   for (const value of values) {
@@ -36,7 +36,7 @@ export function shown(value) {
   return Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-3) ? value.toExponential(2) : String(+value.toFixed(3));
 }
 
-// The same sign for a field in the plot and in the table.
+// Return the attributes of a field's line, which are the same in the plot and in the table.
 function sign(number, attributes) {
   const dash = DASHES[Math.floor(number / TONES) % DASHES.length];
   return { ...attributes, class: `series tone${number % TONES}`, ...(dash && { "stroke-dasharray": dash }) };
@@ -109,7 +109,7 @@ export class Plot {
     this.place.replaceChildren(svg);
   }
 
-  // One row per plotted field, and one per field that cannot be plotted, with the reason.
+  // Add one row per field. If a field cannot be plotted, the row contains the reason.
   list() {
     const rows = [...this.series].map(([name, samples]) => {
       const values = samples.map(([, value]) => value).filter((value) => value !== null);

@@ -1,4 +1,4 @@
-// The page of rqt, rqt_console and rqt_plot: it passes the server's news to the parts that are shown.
+// The page of rqt, rqt_console and rqt_plot: it passes the server's news to the visible parts.
 
 import { Console } from "./console.js";
 import { Graph } from "./graph.js";
@@ -14,7 +14,7 @@ const TITLES = { graph: "rqt_graph", console: "rqt_console", plot: "rqt_plot", s
 const graph = new Graph(find("graph"));
 const topics = new Topics(find("topics"));
 const plot = new Plot({ place: find("plot"), table: find("series"), remove: (name) => link.send({ unplot: name }),
-  empty: "No field is plotted. Type one above, such as /turtle1/pose/x, and press Add." });
+  empty: "No field is plotted. Type a field above, such as /turtle1/pose/x, and press Add." });
 const log = new Console({ table: find("log").querySelector("table"), place: find("log"), count: find("count"),
   levels: find("levels"), node: find("node"), text: find("text"), pause: find("still"), clear: find("forget") });
 const services = new Services({ form: find("call"), service: find("service"), type: find("type"), request: find("request"),
@@ -54,8 +54,8 @@ function hear(news) {
 }
 
 function lost(refused) {
-  if (refused) say("Wrong address", "ends", "This is not the address of the running command. Open the address that it printed.");
-  else say("Not running", "ends", "The command has ended. When you start it again, this page continues.");
+  if (refused) say("Wrong address", "ends", "This is not the address of the running command. Open the address that the command has printed.");
+  else say("Not running", "ends", "The command has stopped. This page continues when you start it again.");
 }
 
 const link = new Link({ news: hear, up: () => say("Live", "runs"), down: lost });

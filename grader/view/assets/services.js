@@ -1,4 +1,4 @@
-// The service caller: choose a service, edit its request, and see the response.
+// The service caller: choose a service, edit its request, and read the response.
 
 export class Services {
   constructor({ form, service, type, request, response, status, call }) {

@@ -1,4 +1,4 @@
-// The parts of a page that show a simulator and drive it: canvas, last command, graph, topics, keys and buttons.
+// The parts of a page that show and drive a simulator: canvas, last command, graph, topics, keys and buttons.
 
 import { Graph } from "./graph.js";
 import { Keys } from "./keys.js";
@@ -13,8 +13,8 @@ function number(value) {
 }
 
 export class Simulator {
-  // `send` passes a request on to the server; keys count if they are pressed inside of `within`; `live` is called with
-  // every frame, and says whether the simulator is paused.
+  // `send` sends a request to the server. Only keys that are pressed inside the element `within` count. `live` is called
+  // with each frame and whether the simulator is paused.
   constructor({ send, within = document, live = () => {} }) {
     this.send = send;
     this.live = live;
@@ -33,7 +33,7 @@ export class Simulator {
     for (const name of ["clear", "reset"]) find(name).addEventListener("click", () => this.send({ do: name }));
   }
 
-  // Show what has come from the server.
+  // Show the news from the server.
   show(news) {
     if (news.turtles) this.frame(news);
     if (news.graph) this.graph.show(news.graph);
@@ -64,13 +64,13 @@ export class Simulator {
       const topic = Object.keys(news.commands).find((each) => each.endsWith(`/${name}/cmd_vel`));
       this.twist.show(topic && news.commands[topic], topic ?? `/${name}/cmd_vel`);
     } else {
-      find("where").textContent = "There is no turtle.";
+      find("where").textContent = "No turtle is on the canvas.";
     }
     if (news.paused !== this.paused) {
       this.paused = news.paused;
       find("pause").textContent = this.paused ? "Resume" : "Pause";
     }
-    this.tell(this.paused ? "Paused: no turtle moves or publishes its pose." : "");
+    this.tell(this.paused ? "Paused: the turtles do not move or publish their poses." : "");
     this.live(this.paused);
   }
 

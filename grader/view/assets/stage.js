@@ -1,4 +1,4 @@
-// The canvas: the trail in pixels, and above it the turtles as moving shapes.
+// The canvas: the trail as pixels, and the turtles as shapes above it.
 
 import { element } from "./svg.js";
 
@@ -33,7 +33,7 @@ export class Stage {
     this.wiped = 0;
   }
 
-  // Draw everything again: the picture of the older trail, and the strokes above it.
+  // Redraw everything: the image of the older trail, and the strokes above it.
   trail({ picture, strokes }) {
     const turn = ++this.wiped;
     this.pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
@@ -42,7 +42,7 @@ export class Stage {
     const below = new Image();
     below.addEventListener("load", () => {
       if (turn !== this.wiped) return;
-      // The picture loads after the strokes, but belongs below them.
+      // The image loads after the strokes, but is drawn below them.
       this.pen.globalCompositeOperation = "destination-over";
       this.pen.imageSmoothingEnabled = false;
       this.pen.drawImage(below, 0, 0, this.canvas.width, this.canvas.height);
@@ -51,7 +51,7 @@ export class Stage {
     below.src = `data:image/png;base64,${picture}`;
   }
 
-  // Each stroke: red, green, blue, width, then x, y of its points.
+  // Draw strokes. Each one is an array of red, green, blue, width, and the x, y of its points.
   draw(strokes) {
     const scale = this.canvas.width / UNITS;
     const pen = this.pen;
@@ -81,7 +81,7 @@ export class Stage {
     for (const [name, [x, y, theta]] of Object.entries(all)) {
       let group = this.shown.get(name);
       if (!group) {
-        // turtle1 is green, turtle2 brown, ...; any other name always gets the same colour, too.
+        // turtle1 is green, turtle2 is brown, and so on. Other names also have a fixed colour.
         const number = Number(/^turtle(\d+)$/.exec(name)?.[1] ?? [...name].reduce((sum, char) => sum + char.codePointAt(0), 0)) - 1;
         const label = element("text", { y: 34, "text-anchor": "middle", class: "turtle-name" }, name);
         group = element("g", { class: "turtle", "data-name": name }, shape(Math.max(number, 0)), label);

@@ -1,4 +1,4 @@
-// A helper that creates SVG elements.
+// A function that creates SVG elements.
 
 const SPACE = "http://www.w3.org/2000/svg";
 

@@ -1,6 +1,6 @@
 // The table of topics: their publishers, subscribers and rates.
 
-// Higher rates are not measured.
+// The maximum rate that is measured (Hz).
 const MOST_HZ = 500;
 
 function cell(name, ...parts) {
@@ -9,7 +9,7 @@ function cell(name, ...parts) {
   return made;
 }
 
-// On a narrow page, the label stands before the content, since there is no room for columns.
+// On a narrow page, the label is shown before the content, since the columns do not fit.
 function labelled(label, ...parts) {
   const made = cell("td", ...parts);
   made.dataset.label = label;

@@ -1,4 +1,4 @@
-// The last command as two arrows: a straight one for the linear velocity, a bent one for the angular velocity.
+// The last command as two arrows: a straight arrow for the linear velocity, and a curved one for the angular velocity.
 
 import { element } from "./svg.js";
 
@@ -9,7 +9,7 @@ function head(x, y, degrees, kind) {
   return element("path", { d: "M0 0l-19-11v22z", class: kind, transform: `translate(${x} ${y}) rotate(${degrees})` });
 }
 
-// Seen from above, the turtle looks up: x is up, y is to the left. The length shows the speed: 1 m/s is half of it.
+// In the view from above, the turtle faces up: x points up, and y to the left. The length depends on the speed.
 function linear(x, y) {
   const speed = Math.hypot(x, y);
   if (!(speed > 0)) return element("circle", { r: 4, class: "linear none" });
@@ -64,7 +64,7 @@ export class Twist {
     this.told = null;
   }
 
-  // `command`: its age (s), linear x, y, z (m/s), angular x, y, z (rad/s); undefined if there was no command yet.
+  // `command` is the age (s), linear x, y, z (m/s) and angular x, y, z (rad/s) of the command, or undefined.
   show(command, topic) {
     const text = JSON.stringify([topic, command?.slice(1)]);
     if (text !== this.told) {

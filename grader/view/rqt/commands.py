@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def rqt() -> int:
-    """Run `rqt`: the graph, the log, a plot and a service caller on one page."""
+    """Run `rqt`: show the graph, the log, a plot and a service caller on one page."""
     parser = _parser(
         "rqt",
         "Show the graph, the log messages, a plot and a service caller on one page in the browser.",
@@ -28,23 +28,25 @@ def rqt() -> int:
 
 
 def rqt_console() -> int:
-    """Run `rqt_console`: the log messages of all nodes."""
+    """Run `rqt_console`: show the log messages of all nodes."""
     parser = _parser(
         "rqt_console",
-        "Show the log messages of all nodes on a page in the browser. They can be filtered.",
+        "Show and filter the log messages of all nodes on a page in the browser.",
         "Example: rqt_console",
     )
     return _main("rqt_console", parser, ("console",))
 
 
 def rqt_plot() -> int:
-    """Run `rqt_plot`: numeric fields over time."""
+    """Run `rqt_plot`: plot numeric fields over time."""
     parser = _parser(
         "rqt_plot",
         "Plot numeric fields of messages over time on a page in the browser.",
         "Examples: rqt_plot /turtle1/pose/x; rqt_plot /turtle1/pose/x:y:theta",
     )
-    wanted = parser.add_argument("fields", nargs="*", metavar="FIELD", help="the topic and the field: /turtle1/pose/x")
+    wanted = parser.add_argument(
+        "fields", nargs="*", metavar="FIELD", help="the topic and the field, as in /turtle1/pose/x"
+    )
     wanted.completer = _fields  # type: ignore[attr-defined]
     return _main("rqt_plot", parser, ("plot",))
 
@@ -56,7 +58,7 @@ def _parser(command: str, description: str, epilog: str) -> argparse.ArgumentPar
 
 
 def _main(package: str, parser: argparse.ArgumentParser, parts: Sequence[Part]) -> int:
-    """Run a command; `package` is the ROS package of the real one. Exit codes: decision 9 in docs/design.md."""
+    """Run a command. `package` is the ROS package of the real command. Exit codes: decision 9 in docs/design.md."""
     try:
         if "_ARGCOMPLETE" in os.environ:
             from argcomplete import autocomplete
@@ -75,7 +77,7 @@ def _main(package: str, parser: argparse.ArgumentParser, parts: Sequence[Part]) 
 
 
 def _fields(**_: object) -> list[str]:
-    """Return all fields with numbers in the running graph, for the Tab key."""
+    """Return all numeric fields in the running graph, for completion."""
     from grader.graph.discovery import cli_node, settle
     from grader.graph.endpoints import observe
     from grader.view.rqt.plot_fields import fields_of
@@ -86,7 +88,7 @@ def _fields(**_: object) -> list[str]:
 
 
 def _serve(command: str, parts: Sequence[Part], fields: Sequence[str], port: int | None) -> None:
-    """Serve the page until Ctrl-C. Without a browser on this machine, print how to open the page from another one."""
+    """Serve the page until Ctrl-C. If this machine has no browser, print how to open the page from another machine."""
     import asyncio
 
     from grader.view import browser
@@ -94,7 +96,7 @@ def _serve(command: str, parts: Sequence[Part], fields: Sequence[str], port: int
     from grader.view.launch import see_that_it_can_be_served
 
     see_that_it_can_be_served()
-    # Import rclpy only when it is known that the page can be served, since this takes the longest.
+    # Import rclpy only after checking that the page can be served, since this import is slow.
     from grader.view.rqt.rqt_page import RqtPage
 
     place = listen(command, port)
@@ -102,5 +104,5 @@ def _serve(command: str, parts: Sequence[Part], fields: Sequence[str], port: int
     if not browser.there_is_one():
         print(browser.from_elsewhere(place.address.port), file=sys.stderr, flush=True)
     asyncio.run(RqtPage(parts, fields).serve(place, stays=True))
-    # From here on, Python handles Ctrl-C again.
+    # From now on, Python handles Ctrl-C again.
     signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -1,4 +1,4 @@
-"""The names of plotted fields, as `rqt_plot` knows them: a topic and a field of its messages, as in /turtle1/pose/x."""
+"""The names of plotted fields, as in `rqt_plot`: a topic and a field of its messages, such as /turtle1/pose/x."""
 
 from __future__ import annotations
 
@@ -25,25 +25,25 @@ def expand(typed: str) -> list[str]:
 
 
 def topic_of(name: str, topics: Iterable[str]) -> str | None:
-    """Return the topic that a field belongs to. It is the longest topic name with which the field's name begins."""
+    """Return the topic of a field, which is the longest topic name that is a prefix of the field's name."""
     return max((topic for topic in topics if f"{name}/".startswith(f"{topic}/")), key=len, default=None)
 
 
 def numeric(message: Any, path: str) -> list[str]:  # noqa: ANN401 - a message of rclpy's
-    """Return the paths of the numeric values in this part of a message, such as ["linear.x", "linear.y"].
+    """Return the paths of the numeric values in a part of a message, such as ["linear.x", "linear.y"].
 
     Raises:
-        Ros2Error: there is no such field, or it has no numbers.
+        Ros2Error: the message does not have the field, or the field has no numbers.
     """
     found = _numeric(message_values.field(message, path, complete=False) if path else message, path)
     if not found:
-        message = f"'{path}' is not a number. Of an array, name one element, as in data[0]"
+        message = f"'{path}' is not a number. For an array, name an element, as in data[0]"
         raise Ros2Error(message)
     return found
 
 
 def fields_of(observed: Observed) -> list[str]:
-    """Return the names of all fields with numbers that are published, without those of unknown types."""
+    """Return the names of all published numeric fields. Fields of unknown types are omitted."""
     types = {end.topic: end.type for end in observed.ends if end.kind == "publisher"}
     found = []
     for topic, type_name in types.items():

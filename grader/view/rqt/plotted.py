@@ -1,4 +1,4 @@
-"""The values of numeric fields over time, for the page of rqt_plot. A field is named as in `/turtle1/pose/x`."""
+"""The values of numeric fields over time, for the page of rqt_plot. A field has a name such as `/turtle1/pose/x`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from grader.graph.endpoints import Observed
 
 MOST_FIELDS = 20
-"""How many fields can be plotted at once."""
+"""The maximum number of plotted fields."""
 _QOS = QoSProfile(depth=100, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 
 Sample = tuple[float, float | None]
@@ -30,7 +30,7 @@ Sample = tuple[float, float | None]
 
 @dataclass
 class _Topic:
-    """A subscription to a topic and the fields that are plotted: name -> path in the message."""
+    """A subscription to a topic, with the plotted fields: name -> path in the message."""
 
     subscription: Any
     type: str
@@ -40,7 +40,7 @@ class _Topic:
 class Plotted:
     """Subscribes to the topics of the wanted fields. All methods run in the thread of the node.
 
-    `flush` passes the new samples of each series on, and the problem of each wanted field ("" if there is none).
+    `flush` passes the new samples of each field and the problem of each wanted field ("" for none) to `tell`.
     """
 
     def __init__(self, node: Node, tell: Callable[[dict[str, list[Sample]], dict[str, str]], object]) -> None:
@@ -53,13 +53,13 @@ class Plotted:
         self._told: dict[str, str] = {}
 
     def add(self, typed: str) -> None:
-        """Plot one more field, or all numbers of a message."""
+        """Plot another field, or all numbers of a message."""
         for name in expand(typed):
             if len(self._wanted) < MOST_FIELDS:
                 self._wanted.setdefault(name, "Waiting for this topic.")
 
     def remove(self, name: str) -> None:
-        """Plot a field no longer."""
+        """Stop plotting a field."""
         self._wanted.pop(name, None)
         for topic in list(self._topics):
             paths = self._topics[topic].paths
@@ -77,14 +77,14 @@ class Plotted:
                 self._wanted[name] = self._begin(name, types)
 
     def flush(self) -> None:
-        """Pass on the samples that have arrived since the last call."""
+        """Pass the samples since the last call to `tell`."""
         if any(self._new.values()) or self._wanted != self._told:
             self._tell(self._new, dict(self._wanted))
             self._told = dict(self._wanted)
             self._new = {}
 
     def _begin(self, name: str, types: Mapping[str, str]) -> str:
-        """Subscribe for this field. Return what is in the way, or ""."""
+        """Subscribe to the topic of this field. Return the reason if this is not possible yet, or ""."""
         topic = topic_of(name, types)
         if topic is None:
             return "Waiting for this topic."

@@ -13,20 +13,20 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 MOST_LINES = 2000
-"""How many log messages are kept. Older ones are dropped."""
+"""The maximum number of log messages that are kept."""
 MOST_TEXT = 4000
-"""The maximum length of a log message, in characters."""
+"""The maximum length of a log message in characters."""
 LEVELS = {10: "Debug", 20: "Info", 30: "Warn", 40: "Error", 50: "Fatal"}
 _QOS = QoSProfile(depth=1000, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
-"""Publishers of /rosout keep their messages of the last 10 s for nodes that come later, as this one (rcl's
-rmw_qos_profile_rosout_default)."""
+"""The QoS of /rosout (rmw_qos_profile_rosout_default in rcl). Publishers keep their messages for 10 s for nodes that
+subscribe later."""
 
 Line = dict[str, object]
 """A log message: its number, time stamp (s), level, node, text and source location."""
 
 
 class Rosout:
-    """Collects log messages in the thread of the node. `flush` passes the new ones on."""
+    """Collects log messages in the thread of the node. `flush` passes new ones to `tell`."""
 
     def __init__(self, node: Node, tell: Callable[[list[Line]], object]) -> None:
         self._tell = tell
@@ -35,7 +35,7 @@ class Rosout:
         node.create_subscription(Log, "/rosout", self._arrived, _QOS)
 
     def flush(self) -> None:
-        """Pass on what has arrived since the last call."""
+        """Pass the messages since the last call to `tell`."""
         if self._new:
             new, self._new = self._new[-MOST_LINES:], []
             self._tell(new)

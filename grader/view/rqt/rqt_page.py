@@ -1,4 +1,4 @@
-"""The page of rqt: the graph, the log, a plot and a service caller, or one of them alone."""
+"""The page of rqt: the graph, the log, a plot and a service caller, or only one of them."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 Part = Literal["graph", "console", "plot", "services"]
 PARTS: tuple[Part, ...] = ("graph", "console", "plot", "services")
 FLUSH_S = 0.1
-"""How often new values and log messages are sent to the pages (s)."""
+"""The interval at which new values and log messages are sent to the pages (s)."""
 KEPT_S = 60.0
-"""How much of a plot is kept for pages that open later (s)."""
+"""The duration of a plot that is kept for pages that are opened later (s)."""
 _MOST_SAMPLES = 6000
 _LARGEST_REQUEST = 8000
 
@@ -52,7 +52,7 @@ class RqtPage:
         self._services: list[Service] = []
 
     async def serve(self, place: Place, *, stays: bool) -> bool:
-        """Serve until Ctrl-C; return whether the page could be opened in a browser, or `stays`."""
+        """Serve until Ctrl-C. Return whether the page could be opened in a browser, or `stays`."""
         ended, loop = ended_by_signals(), asyncio.get_running_loop()
 
         def tell(call: Callable[..., object]) -> Callable[..., None]:
@@ -119,7 +119,7 @@ class RqtPage:
 
 
 class _Controls:
-    """Passes what users do on a page on to the thread of the node."""
+    """Passes the users' input to the thread of the node."""
 
     def __init__(self, ears: Ears, plot: Plotted, caller: ServiceCaller) -> None:
         self._ears = ears
@@ -127,7 +127,7 @@ class _Controls:
         self._caller = caller
 
     def receive(self, _: object, said: dict[str, Any]) -> bool:
-        """Handle a message from a page: a field to plot or not to plot, or a service to call."""
+        """Handle a message from a page: a field to add to or remove from the plot, or a service call."""
         if "plot" in said:
             self._ears.later(self._plot.add, str(said["plot"])[:_LARGEST_REQUEST])
         elif "unplot" in said:
@@ -139,7 +139,7 @@ class _Controls:
         return False
 
     def let_go(self, _: object) -> None:
-        """Do nothing, since no keys are held on this page."""
+        """Do nothing, since this page has no held keys."""
 
     def gone(self, _: object) -> None:
-        """Do nothing, since all pages are alike."""
+        """Do nothing, since no state belongs to a single page."""

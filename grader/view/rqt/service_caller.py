@@ -1,4 +1,4 @@
-"""Call services for the page of rqt: which services there are, what a request looks like, and the responses."""
+"""Call services for the page of rqt: list the services, create requests, and return the responses."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 TIMEOUT_S = 5.0
-"""How long a service may take to respond."""
+"""The time that a service has to respond (s)."""
 MOST_WAITING = 20
-"""How many calls may wait for their responses."""
+"""The maximum number of calls that may wait for their responses."""
 _EVERY_NODES = "rcl_interfaces/srv/"
-"""The services of parameters, which every node has. They come last."""
+"""The parameter services, which every node has. They are last in the list."""
 
 Answer = dict[str, object]
-"""The `id` of a call, whether there is a response (`ok`), and its `text`: the response as YAML, or what is wrong."""
+"""The `id` of a call, whether it got a response (`ok`), and its `text`: the response as YAML, or the error message."""
 Service = dict[str, str]
 """A service: its name, its type, and a request with all values zero as YAML ("" if the type is not installed)."""
 
@@ -42,7 +42,7 @@ def blank_request(type_name: str) -> str:
 
 
 def services(node: Node) -> list[Service]:
-    """Return the services that can be called, without those of actions."""
+    """Return the services that can be called. Services of actions are omitted."""
     found = [
         {"name": name, "type": types[0], "request": blank_request(types[0])}
         for name, types in node.get_service_names_and_types()
@@ -63,7 +63,7 @@ class _Call:
 
 
 class ServiceCaller:
-    """Calls services in the thread of the node. `tell` gets the answers.
+    """Calls services in the thread of the node. `tell` receives the answers.
 
     `check` must be called several times per second.
     """
@@ -85,21 +85,21 @@ class ServiceCaller:
         except Ros2Error as error:
             self._refuse(id_, str(error))
             return
-        except Exception as error:  # rclpy raises several kinds for a name that is not valid
+        except Exception as error:  # rclpy raises various exceptions for an invalid name
             self._refuse(id_, str(error).splitlines()[0])
             return
         self._waiting.append(_Call(id_, client, request, time.monotonic() + TIMEOUT_S))
         self.check()
 
     def check(self) -> None:
-        """Send the calls whose service is ready, and pass on the responses that have come."""
+        """Send the calls whose service is ready, and pass the responses to `tell`."""
         for each in list(self._waiting):
             if each.future is None and each.client.service_is_ready():
                 each.future = each.client.call_async(each.request)
             if each.future is not None and each.future.done():
                 self._end(each, to_yaml(each.future.result()).strip(), ok=True)
             elif time.monotonic() > each.until_s:
-                why = "The service did not respond" if each.future is not None else "There is no such service"
+                why = "The service did not respond" if each.future is not None else "The service did not appear"
                 self._end(each, f"{why} within {TIMEOUT_S:g} s.", ok=False)
 
     def _end(self, call: _Call, text: str, *, ok: bool) -> None:
