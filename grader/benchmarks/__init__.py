@@ -1,1 +1,1 @@
-"""Benchmarks that measure speeds as ratios, within one run: `python -m grader.benchmarks.NAME`."""
+"""Benchmarks that measure ratios within one run: `python -m grader.benchmarks.NAME`."""

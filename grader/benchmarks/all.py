@@ -1,10 +1,10 @@
-"""Measure the most important costs in one run, and print them in a table beside their aims.
+"""Measure the most important costs in one run, and print a table with their aims.
 
     python -m grader.benchmarks.all [--times N] [--class N] [--sync N]
 
 F is the wall time of a bare `colcon build` of the package plus a bare process with one rclpy node, as in
-grader.benchmarks.check. It is measured before each of the other measurements, so that a slow moment affects both. The
-first line says how busy the machine was: figures of a busy machine are only good for comparing them with each other.
+grader.benchmarks.check. It is measured before each of the other measurements, so that other load affects both. The
+first line shows the load of the machine. Figures of a busy machine can only be compared with each other.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _NODE = "my_robot_controller/draw_circle.py"
 
 @dataclass(frozen=True)
 class Row:
-    """A line of the table. `value` and `aim` are in the same unit, and the aim is an upper limit."""
+    """A row of the table. `value` and `aim` have the same unit, and the aim is an upper limit."""
 
     name: str
     value: float
@@ -50,14 +50,14 @@ class Row:
 
 @dataclass(frozen=True)
 class InF:
-    """The wall time and the CPU time of something, each divided by that of F."""
+    """The wall time and the CPU time of a measurement, each divided by that of F."""
 
     wall: float
     cpu: float
 
 
 class Bench:
-    """The measurements of one run. `folder` is for their files, and `times` is how often each is repeated."""
+    """The measurements of one run. `folder` is for their files, and `times` is the number of repetitions."""
 
     def __init__(self, folder: Path, times: int) -> None:
         self._folder = folder
@@ -78,7 +78,7 @@ class Bench:
         return self.bare[-1]
 
     def in_f(self, measure: Callable[[], Cost]) -> InF:
-        """Measure F and this in turns. Return the medians of the ratios."""
+        """Measure F and `measure` alternately. Return the medians of the ratios."""
         pairs = [(self.f(), measure()) for _ in range(self._times)]
         return InF(
             statistics.median(one.wall_s / f.wall_s for f, one in pairs),
@@ -89,7 +89,7 @@ class Bench:
 def main() -> None:
     """Measure everything and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--times", type=int, default=5, help="number of measurements; their median is printed")
+    parser.add_argument("--times", type=int, default=5, help="number of measurements, whose median is printed")
     parser.add_argument("--class", dest="students", type=int, default=16, help="submissions in the class (default: 16)")
     parser.add_argument("--sync", type=int, default=6, help="notebooks that gradebook sync grades (default: 6)")
     arguments = parser.parse_args()

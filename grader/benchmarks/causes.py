@@ -1,19 +1,19 @@
-"""Measure how often a report names the true cause of a generated mistake, and how often it says something false.
+"""Measure how often reports name the true cause of a generated mistake, and how often they contain a false statement.
 
     python -m grader.benchmarks.causes [--count 200] [--seed 1] [--only OPERATOR ...] [--keep FOLDER]
 
 The benchmark puts mistakes into correct packages with the operators of grader/tests/operators (two operators in a third
 of the packages), and judges the packages in simulated time. The correct packages are the solutions and the cases of
-tests/unusual that follow ROS time. A package that still passes is not wrong, so it is ignored. For the others, the
+tests/unusual that follow ROS time. A package that still passes is ignored. For the others, the
 benchmark prints how often each of these is true:
 
 - first: the first failed check names the cause, at a line that must change;
 - at all: any failed check names the cause in this way;
 - false: a failed check names a wrong cause. A diagnosis that only repeats what was observed does not count.
 
-Each is counted twice: by the diagnoses that the operators expect, and by facts that know no diagnosis (the difference
-between the two packages, the source and the recording; grader/tests/operators/facts.py). It also lists what the reports
-missed, with the difference. `--keep` stores the recordings, and `--again` judges stored recordings again
+Each is counted twice: by the diagnoses that the operators expect, and by facts without diagnoses (the difference
+between the two packages, the source and the recording; grader/tests/operators/facts.py). The benchmark also lists what
+the reports missed, with the difference. `--keep` stores recordings, and `--again` judges stored recordings again
 without running anything.
 """
 
@@ -58,12 +58,12 @@ OBSERVATIONS = frozenset(
         "build-failed", "wrong-position", "wrong-distance",
     }
 )  # fmt: skip
-"""Diagnoses that only repeat what was observed, without claiming a cause."""
+"""The diagnoses that repeat only what was observed, without naming a cause."""
 
 
 @dataclass(frozen=True)
 class Judged:
-    """A wrong package with the outcomes of its checks, and how long judging it took (s)."""
+    """A wrong package with the outcomes of its checks, and the duration of judging it (s)."""
 
     made: Made
     evidence: Evidence
@@ -87,21 +87,21 @@ class Judged:
 
     @property
     def false(self) -> bool:
-        """Whether a failed check says something false."""
+        """Whether a failed check contains a false statement."""
         return any(is_false(outcome, self.made) for outcome in self.failed)
 
     @cached_property
     def facts(self) -> Facts:
-        """What is true about the package, without the tables of diagnoses."""
+        """The facts about the package, without the tables of diagnoses."""
         return Facts(self.made.right, self.made.files, self.evidence)
 
     @property
     def contradicted(self) -> list[str]:
-        """The sentences that contradict a fact."""
+        """The statements that contradict a fact."""
         return [sentence for outcome in self.failed for sentence in self.facts.false(outcome)]
 
     def marks(self) -> dict[str, bool]:
-        """Return each measure with its result; a bad result is False for what names, True for what is false."""
+        """Return the result of each measure. A bad result is False for named causes, and True for false statements."""
         by_fact = [self.facts.names(outcome) for outcome in self.failed]
         return {
             "cause named first": self.first,
@@ -125,7 +125,7 @@ def names(outcome: Outcome, made: Made) -> bool:
 
 
 def is_false(outcome: Outcome, made: Made) -> bool:
-    """Return whether an outcome claims a cause that is not one of the mistakes, or a false detail about a mistake."""
+    """Return whether an outcome names a cause that is not one of the mistakes, or a false detail about a mistake."""
     finding = outcome.finding
     text = f"{finding.observed} {finding.cause}"
     if any(operator.never and re.search(operator.never, text) for operator, _ in made.mistakes):
@@ -175,7 +175,7 @@ def tell(all_: Iterable[Judged], *, everything: bool = False) -> None:
         broken = [outcome.finding.observed for outcome in each.outcomes if outcome.status is Status.ERROR]
         if broken:
             print(f"\n{each.made.name} {each.made.operators}: error: {broken[0]}")
-    print(f"\nnot made wrong: {len(passed)} ({', '.join(sorted(set(passed)))})")
+    print(f"\nstill passing: {len(passed)} ({', '.join(sorted(set(passed)))})")
     marks = [each.marks() for each in wrong]
     for label in marks[0] if marks else ():
         hits = sum(mark[label] for mark in marks)
@@ -183,7 +183,7 @@ def tell(all_: Iterable[Judged], *, everything: bool = False) -> None:
 
 
 def _explain(judged: Judged) -> None:
-    """Print what was changed and what the report says about it."""
+    """Print what was changed and what the report contains."""
     encoded = [
         {path: text.encode() for path, text in files.items()} for files in (judged.made.right, judged.made.files)
     ]
@@ -205,8 +205,10 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1, help="seed for the choice of packages and mistakes")
     parser.add_argument("--only", nargs="*", default=[], help="names of operators (default: all)")
     parser.add_argument("--keep", type=Path, help="keep the recordings in this folder")
-    parser.add_argument("--all", action="store_true", help="list all packages, also those without a missed cause")
-    parser.add_argument("--again", type=Path, help="judge the recordings in this folder again, and run nothing")
+    parser.add_argument("--all", action="store_true", help="list all packages, including those without a missed cause")
+    parser.add_argument(
+        "--again", type=Path, help="judge the recordings in this folder again, without running packages"
+    )
     parser.add_argument("--workers", type=int, default=2, help="number of packages judged in parallel")
     wanted = parser.parse_args()
     operators = [operator for operator in OPERATORS if not wanted.only or operator.name in wanted.only]

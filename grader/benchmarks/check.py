@@ -2,7 +2,7 @@
 
     python -m grader.benchmarks.check [--times N] [--submission FOLDER]
 
-Everything is measured in one run on the same machine. The measurements alternate, so that a busy moment affects all of
+Everything is measured in one run on the same machine. The measurements alternate, so that other load affects all of
 them.
 """
 
@@ -25,7 +25,7 @@ _GRADER = str(Path(sys.executable).with_name("grader"))
 def main() -> None:
     """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--times", type=int, default=5, help="number of measurements; their median is printed")
+    parser.add_argument("--times", type=int, default=5, help="number of measurements, whose median is printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions/03-circle-publisher")
     arguments = parser.parse_args()
     costs: dict[str, list[Cost]] = {}

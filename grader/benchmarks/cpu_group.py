@@ -1,9 +1,10 @@
-"""Count the CPU time of a command and of everything that it starts, in a control group.
+"""Count the CPU time of a command and of all its descendants in a control group.
 
-The kernel adds the CPU time of a process to that of its parent when the parent waits for it. Nobody waits for the
-processes that are still running when a cell ends, so without a group, most of a build or trial can be missing.
+The kernel adds the CPU time of a process to that of its parent when the parent waits for it. No process waits for the
+processes that are still running when a cell ends, so without a group, most of the time of a build or trial can be
+missing.
 
-This needs control groups of version 1. In version 2, a process is in one group only, and a cell has its own.
+This needs control groups of version 1. In version 2, a process is in only one group, and each cell has a group.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ _numbers = itertools.count()
 
 @dataclass(frozen=True)
 class CpuGroup:
-    """A control group that counts CPU time. `folder` is None where we may not make one."""
+    """A control group that counts CPU time. `folder` is None if groups cannot be created."""
 
     folder: Path | None
 
@@ -36,7 +37,7 @@ class CpuGroup:
         return ControlGroup((self.folder,)).joined(argv) if self.folder else list(argv)
 
     def wait(self) -> None:
-        """Wait until no process of the group is running, but not for long."""
+        """Wait a short time until no process of the group is running."""
         until = time.monotonic() + _ENDED_S
         while self.folder and (self.folder / "cgroup.procs").read_text().strip() and time.monotonic() < until:
             time.sleep(0.01)
@@ -50,7 +51,7 @@ class CpuGroup:
 
 @contextmanager
 def cpu_group() -> Iterator[CpuGroup]:
-    """Yield a new group, which is removed afterwards if everything in it has ended."""
+    """Yield a new group, which is removed afterwards if all its processes have ended."""
     folder = TREE / "cpuacct" / f"grader-benchmark-{os.getpid()}-{next(_numbers)}"
     try:
         folder.mkdir()

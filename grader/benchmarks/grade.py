@@ -3,11 +3,11 @@
     python -m grader.benchmarks.grade [--sizes 25,50,100,200] [--workers 1,2,4] [--dask-size 50] [--jobs N]
                                       [--mix right|all] [--times N]
 
-F (see grader.benchmarks.check) is measured before and after, in the same run. The class is mixed: out of every eight
-submissions, four are correct, three are wrong in different ways, and one is hostile. With `--mix right`, all are
-correct. Each submission contains a different comment, so that the grader grades every one of them. The memory is that
-of all processes of the run, including those in cells. It is sampled several times per second, and shared memory is
-counted once.
+F (see grader.benchmarks.check) is measured before and after the class, in the same run. The class is mixed: out of
+every eight submissions, four are correct, three are wrong in different ways, and one is hostile. With `--mix right`,
+all are correct. Each submission contains a different comment, so that the grader grades every one of them. The memory
+is that of all processes of the run, including those in cells. It is sampled several times per second, and shared memory
+is counted once.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ _STEP = "03-circle-publisher"
 _GRADER = str(Path(sys.executable).with_name("grader"))
 _LOOK_S = 0.25
 AIM_F = 1.0
-"""The aim for the wall time per submission on two processors, in F."""
+"""The aim for the wall time per submission on two processors (F)."""
 
 
 @dataclass(frozen=True)
 class ClassCost:
-    """The seconds per submission, and the peak memory of the run (MB)."""
+    """The wall and CPU time per submission (s), and the peak memory of the run (MB)."""
 
     size: int
     wall_s: float
@@ -65,7 +65,7 @@ def main() -> None:
         "--mix",
         choices=("all", "right"),
         default="all",
-        help="right: only correct submissions; all: wrong and hostile ones, too",
+        help="right: only correct submissions; all: also wrong and hostile ones",
     )
     parser.add_argument("--times", type=int, default=3, help="number of measurements of F (default: 3)")
     arguments = parser.parse_args()
@@ -97,7 +97,7 @@ def _bare(folder: Path, times: int) -> list[float]:
 
 
 def class_cost(folder: Path, size: int, jobs: int | None, mix: str) -> ClassCost:
-    """Grade a class on this machine, below a folder. `mix` is "right" or "all", as in the option."""
+    """Grade a class on this machine, in a folder. `mix` is "right" or "all", as in the option."""
     submitted = _class(folder / f"class-{size}", size, mix)
     options = ["--jobs", str(jobs)] if jobs else []
     return _graded(submitted, size, folder / f"grades-{size}", options)
@@ -152,12 +152,12 @@ def _graded(submitted: Path, size: int, out: Path, options: list[str], also: lis
 
 
 def _alone(command: list[str]) -> Cost:
-    """Return the cost of a command that leaves its work to other processes. Only exited processes are counted."""
+    """Return the cost of a command that delegates its work to other processes. Only exited processes are counted."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     begun = time.monotonic()
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     wall_s = time.monotonic() - begun
-    # Reap the processes that a sandbox leaves, so that they are counted. measure.cost made this process the subreaper.
+    # Reap the orphans of a sandbox, so that they are counted. measure.cost has made this process the subreaper.
     while os.waitpid(-1, os.WNOHANG)[0]:
         pass
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -186,7 +186,7 @@ def _cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[int]]]:
         _wait_for_workers(address, workers)
         yield address.removeprefix("tcp://"), [process.pid for process in started]
     finally:
-        # Stop them one by one, because a worker that is stopped together with the scheduler may never exit.
+        # Stop the processes one by one, because a worker that is stopped together with the scheduler may never exit.
         for process in reversed(started):
             process.terminate()
             process.wait()
@@ -245,7 +245,7 @@ def _own_mb(pid: int) -> float:
 
 
 def _cpu_s(pid: int) -> float:
-    """Return the CPU seconds of a process and all of its descendants, whether they are running or have exited."""
+    """Return the CPU time of a process and of all its descendants, running or exited (s)."""
     total = 0.0
     for each in _family([pid]):
         try:

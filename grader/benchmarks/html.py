@@ -3,7 +3,7 @@
     python -m grader.benchmarks.html [--times N] [--submission FOLDER]
 
 F (see grader.benchmarks.check) and the cost of the page are measured alternately in one run. The cost of the page is
-what `grader check --html` needs in addition to `grader check`, including imports.
+the time that `grader check --html` needs in addition to `grader check`, including imports.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 _GRADER = str(Path(sys.executable).with_name("grader"))
 _CLASS = 200
 
-# This script does what `grader check` does, then creates the page, and prints how long that took (s) and its size.
+# This script works like `grader check`, then creates the page, and prints the time for this (s) and the size.
 _PAGE = """
 import sys, time
 from pathlib import Path
@@ -53,7 +53,7 @@ print(time.perf_counter() - begun, Path(sys.argv[2]).stat().st_size)
 def main() -> None:
     """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--times", type=int, default=5, help="number of measurements; their median is printed")
+    parser.add_argument("--times", type=int, default=5, help="number of measurements, whose median is printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions/03-circle-publisher")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
@@ -77,7 +77,7 @@ def _making(submission: Path, folder: Path, times: int) -> None:
 
 
 def page_cost(recording: Path, page: Path) -> tuple[float, float]:
-    """Write the page of a recording. Return how long that took (s), and the size of the page (KB)."""
+    """Write the page of a recording. Return the time for this (s), and the size of the page (KB)."""
     start = interpreter("-c", _PAGE, str(recording), str(page))
     done = subprocess.run(start.argv, check=True, capture_output=True, text=True)
     seconds, size = done.stdout.split()
@@ -100,7 +100,7 @@ def _showing(folder: Path, times: int) -> None:
     print(f"making a class page {cost(making).wall_s:6.2f} s for {_CLASS}, with the start of Python")
     browser = find_browser()
     if browser is None:
-        print("no Chromium: the browser's time to show the pages was not measured")
+        print("Chromium is missing, so the time to show the pages in a browser was not measured")
         return
     save_class_page(reports, folder / "class.html")
     with launched(browser) as chromium:
@@ -113,7 +113,7 @@ def _showing(folder: Path, times: int) -> None:
 
 
 def _opening(tab: Page, address: str) -> tuple[float, float]:
-    """Open a page. Return the seconds that its scripts took, and the seconds until it was loaded."""
+    """Open a page. Return the time in its scripts, and the time until it was loaded (s)."""
     session = tab.context.new_cdp_session(tab)
     session.send("Performance.enable")
     tab.goto(address)

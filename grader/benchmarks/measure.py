@@ -23,7 +23,7 @@ _PR_SET_CHILD_SUBREAPER = 36
 
 @dataclass(frozen=True)
 class Cost:
-    """Wall and CPU seconds of a command with all its descendants, and the peak memory of the command itself (MB)."""
+    """The wall and CPU time of a command with all its descendants (s), and the peak memory of the command (MB)."""
 
     wall_s: float
     cpu_s: float
@@ -33,12 +33,12 @@ class Cost:
 def cost(argv: Sequence[str], *, env: Mapping[str, str] | None = None, cwd: Path | None = None) -> Cost:
     """Run a command until it exits, and return its cost.
 
-    Where we may not make a control group, the CPU time lacks that of processes in cells for which nobody waited.
+    Without a control group, the CPU time does not include processes in cells for which no process waited.
 
     Raises:
         RuntimeError: the command failed.
     """
-    # Adopt orphaned processes, so that the processes that a sandbox leaves are counted too.
+    # Adopt orphaned processes, so that the orphans of a sandbox are also counted.
     ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     with cpu_group() as group:
@@ -67,7 +67,7 @@ def cost(argv: Sequence[str], *, env: Mapping[str, str] | None = None, cwd: Path
 
 
 def median(run: Callable[[], Cost], times: int) -> Cost:
-    """Run a command `times` times. Return the median of each figure."""
+    """Run a command `times` times. Return the median of each value."""
     costs = [run() for _ in range(times)]
     return Cost(*(statistics.median(getattr(c, name) for c in costs) for name in ("wall_s", "cpu_s", "peak_mb")))
 
@@ -83,6 +83,6 @@ def _peak_mb(pid: int) -> float:
 
 
 def cpu_s(pid: int) -> float:
-    """Return the CPU seconds that a running process has used so far, without those of its children."""
+    """Return the CPU time that a running process has used so far, without its children (s)."""
     fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")

@@ -1,12 +1,12 @@
-"""Measure in F how soon the files alone show a mistake, and how long the slowest mistake in simulated time takes.
+"""Measure the time until the files alone show a mistake, and the time of the slowest mistake in simulated time (F).
 
     python -m grader.benchmarks.mistakes [--only NNN ...]
 
 F is the cost of the same work without the grader: a colcon build of the package, and a process with one rclpy node for
 each node that the exercise runs (benchmarks/bare.py). Each part is the median of three measurements. For example,
-04-package-files runs two nodes, and 07-challenges runs four. The speed of a machine changes during the minutes that
-this benchmark takes, so F is measured again every few cases. A case that seems to exceed the aim is measured three more
-times, each time right after F, and the median is used.
+04-package-files runs two nodes, and 07-challenges runs four. The speed of a machine varies during the minutes that this
+benchmark takes, so F is measured again after every few cases. A case that seems to exceed the aim is measured three
+more times, each time immediately after F, and the median is used.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def main() -> None:
 
 
 def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
-    """Return the cost in F of checking each case, except for the cases that needed wall time."""
+    """Return the cost in F of checking each case, except for cases that needed wall time."""
     bare = _bare_s(folder / "bare")
     found: dict[str, float] = {}
     for case in cases:
@@ -84,14 +84,14 @@ def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
 
 
 def _beside_f(case: Case, folder: Path) -> float:
-    """Return the ratio of a check to an F measured right before it, or infinity if the check needed wall time."""
+    """Return the ratio of a check to an F measured immediately before, or infinity if the check needed wall time."""
     bare = _bare_s(folder / "bare")
     seconds = _whole_s(case, folder / "whole")
     return math.inf if seconds is None else seconds / _f_s(case, bare)
 
 
 def _bare_s(folder: Path) -> dict[str, float]:
-    """Return the median seconds of each part of F, because a single measurement would vary too much."""
+    """Return the median duration of each part of F (s), because single measurements vary too much."""
     costs = [bare_costs(SOLUTION, folder / str(turn)) for turn in range(3)]
     return {part: statistics.median(each[part].wall_s for each in costs) for part in costs[0]}
 
@@ -105,7 +105,7 @@ def _exercise(case: Case) -> Exercise:
 
 
 def _static_s(case: Case, folder: Path) -> float:
-    """Return the seconds from opening the folder to the findings about its files."""
+    """Return the time from opening the folder to the findings about its files (s)."""
     given = make_submission(case, folder)
     exercise = _exercise(case)
     begun = time.monotonic()
@@ -115,7 +115,7 @@ def _static_s(case: Case, folder: Path) -> float:
 
 
 def _whole_s(case: Case, folder: Path) -> float | None:
-    """Return the seconds of a whole check, or None if it needed wall time."""
+    """Return the duration of a whole check (s), or None if it needed wall time."""
     begun = time.monotonic()
     graded = grade(case, "auto", folder)
     seconds = time.monotonic() - begun

@@ -1,4 +1,4 @@
-"""Measure the cost of autograding a notebook compared with its parts, and of a class compared with nbgrader alone.
+"""Measure the cost of autograding a notebook relative to its parts, and of a class relative to nbgrader alone.
 
     python -m grader.benchmarks.notebooks [--repeat N] [--class N]
 
@@ -8,8 +8,8 @@ In one run on the same machine, this benchmark measures:
 - the same for a notebook with empty cells, which is nbgrader's own cost (imports, a kernel, the database);
 - one `grader check` of the package.
 
-The first should cost at most 1.5 times as much as the other two together. Then a class is measured: nbgrader autogrades
-the submissions one by one, and `grader gradebook sync` grades several at once.
+The first should take at most 1.5 times as long as the other two together. Then a class is measured: nbgrader autogrades
+the submissions one by one, and `grader gradebook sync` grades several in parallel.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ AT_MOST = 1.5
 
 
 def seconds(argv: list[str], cwd: Path) -> float:
-    """Return the seconds that a command takes. Its output is shown only if it fails."""
+    """Return the duration of a command (s). Its output is shown only if it fails."""
     env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "PYTHONWARNINGS": "ignore"}
     begun = time.monotonic()
     done = subprocess.run(argv, cwd=cwd, env=env, capture_output=True, text=True, check=False)
@@ -47,7 +47,7 @@ def seconds(argv: list[str], cwd: Path) -> float:
 
 
 def nbgrader(root: Path, *words: str) -> float:
-    """Return the seconds that an nbgrader command takes."""
+    """Return the duration of an nbgrader command (s)."""
     return seconds(interpreter("-m", "nbgrader", *words).argv, root / "course")
 
 
@@ -59,7 +59,7 @@ c.CourseDirectory.release_directory = "exercises"
 c.CourseDirectory.submitted_directory = "class/submitted"
 c.GenerateAssignment.force = True
 """
-"""An nbgrader_config.py without the grader's additions."""
+"""The content of an nbgrader_config.py without the grader's additions."""
 
 
 def make_empty(root: Path) -> None:
@@ -83,7 +83,7 @@ def _empty(cell: dict[str, Any]) -> None:
 
 
 def hand_in(root: Path, students: int) -> None:
-    """Hand in the solution for this many students. The copies differ slightly, so that each one is graded."""
+    """Hand in the solution for this number of students. The copies differ slightly, so that each one is graded."""
     node = f"{STEP}/my_robot_controller/my_robot_controller/draw_circle.py"
     solution = (course_folder().parent / "solutions" / node).read_text()
     for number in range(students):
@@ -93,7 +93,7 @@ def hand_in(root: Path, students: int) -> None:
 
 
 def sync_s(root: Path, students: int) -> float:
-    """Make a class in an empty folder, and autograde its notebooks. Return the seconds of gradebook sync after that."""
+    """Create a class in an empty folder, and autograde its notebooks. Return the duration of the gradebook sync (s)."""
     make_class(root, None)
     nbgrader(root, "generate_assignment", STEP)
     hand_in(root, students)

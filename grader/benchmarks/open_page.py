@@ -1,8 +1,8 @@
-"""Measure `grader open`: from a save to the verdict in the page, against `grader watch`; the page's size; its idle CPU.
+"""Measure `grader open`: the time from save to verdict relative to `grader watch`, the page's size and its idle CPU.
 
     python -m grader.benchmarks.open_page [--times 5] [--idle 30]
 
-Both grade the same saves in the same home, alternately. The page runs in a real browser, which is not counted as CPU.
+Both grade the same saves in the same home alternately. The page runs in a real browser, whose CPU time is not counted.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 AIM_MORE_S = 0.1
-"""How much longer than `grader watch` the page may take (s)."""
+"""The aim for the additional time of the page over `grader watch` (s)."""
 AIM_SIZE = 600_000
 AIM_READY_S = 1.0
 AIM_IDLE = 0.01
 """The aim for the share of one core while nothing happens."""
 _REST_S = 2.0
-"""The shortest time (s) that a learner thinks between two saves. Meanwhile, the next trial is prepared."""
+"""The shortest time that a learner needs between two saves (s), during which the next trial is prepared."""
 _PATIENCE_S = 300
 _SAVES = (("2.0", "3.0", "50 of 100 points"), ("2.0", "2.0", "100 of 100 points"))
 
@@ -50,8 +50,8 @@ _OBSERVE = """(line) => {
 def main() -> None:
     """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--times", type=int, default=5, help="number of saves; the median time is printed")
-    parser.add_argument("--idle", type=float, default=30.0, help="seconds during which nothing happens")
+    parser.add_argument("--times", type=int, default=5, help="number of saves, whose median time is printed")
+    parser.add_argument("--idle", type=float, default=30.0, help="duration of the idle measurement in seconds")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder, launched(browser_or_reason()) as browser:
         for learner in course(Path(folder)):
@@ -74,7 +74,7 @@ def main() -> None:
 
 
 def _in_page_s(learner: Course, page: Page, number: int) -> float:
-    """Return the seconds from a save until the page shows the verdict."""
+    """Return the time from a save until the page shows the verdict (s)."""
     old, new, line = _SAVES[number % len(_SAVES)]
     time.sleep(_REST_S)
     page.evaluate(_OBSERVE, line)
@@ -85,7 +85,7 @@ def _in_page_s(learner: Course, page: Page, number: int) -> float:
 
 
 def _in_watch_s(learner: Course, times: int) -> list[float]:
-    """Return the seconds from each save until `grader watch` has printed the verdict."""
+    """Return the time from each save until `grader watch` has printed the verdict (s)."""
     screen = pexpect.spawn(
         str(GRADER), ["watch"], env=learner.env, encoding="utf-8", timeout=_PATIENCE_S, dimensions=(60, 110)
     )
@@ -108,7 +108,7 @@ def _in_watch_s(learner: Course, times: int) -> list[float]:
 
 
 def _loaded(page: Page) -> tuple[int, float]:
-    """Load the page again without a cache; return the size of all that it loads (bytes), and when it is ready (s)."""
+    """Load the page without a cache. Return the total size of its files (bytes), and the time until it is ready (s)."""
     sizes: list[int] = []
     page.on("response", lambda response: sizes.append(len(response.body())) if response.ok else None)
     begun = time.monotonic()
@@ -120,7 +120,7 @@ def _loaded(page: Page) -> tuple[int, float]:
 
 
 def _idle(seconds: float) -> float:
-    """Return the share of one core that the processes below this one use, without the browser."""
+    """Return the share of one core that the descendants of this process use, without the browser."""
     time.sleep(_REST_S)
     before = _used_s()
     time.sleep(seconds)
@@ -129,7 +129,7 @@ def _idle(seconds: float) -> float:
 
 
 def _used_s() -> dict[int, float]:
-    """Return the CPU time (s) of the processes below this one, without the browser."""
+    """Return the CPU time (s) of the descendants of this process, without the browser."""
     used = {}
     for pid in _descendants(os.getpid()):
         with suppress(OSError):  # the process has exited

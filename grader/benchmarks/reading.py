@@ -1,9 +1,9 @@
-"""Measure the cost of reading a submission in child processes, compared with reading it in the same process.
+"""Measure the cost of reading a submission in child processes relative to reading it in the same process.
 
     python -m grader.benchmarks.reading [--times N] [--submission FOLDER]
 
-The submission is graded once. Then everything that was read from it is read repeatedly, alternating between both ways.
-The limit applies to CPU time, because CPU time depends less on what else the machine is doing.
+The submission is graded once. Then its files are read repeatedly, alternately in children and in the same process.
+The limit applies to CPU time, because CPU time depends less on the load of the machine.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ if TYPE_CHECKING:
 
 _GRADER = str(Path(sys.executable).with_name("grader"))
 _MOST_S = 0.04
-"""The limit on the cost (s of CPU time)."""
+"""The limit for the cost (s of CPU time)."""
 
 
 def main() -> None:
     """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--times", type=int, default=20, help="number of measurements; their median is printed")
+    parser.add_argument("--times", type=int, default=20, help="number of measurements, whose median is printed")
     parser.add_argument("--submission", type=Path, default=course_folder().parent / "solutions/03-circle-publisher")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
@@ -53,7 +53,7 @@ def main() -> None:
         inside = reader._Child.inside = bool(turn % 2)
         before = _now()
         _read(args.submission, evidence)
-        if turn > 1:  # the first turn of each kind includes late imports
+        if turn > 1:  # the first measurement includes late imports
             after = _now()
             costs[inside].append((after[0] - before[0], after[1] - before[1]))
     wall_s, cpu_s = (
@@ -64,7 +64,7 @@ def main() -> None:
     print(f"F = {f_s:.2f} s wall")
     print(f"reading in children: {1000 * wall_s:+.0f} ms, {wall_s / f_s:+.3f} F, {1000 * cpu_s:+.0f} ms of CPU")
     if cpu_s > _MOST_S:
-        message = f"Reading in children costs more than the {1000 * _MOST_S:.0f} ms of CPU that it may."
+        message = f"Reading in children costs more than {1000 * _MOST_S:.0f} ms of CPU time, the limit."
         raise MachineError(message)
 
 

@@ -1,8 +1,8 @@
-"""Measure `ros2 topic list` with a running turtlesim, and `ros2 interface show`, compared with an rclpy node.
+"""Measure `ros2 topic list` with a running turtlesim, and `ros2 interface show`, relative to an rclpy node.
 
     python -m grader.benchmarks.ros2 [--times N]
 
-Everything is measured in one run. The measurements alternate, so that a busy moment affects all of them. The benchmark
+Everything is measured in one run. The measurements alternate, so that other load affects all of them. The benchmark
 also prints how often the list was complete.
 """
 
@@ -36,7 +36,7 @@ def main() -> None:
     ros = underlay.with_turtlesim(installation.find_ros())
     with tempfile.TemporaryDirectory() as home:
         user = {"HOME": home, "PATH": os.environ.get("PATH", "/usr/bin:/bin")}
-        # The grader assigns this domain to no user.
+        # The grader does not assign this domain to a user.
         env = installation.users_environment(ros, user, domain=0)
         commands = {
             "topic list": [_ROS2, "topic", "list"],

@@ -2,7 +2,7 @@
 
     python -m grader.benchmarks.sandbox [--times N] [--submission FOLDER]
 
-Everything is measured in one run on the same machine. The measurements alternate, so that a busy moment affects all of
+Everything is measured in one run on the same machine. The measurements alternate, so that other load affects all of
 them.
 """
 
@@ -22,8 +22,8 @@ from grader.sandbox import bubblewrap
 _ROOT = Path(__file__).resolve().parents[2]
 _EXERCISE = "03-circle-publisher"
 _MOST = 0.5
-"""The limit on the cost of the sandbox (F)."""
-# Each grading runs in its own process, like a check.
+"""The limit for the cost of the sandbox (F)."""
+# Each grading runs in a separate process, like a check.
 _GRADE = """
 import sys
 from grader.checks.exercises import find_exercise
@@ -39,7 +39,7 @@ sys.exit(report.exit_code)
 def main() -> None:
     """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--times", type=int, default=5, help="number of measurements; their median is printed")
+    parser.add_argument("--times", type=int, default=5, help="number of measurements, whose median is printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions" / _EXERCISE)
     arguments = parser.parse_args()
     bubblewrap.require()
@@ -61,7 +61,7 @@ def main() -> None:
     difference = wall["graded, confined"] - wall["graded, not confined"]
     print(f"\nconfinement: {difference:+.2f} s, {difference / f_s:+.2f} F (at most {_MOST} F)")
     if difference > _MOST * f_s:
-        raise MachineError("The sandbox costs more than allowed. Was the machine busy?")  # noqa: EM101
+        raise MachineError("The sandbox costs more than the limit. Repeat the benchmark on an idle machine.")  # noqa: EM101
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
-"""Measure the live view with one tab and with ten: frames per second, CPU time, and time from key to moved pixel.
+"""Measure the live view with one tab and with ten: frames per second, CPU time, and latency from key to turtle.
 
     python -m grader.benchmarks.view [--seconds 10] [--keys 30]
 
 The simulator, the server and a browser with one page are real. Nine more pages are simulated by connections that only
-listen. The browser's own processor time is not counted. Run the benchmark on an idle machine, since the browser and the
+listen. The browser's CPU time is not counted. Run the benchmark on an idle machine, since the browser and the
 simulator share the cores.
 """
 
@@ -36,7 +36,7 @@ AIM_CPU = 0.15
 """The aim for the share of one core that the simulator and the server use together."""
 AIM_LATENCY_S = 0.06
 
-# Returns the milliseconds from the key press until the browser draws the frame in which the turtle has first moved.
+# Returns the time from the key press until the browser draws the first frame with the moved turtle (ms).
 _LATENCY = """key => new Promise(resolve => {
     const turtle = document.querySelector(".turtle");
     const before = turtle.getAttribute("transform");
@@ -121,7 +121,7 @@ def _opened(browser: Browser, url: str) -> Page:
 
 @contextmanager
 def _listening(url: str) -> Iterator[None]:
-    """Connect to the server as a browser tab does, but without the processor time that a browser takes."""
+    """Connect to the server like a browser tab, but without the CPU time of a browser."""
     host, _, token = url.removeprefix("http://").partition("/#")
     with connect(f"ws://{host}/live?token={token}", origin=Origin(f"http://{host}")) as link:
         reading = threading.Thread(target=lambda: [None for _ in link], daemon=True)
@@ -131,7 +131,7 @@ def _listening(url: str) -> Iterator[None]:
 
 
 def _latency(page: Page, number: int) -> float:
-    """Return the seconds from a key press until the turtle moves. It alternates its direction to avoid the walls."""
+    """Return the time from a key press until the turtle moves (s). The direction alternates to avoid the walls."""
     key = "ArrowUp" if number % 2 else "ArrowDown"
     if number == 0:
         # The first key press adds the driving node to the graph.

@@ -2,8 +2,8 @@
 
     python -m grader.benchmarks.watch [--times N] [--submission FOLDER --exercise NAME --file PATH]
 
-The benchmark reads a real terminal. The time is measured from the save until the line after the verdict appears. F is
-measured alternately in the same run, so that a busy moment affects both.
+The benchmark uses a real terminal. The time is measured from the save until the line after the verdict appears. F is
+measured alternately in the same run, so that other load affects both.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ _STEP = "03-circle-publisher"
 _FILE = "my_robot_controller/draw_circle.py"
 _PATIENCE_S = 300
 _REST_S = 2.0
-"""The shortest time (s) that a learner thinks between two saves. Meanwhile, the next trial is prepared."""
+"""The shortest time that a learner needs between two saves (s), during which the next trial is prepared."""
 
 
 def main() -> None:
     """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--times", type=int, default=5, help="number of saves; the median time is printed")
+    parser.add_argument("--times", type=int, default=5, help="number of saves, whose median time is printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions" / _STEP / "my_robot_controller")
     parser.add_argument("--exercise", default=_STEP)
     parser.add_argument("--file", default=_FILE, help="the file to save, relative to the submission")
@@ -43,7 +43,7 @@ def main() -> None:
         with tempfile.TemporaryDirectory() as folder:
             package = Path(shutil.copytree(arguments.submission, Path(folder) / "home" / arguments.submission.name))
             saves.append(seconds_to_verdict(package, arguments.exercise, package / arguments.file))
-            # Measure F only now, because this waits until all children of this process exit.
+            # Measure F only now, because `cost` waits until all children of this process exit.
             scratch = Path(folder) / "bare"
             scratch.mkdir()
             bare.append(sum(each.wall_s for each in bare_costs(package, scratch).values()))
@@ -53,7 +53,7 @@ def main() -> None:
 
 
 def seconds_to_verdict(package: Path, exercise: str, file: Path) -> float:
-    """Watch the package, save the file with a new comment, and return the seconds from save to verdict."""
+    """Watch the package, save the file with a new comment, and return the time from save to verdict (s)."""
     env = {
         **os.environ,
         "HOME": str(package.parent),

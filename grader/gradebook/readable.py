@@ -74,7 +74,7 @@ def notebook(path: Path) -> str:
 def _require_small(read: object) -> None:
     for number, (_, depth) in enumerate(walk(read)):
         if number >= MOST_VALUES:
-            message = f"the notebook has more than {MOST_VALUES} values, the maximum"
+            message = f"the notebook has more than the maximum of {MOST_VALUES} values"
             raise TooLargeError(message)
         if depth > MOST_DEPTH:
             message = f"the notebook has more than {MOST_DEPTH} nested objects"
@@ -94,6 +94,6 @@ def _content(path: Path, most: int) -> bytes:
             raise UnreadableError(message)
         data = file.read(most + 1)
     if len(data) > most:
-        message = f"{path.name} has more than {most} bytes, the maximum"
+        message = f"{path.name} has more than the maximum of {most} bytes"
         raise TooLargeError(message)
     return data

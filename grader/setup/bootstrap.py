@@ -1,4 +1,4 @@
-"""The first half of the set-up: look at the machine and make .venv; then grader.setup.install fills it.
+"""The first half of the set-up: check the machine and create .venv. Then grader.setup.install fills it.
 
     python3 -m grader.setup.bootstrap (learner | cluster | notebooks | docs | tests) [--python PYTHON]
 
@@ -40,7 +40,7 @@ PARTS = {
 
 
 class Stamp(NamedTuple):
-    """How .venv was created. The stamp is written at the very end, so an interrupted set-up has no stamp."""
+    """The properties with which .venv was created. The stamp is written last, so an interrupted set-up has no stamp."""
 
     root: str
     ros: str
@@ -54,7 +54,7 @@ class Stamp(NamedTuple):
 
 
 def read_stamp(path: Path = STAMP) -> Optional[Stamp]:
-    """Return the stamp of a finished set-up, or None if there is no stamp of this version of the course."""
+    """Return the stamp of a finished set-up, or None if this version of the course has written none."""
     try:
         return Stamp(**json.loads(path.read_text()))
     except (OSError, ValueError, TypeError):
@@ -77,7 +77,7 @@ def digest() -> str:
 
 
 def stands(stamp: Stamp, ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python]) -> bool:
-    """Return whether .venv is still usable: at the same path, for this ROS 2, with the Python that created it."""
+    """Return whether .venv is still usable: at the same path, for this ROS 2, and with the Python that created it."""
     now = machine.probe(str(PYTHON))
     same = now is not None and (now.path, list(now.version)) == (stamp.python, stamp.version)
     if not same or stamp.root != str(ROOT) or (wanted is not None and wanted.path != stamp.python):
@@ -94,7 +94,7 @@ def say(text: str) -> None:
 
 
 def clean_environment(env: Mapping[str, str]) -> Dict[str, str]:
-    """Return the environment without variables of a sourced ROS 2 or an active venv that would mislead an installer."""
+    """Return the environment without variables of a sourced ROS 2 or an active venv, which mislead installers."""
     foreign = {
         "PYTHONPATH",
         "PYTHONHOME",
@@ -104,7 +104,7 @@ def clean_environment(env: Mapping[str, str]) -> Dict[str, str]:
         "PIP_USER",
         "PIP_REQUIRE_VIRTUALENV",
     }
-    # Without this additional variable, the ROS 2 wheels would start every interpreter twice.
+    # This variable keeps the ROS 2 wheels from starting every interpreter twice.
     return {**{name: env[name] for name in env if name not in foreign}, "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
 
 
@@ -142,27 +142,27 @@ def report_missing(needs: Sequence[Need], why: str) -> bool:
     for need in needs:
         reason = f" It was not installed: {why.rstrip('.')}." if why else ""
         how = package_managers.command(manager, [need], root=root)
-        say(f"Without {need.what.partition(',')[0]}: {need.lost}.{reason} It comes with: {how}")
+        say(f"Without {need.what.partition(',')[0]}: {need.lost}.{reason} To install it: {how}")
     return False
 
 
 def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool:
     """Create .venv, replacing an existing one. Return False if Python could not create it."""
-    say("Making .venv with Python {}.{}.{} ({})".format(*python.version, python.path))
+    say("Creating .venv with Python {}.{}.{} ({})".format(*python.version, python.path))
     options = ["--clear"]
     if ros:
-        say(f"ROS 2 Jazzy is sourced from {ros.prefix}: this one is used, and no other is installed")
+        say(f"ROS 2 Jazzy is sourced from {ros.prefix}: it is used, and no other ROS 2 is installed")
         options.append("--system-site-packages")
     making = interpreter.interpreter(
         "-m", "venv", *options, str(VENV), python=python.path, env=clean_environment(os.environ)
     )
     try:
-        # The output is shown only if the command fails, because it then contains the reason.
+        # Show the output only if the command fails, because the output contains the reason.
         subprocess.check_output(making.argv, stderr=subprocess.STDOUT, env=making.env, cwd=str(ROOT))
     except subprocess.CalledProcessError as error:
         said = error.output.decode(errors="replace")
         known = setup_errors.of_output(said, VENV)
-        unknown = f"{said}Python could not make {VENV}; its messages are above."
+        unknown = f"{said}Python could not create {VENV}. Its messages are above."
         print(known or unknown, file=sys.stderr)
         return False
     return True
@@ -186,7 +186,7 @@ def requested_python(name: str) -> machine.Python:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Bring .venv up to date. Return the exit code."""
+    """Update .venv. Return the exit code."""
     requested = read_arguments(arguments)
     ros = machine.sourced_ros(os.environ, VENV)
     problem = machine.platform_problem(platform.system(), platform.machine(), platform.libc_ver(), ros)
@@ -207,7 +207,7 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
     unfinished = not (stamp and made and stamp.digest == digest() and set(parts) <= set(stamp.parts))
     python, needs = look(ros, wanted, parts, made=made)
     why = ""
-    # Missing optional programs are installed only if something else has to be set up, not on every run.
+    # Install missing optional programs only if other parts have to be set up, not on every run.
     if any(unfinished or not need.lost for need in needs):
         why = provide(needs, os.environ, say)
         python, needs = look(ros, wanted, parts, made=made)
@@ -217,7 +217,7 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
     if not unfinished:
         return 0
     if STAMP.exists():
-        STAMP.unlink()  # From here until the end, .venv is unfinished.
+        STAMP.unlink()  # .venv is incomplete from here until the end
     if stamp and made:
         # Keep the parts that are already installed: a machine may be part of a cluster and also have notebooks.
         parts = [part for part in PARTS["tests"] if part in parts or part in stamp.parts]
@@ -225,7 +225,7 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
     elif python:
         if stamp and ros is None and stamp.ros != WHEELS:
             say(
-                f"This set-up was made for the ROS 2 in {stamp.ros}, which is not sourced: the course's own replaces it"
+                f"This set-up was made for the ROS 2 in {stamp.ros}, which is not sourced. The course's own replaces it"
             )
         if machine.is_offline(os.environ):
             print(setup_errors.NO_NETWORK.format("it has no network"), file=sys.stderr)

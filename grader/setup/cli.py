@@ -20,7 +20,7 @@ def add_to(app: typer.Typer) -> None:
 
 
 def doctor() -> None:
-    """Check whether this machine can grade (ROS 2, colcon, compiler, sandbox), and say what to do if not."""
+    """Check whether this machine can grade (ROS 2, colcon, compiler, sandbox), and print what to do if it cannot."""
     from rich.console import Console
 
     from grader.report.progress_line import progress
@@ -34,12 +34,12 @@ def doctor() -> None:
 
 Domain = Annotated[
     Optional[int],  # noqa: UP045
-    typer.Option(help="ROS domain, 0 to 101. Default: the one that is set, or else one of your own."),
+    typer.Option(help="ROS domain, 0 to 101. Default: ROS_DOMAIN_ID, or else a domain of your own."),
 ]
 
 
 def env(domain: Domain = None) -> None:
-    """Print shell code that puts ROS 2 into this shell: type `source <(grader env)`, in bash or zsh."""
+    """Print shell code that adds ROS 2 to this shell. Type `source <(grader env)` in bash or zsh."""
     from grader.report.progress_line import progress
     from grader.ros import shell
     from grader.ros.installation import find_ros, who_hears
@@ -48,7 +48,7 @@ def env(domain: Domain = None) -> None:
         with progress() as tell:
             wanted = shell.users_environment(domain, tell)
     except GraderError:
-        # A shell that sources this output does not receive the exit code.
+        # A shell that sources this output does not get the exit code.
         print("false")
         raise
     ros = find_ros()
@@ -59,13 +59,13 @@ def env(domain: Domain = None) -> None:
 
 
 def shell(domain: Domain = None) -> None:
-    """Open a shell with ROS 2; type exit to leave it."""
+    """Open a shell with ROS 2. Type exit to leave it."""
     from grader.report.progress_line import progress
     from grader.ros import shell as shells
     from grader.ros.installation import who_hears
 
     with progress() as tell:
         wanted = shells.users_environment(domain, tell)
-    print(f"A shell with ROS 2, in {who_hears(wanted)}. To leave it: exit")
+    print(f"This shell has ROS 2, in {who_hears(wanted)}. Type exit to leave it.")
     sys.stdout.flush()
     shells.open_shell(wanted)

@@ -1,6 +1,6 @@
 """Compiled modules (.pyc) that are incomplete because the disk was full when Python stored them.
 
-Python does not notice that the end is missing. From then on, each import of the module fails with an EOFError.
+Python does not detect that the end is missing. Each later import of the module fails with an EOFError.
 """
 
 import marshal
@@ -11,7 +11,7 @@ HEADER = 16
 
 
 def remove_incomplete(folder: Path) -> None:
-    """Remove the incomplete ones in this folder and below it. Python then compiles these modules again."""
+    """Remove the incomplete modules in this folder and its subfolders. Python then compiles them again."""
     for path in folder.rglob("__pycache__/*.pyc"):
         if not is_complete(path):
             path.unlink()

@@ -1,7 +1,7 @@
-"""The last part of `make demo`: grade the solution of a step as a learner would, show the times, and say what is next.
+"""The last part of `make demo`: grade the solution of a step as a learner does, and print the times and the next steps.
 
-`python -m grader.setup.demo --since SECONDS` takes the time when `make` began, in seconds since 1970. The times of the
-set-up are shown only if it was this run of `make` that did the set-up.
+`python -m grader.setup.demo --since SECONDS`: SECONDS is the start of `make` in seconds since 1970. The times of the
+set-up are printed only if this run of `make` did the set-up.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ STAGES = {
     "trial": "simulator and node",
     "checks": "checks",
 }
-"""Stage in the report -> its name in words."""
+"""The names of the stages in the report, as printed."""
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Grade `solutions/03-circle-publisher`. Return 0, or the exit code of `grader check` if it is unexpected."""
-    parser = argparse.ArgumentParser(description="Grade the solution of a step and say what to type next.")
+    parser = argparse.ArgumentParser(description="Grade the solution of a step and print what to type next.")
     parser.add_argument("--since", type=float, default=time.time(), help="time when the command began (s since 1970)")
     since = parser.parse_args(arguments).since
 
     image, report = FOLDER / f"{STEP}.png", FOLDER / f"{STEP}.json"
     (ROOT / FOLDER).mkdir(parents=True, exist_ok=True)
     (ROOT / report).unlink(missing_ok=True)
-    # In the students' repository, which has no solutions, the starting point is graded instead.
+    # In the students' repository, which has no solutions, grade the starting point instead.
     side = "solutions" if (ROOT / "solutions" / STEP).is_dir() else "exercises"
     command = ["grader", "check", f"{side}/{STEP}", "--image", str(image), "--json", str(report)]
     say("$ " + " ".join(command))
@@ -47,19 +47,19 @@ def main(arguments: list[str] | None = None) -> int:
         print(closing_words(done.returncode))
         return done.returncode
     print()
-    say("Where the time went")
+    say("Duration of each stage")
     for name, seconds in [*set_up_seconds(since), *grading_seconds(ROOT / report)]:
         print(f"  {name:<40} {seconds:6.1f} s")
     print(f"  {'in all':<40} {time.time() - since:6.1f} s")
-    print(f"\nThe picture of the turtle's path: {image}")
-    print("\nNext, in this folder: source the setup file, and begin with the first step.\n")
+    print(f"\nImage of the turtle's path: {image}")
+    print("\nNext, in this folder: source the setup file, and start the first step.\n")
     print("    source .venv/setup.bash")
     print("    grader start 01")
     return 0
 
 
 def closing_words(exit_code: int) -> str:
-    """Return a message about what to do if the course's own solution did not pass."""
+    """Return a message for the case that the course's solution did not pass."""
     if exit_code == MACHINE_BROKEN:
         return (
             "\nThe solution could not be graded on this machine. To see what is missing, type: .venv/bin/grader doctor"
@@ -68,7 +68,7 @@ def closing_words(exit_code: int) -> str:
 
 
 def set_up_seconds(since: float) -> list[tuple[str, float]]:
-    """Return the seconds of each stage of the set-up, or an empty list if it was done by an earlier command."""
+    """Return the duration of each stage of the set-up (s), or an empty list if an earlier command did the set-up."""
     stamp = read_stamp()
     if stamp is None or STAMP.stat().st_mtime < since:
         return []
@@ -76,7 +76,7 @@ def set_up_seconds(since: float) -> list[tuple[str, float]]:
 
 
 def grading_seconds(report: Path) -> list[tuple[str, float]]:
-    """Return the seconds of each stage of the grading."""
+    """Return the duration of each stage of the grading (s)."""
     seconds = json.loads(report.read_text(encoding="utf-8"))["seconds"]
     return [(words, float(seconds[name])) for name, words in STAGES.items() if name in seconds]
 

@@ -1,7 +1,7 @@
 """`grader doctor`: check whether this machine has everything that grading needs.
 
-Each line of the output is ok or says what to do. Where possible, the command tries things out: it builds the turtlesim
-interfaces if necessary, and lets a node publish from a cell.
+Each line of the output is ok or states what to do. If possible, the command runs real tests: it builds the turtlesim
+interfaces if necessary, and starts a node in a cell that publishes.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ LITTLE_MEMORY = 1 * GIB
 
 @dataclass(frozen=True)
 class Line:
-    """The result of one test. The state `advice` does not prevent grading; `broken` must be fixed before grading."""
+    """The result of a test. A line with the state `advice` does not prevent grading, but a `broken` one does."""
 
     subject: str
     observed: str
@@ -53,7 +53,7 @@ class Line:
 
 
 def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] = lambda _: None) -> list[Line]:
-    """Return all lines, each one after the lines that it depends on. `tell` is called if a test takes a long time."""
+    """Return all lines, each after the lines that it depends on. `tell` is called before slow tests."""
     lines = [look_at_system(), look_at_python(), *look_at_set_up(env), *look_at_tools(env), look_at_colcon()]
     lines += [look_at_disk(xdg.cache()), look_at_memory(Path("/proc/meminfo").read_text(encoding="ascii"))]
     observed, todo = shares()
@@ -78,7 +78,7 @@ def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] 
 
 
 def exit_code(lines: Iterable[Line]) -> int:
-    """Return 3 if something must be fixed, else 0."""
+    """Return 3 if a line is broken, or else 0."""
     return BROKEN_EXIT_CODE if any(line.state == "broken" for line in lines) else 0
 
 
@@ -102,7 +102,7 @@ def look_at_system() -> Line:
 
 
 def look_at_python() -> Line:
-    """Return a line with this interpreter, and whether the course supports it."""
+    """Return a line with this interpreter and whether the course supports it."""
     observed = f"CPython {platform.python_version()}, {Path(sys.executable).parent}"
     if machine.OLDEST <= sys.version_info[:2] <= machine.NEWEST:
         return Line("Python", observed)
@@ -111,10 +111,10 @@ def look_at_python() -> Line:
 
 
 def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None) -> Iterator[Line]:
-    """Yield a line that says whether .venv matches the current lock file and the currently sourced ROS 2."""
+    """Yield a line on whether .venv matches the current lock file and the sourced ROS 2."""
     stamp = stamp or bootstrap.read_stamp()
     if stamp is None or Path(sys.prefix) != bootstrap.VENV:
-        yield Line("set-up", "not made by `make`; its versions may differ from the lock file")
+        yield Line("set-up", "not created by `make`; versions may differ from the lock file")
         return
     ros = machine.sourced_ros(env, bootstrap.VENV)
     now = ros.prefix if ros else bootstrap.WHEELS
@@ -132,7 +132,7 @@ def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None)
 
 
 def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
-    """Yield lines about system programs and Python's headers, with one command to install everything missing."""
+    """Yield lines about system programs and Python's headers, with one command that installs everything missing."""
     ros = machine.sourced_ros(env, bootstrap.VENV)
     needs = machine.missing_tools(env.get("PATH", ""), ros)
     headers = Path(sysconfig.get_path("include"), "Python.h").is_file()
@@ -144,8 +144,8 @@ def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
         if version:
             yield Line(name, version)
     if builds and headers:
-        yield Line("headers", "Python.h is there")
-    # Each optional program has its own line elsewhere, which says what does not work without it.
+        yield Line("headers", "Python.h is installed")
+    # Optional programs have separate lines, which state what does not work without them.
     needs = [need for need in needs if not need.lost]
     if needs:
         observed = "missing: " + "; ".join(need.what for need in needs)
@@ -154,7 +154,7 @@ def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
 
 
 def look_at_colcon() -> Line:
-    """Return a line about the colcon that builds submissions. It belongs to this Python, not to the system."""
+    """Return a line about the colcon of this Python, which builds submissions."""
     try:
         version = metadata.version("colcon-core")
     except metadata.PackageNotFoundError:
@@ -165,7 +165,7 @@ def look_at_colcon() -> Line:
 
 
 def look_at_disk(folder: Path) -> Line:
-    """Return a line with the free space on the disk that holds the built interfaces."""
+    """Return a line with the free space on the disk for the built interfaces."""
     there = next(path for path in [folder, *folder.parents] if path.is_dir())
     free = shutil.disk_usage(there).free
     observed = f"{free / GIB:.1f} GiB free for {folder}"
@@ -175,7 +175,7 @@ def look_at_disk(folder: Path) -> Line:
         "disk",
         observed,
         "broken" if free < LEAST_DISK else "advice",
-        "free some space; XDG_CACHE_HOME chooses another folder",
+        "free some space, or set XDG_CACHE_HOME to another folder",
     )
 
 
@@ -191,7 +191,7 @@ def look_at_memory(meminfo: str) -> Line:
 
 
 def look_at_ros(ros: Ros, env: Mapping[str, str]) -> Line:
-    """Return a line with the ROS 2 that grading uses, and whether it fits this Python."""
+    """Return a line with the ROS 2 that grading uses, and whether it matches this Python."""
     sourced = machine.sourced_ros(env, bootstrap.VENV)
     if ros.kind == "sourced" and sourced and sourced.python != sys.version_info[:2]:
         wanted = ".".join(map(str, sourced.python))
@@ -202,13 +202,13 @@ def look_at_ros(ros: Ros, env: Mapping[str, str]) -> Line:
     return Line("ROS 2", f"{ros.name}" + (f", {ros.prefix}" if ros.kind == "sourced" else ""))
 
 
-# --- what must be tried ------------------------------------------------------------------------------
+# --- what must be tested ------------------------------------------------------------------------------
 
 
 def look_at_sandbox() -> Line:
     """Create a cell like the one in which a student's process runs.
 
-    Cells are optional for people who only check their own code.
+    Cells are optional for users who check only their own code.
     """
     why = bubblewrap.why_unavailable()
     if why is None:
@@ -217,18 +217,18 @@ def look_at_sandbox() -> Line:
 
 
 def look_at_limits() -> Line:
-    """Return a line that says how the memory and the processes of a cell are counted."""
+    """Return a line about how the memory and the processes of a cell are counted."""
     with control_group(NODE_LIMITS) as group:
         if group:
             return Line("limits", "memory and processes of a cell are counted by the kernel")
     return Line(
         "limits",
-        "the grader counts a cell's memory ten times a second: the kernel does not let it create control groups",
+        "the grader counts a cell's memory ten times per second, since it may not create control groups",
     )
 
 
 def look_at_node(ros: Ros, *, confined: bool = True) -> Line:
-    """Let a node publish to another, as in a trial, to test the interpreter, ROS 2, the network and the interfaces.
+    """Test the interpreter, ROS 2, the network and the interfaces: one node publishes to another, as in a trial.
 
     If `confined` is True, the publisher is in a cell, and the other node is outside.
     """
@@ -238,9 +238,9 @@ def look_at_node(ros: Ros, *, confined: bool = True) -> Line:
             "a node", "starts in a cell; its messages arrive outside" if confined else "starts; its messages arrive"
         )
     closed = machine.closed_folder(os.path.realpath(sys.executable))
-    todo = "please report this with all these lines"
+    todo = "please report this with all lines above"
     if closed and os.getuid() == 0:
-        todo += f"; it may help to let other users enter {closed}, which contains this Python"
+        todo += f"; or allow other users to access {closed}, which contains this Python"
     return Line("a node", f"its messages do not arrive{' from a cell' if confined else ''}: {why}", "broken", todo)
 
 

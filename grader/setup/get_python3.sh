@@ -1,5 +1,5 @@
 #!/bin/sh
-# Install python3 if it is missing, as root or with sudo: the rest of the set-up is written in Python (bootstrap.py).
+# Install python3 if it is missing, as root or with sudo. The rest of the set-up is written in Python (bootstrap.py).
 
 if command -v apt-get > /dev/null; then
     install='apt-get update && apt-get install -y python3 python3-venv python3-dev'
@@ -10,7 +10,7 @@ elif command -v pacman > /dev/null; then
 elif command -v zypper > /dev/null; then
     install='zypper --non-interactive install python3 python3-devel'
 else
-    echo 'There is no python3 here. Install Python 3.10 to 3.14 with its headers, then run make again.' >&2
+    echo 'python3 is not installed. Install Python 3.10 to 3.14 with its headers, then run make again.' >&2
     exit 3
 fi
 
@@ -21,7 +21,7 @@ elif [ "$(id -u)" = 0 ]; then
 elif sudo -n true 2> /dev/null; then
     sudo='sudo -n'
 elif command -v sudo > /dev/null && [ -t 0 ]; then
-    echo 'There is no python3 here. To install it, sudo may ask for your password (unless INSTALL_SYSTEM=0).'
+    echo 'python3 is not installed. To install it, sudo may ask for your password (unless INSTALL_SYSTEM=0).'
     sudo=sudo
 else
     sudo=none
@@ -33,5 +33,5 @@ if [ "$sudo" != none ]; then
     said=$(DEBIAN_FRONTEND=noninteractive $sudo sh -c "$install" 2>&1) && command -v python3 > /dev/null && exit 0
     echo "$said" | tail -n 4 >&2
 fi
-echo "There is no python3 here. Install it as root, then run make again: $install" >&2
+echo "python3 is not installed. Install it as root, then run make again: $install" >&2
 exit 3

@@ -1,4 +1,4 @@
-"""Add files from outside the package to a wheel: the course, and what is needed to create a copy of it."""
+"""Add files from outside the package to a wheel: the course, and the files needed to create a copy of the course."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class CourseHook(BuildHookInterface):  # type: ignore[type-arg]
     """Add the course's folders to the wheel. An editable install finds them in the repository instead."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Add the folders. hatchling calls this method before it builds."""
+        """Add the folders. hatchling calls this method before the build."""
         if version == "standard":
             # The repository for students has no solutions.
             there = [name for name in _FOLDERS if Path(self.root, name).is_dir()]

@@ -1,6 +1,6 @@
-"""The second half of the set-up: fill .venv from the lock file. It runs in .venv before anything is installed there.
+"""The second half of the set-up: fill .venv from the lock file. It runs in the empty .venv.
 
-`python -m grader.setup.install STAMP`: STAMP is the stamp of bootstrap.py as JSON. It is written to .venv at the very
+`python -m grader.setup.install STAMP`: STAMP is the stamp of bootstrap.py as JSON. It is written to .venv at the
 end, with the duration of each stage (s), so an interrupted set-up has no stamp.
 """
 
@@ -27,17 +27,17 @@ _OPTIONS = ("--no-deps", "--require-hashes", "--no-build-isolation")
 _PROGRESS = ("Downloading ", "Using cached ", "Building ", "Prepared ", "Installed ", "Bytecode compiled ")
 _MOST_LINES = 40
 _RETRIES = 2
-"""After this many failed name look-ups, the installer is stopped. pip would continue for ten more seconds."""
+"""The number of failed name look-ups after which the installer is stopped. pip would continue for ten more seconds."""
 _FIRST = frozenset({"uv", "setuptools"})
-"""The packages that are installed with pip, which is slower: uv, and setuptools, which uv needs to build empy."""
+"""The packages that pip installs, although it is slower: uv, and setuptools, which uv needs to build empy."""
 _UNKNOWN = (
-    "The packages could not be installed; the installer's messages are above. A proxy is read from HTTPS_PROXY, a "
-    f"mirror from pip's own configuration; {setup_errors.AGAIN}."
+    "The packages could not be installed; the installer's messages are above. HTTPS_PROXY sets a proxy, and pip's "
+    f"configuration sets a mirror; {setup_errors.AGAIN}."
 )
 
 
 class Ran(NamedTuple):
-    """The result of an installer: its exit code, its progress, and everything else that it printed."""
+    """The result of an installer: its exit code, its progress, and its other output."""
 
     code: int
     shown: list[str]
@@ -45,7 +45,7 @@ class Ran(NamedTuple):
 
 
 def main(stamp: Stamp) -> int:
-    """Install the stamp's parts and the project itself, then write the stamp. Return the exit code."""
+    """Install the stamp's parts and the project itself, and then write the stamp. Return the exit code."""
     try:
         seconds = {**stamp.seconds, **install(stamp.parts, sourced=stamp.ros != "wheels")}
     except MachineError as error:
@@ -57,7 +57,7 @@ def main(stamp: Stamp) -> int:
 
 
 def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
-    """Install from the lock file. Return the seconds for the download and for the installation.
+    """Install from the lock file. Return the duration of the download and of the installation (s).
 
     Raises: MachineError: no installer succeeded.
     """
@@ -75,7 +75,7 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
     downloading = _uv("-r", str(rest), *_OPTIONS, "--compile-bytecode")
     if downloading is None:
         # pip reads settings that uv does not read: mirrors, certificates and proxies in pip.conf.
-        say("uv failed; trying again with pip, which is slower")
+        say("uv failed. Trying again with pip, which is slower")
         _pip(rest)
     project = ("--no-deps", "--no-build-isolation", "--editable", str(ROOT))
     if _uv(*project) is None:
@@ -103,13 +103,13 @@ def _pip(requirements: Path) -> None:
 
 
 def _uv(*arguments: str) -> float | None:
-    """Run `uv pip install`. Return the seconds for the download, or None if it failed and pip may succeed.
+    """Run `uv pip install`. Return the duration of the download (s), or None if it failed and pip may succeed.
 
-    Raises: MachineError: the disk is full, or the user may not write to it.
+    Raises: MachineError: the disk is full or not writable.
     """
     command = uv("pip", "install", "--python", sys.executable, *arguments)
     if not _may_write(setup_errors.cache()):
-        command.append("--no-cache")  # Without a writable home folder, uv needs only this option.
+        command.append("--no-cache")  # needed without a writable home folder
     done = _run(command, clean(os.environ))
     if done.code == 0:
         return seconds_of(next((line for line in done.shown if line.startswith("Prepared ")), ""))
@@ -129,7 +129,7 @@ def _may_write(folder: Path) -> bool:
 def _run(command: list[str], env: dict[str, str]) -> Ran:
     """Run an installer and show its progress line by line. Stop it after two retries without a network.
 
-    When they write to a pipe, both installers print a line at the beginning of each download. This makes slow
+    When both installers write to a pipe, they print a line at the start of each download. This makes slow
     downloads visible and keeps logs readable.
     """
     shown: list[str] = []
@@ -156,7 +156,7 @@ def _repeat(done: Ran) -> None:
 
 
 def seconds_of(line: str) -> float:
-    """Return the duration (s) at the end of a line from uv: `Prepared 9 packages in 1m 05s`, `... in 302ms`."""
+    """Return the duration (s) at the end of a line of uv: `Prepared 9 packages in 1m 05s`, `... in 302ms`."""
     units = {"ms": 1e-3, "s": 1.0, "m": 60.0, "h": 3600.0}
     found: list[tuple[str, str]] = re.findall(r"(\d+(?:\.\d+)?)(ms|s|m|h)\b", line.rpartition(" in ")[2])
     return sum(float(number) * units[unit] for number, unit in found)

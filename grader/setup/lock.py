@@ -1,7 +1,7 @@
-"""The lock file: every version that the set-up installs, for all versions of Python, with hashes, in parts.
+"""The lock file: the version and hashes of every package that the set-up installs, for all Pythons, in parts.
 
-The file is in pip's format and has sections. `# part: NAME` starts the packages that only this part needs, and
-`# part: NAME NAME` those that several parts need. This way, each set-up installs exactly what it needs.
+The file is in pip's format and has sections. `# part: NAME` starts the packages that only one part needs, and
+`# part: NAME NAME` starts those that several parts need. Each set-up installs exactly the packages of its parts.
 `python -m grader.setup.lock` (`make lock`) writes the file. This module uses only the standard library, because the
 set-up reads the file before anything is installed.
 """
@@ -38,12 +38,12 @@ PARTS = {
 """The name of each part and its purpose, in the order of the file."""
 
 ALWAYS = ("setup", "grader")
-"""The parts of every set-up. Packages that they need are listed only there. All other parts, including `ros`, are
-optional, so each of them lists everything that it needs in addition to these two.
+"""The parts of every set-up. Their packages are listed only in these parts. All other parts, including `ros`, are
+optional, so each of them lists all packages that it needs in addition to these.
 """
 
 SOURCED_BRINGS = frozenset({"numpy", "empy"})
-"""Packages that a sourced ROS 2 provides. Its extensions need its own numpy, and its generators its own empy."""
+"""The packages that a sourced ROS 2 provides. Its extensions need its own numpy, and its generators its own empy."""
 
 _MARK = "# part: "
 _NAME = re.compile(r"([A-Za-z0-9][A-Za-z0-9._-]*)==(\S+)")
@@ -51,7 +51,7 @@ _NAME = re.compile(r"([A-Za-z0-9][A-Za-z0-9._-]*)==(\S+)")
 
 @dataclass(frozen=True)
 class Entry:
-    """One version of one package. `text` holds its lines in the file, including the hashes and the final newline."""
+    """One version of a package. `text` contains its lines in the file, including the hashes and the final newline."""
 
     name: str
     version: str
@@ -59,10 +59,10 @@ class Entry:
 
 
 def parse(text: str) -> dict[str, list[Entry]]:
-    """Return the entries of each part, in the order of the file. An entry that several parts need is in each of them.
+    """Return the entries of each part in the order of the file. An entry that several parts need is in each of them.
 
     Raises:
-        UsageError: a line belongs to no part or to no entry.
+        UsageError: a line is outside a part or an entry.
     """
     sections: list[tuple[list[str], list[Entry]]] = []
     for line in text.splitlines(keepends=True):
@@ -79,7 +79,7 @@ def parse(text: str) -> dict[str, list[Entry]]:
             last = sections[-1][1].pop()
             sections[-1][1].append(Entry(last.name, last.version, last.text + line))
         else:
-            message = f"requirements.lock: expected 'name==version' or an indented hash, seen: {line.strip()}"
+            message = f"requirements.lock: expected 'name==version' or an indented hash, but found: {line.strip()}"
             raise UsageError(message)
     parts: dict[str, list[Entry]] = {}
     for names, entries in sections:
@@ -91,18 +91,18 @@ def parse(text: str) -> dict[str, list[Entry]]:
 def select(
     text: str, parts: Collection[str], *, without: Collection[str] = (), only: Collection[str] | None = None
 ) -> str:
-    """Return the requirements of `parts` in pip's format: all packages except `without`, or `only` some packages."""
+    """Return the requirements of `parts` in pip's format: all packages except `without`, or only those in `only`."""
     entries = dict.fromkeys(entry for part, entries in parse(text).items() if part in parts for entry in entries)
     chosen = (entry for entry in entries if entry.name not in without and (only is None or entry.name in only))
     return "".join(entry.text for entry in chosen)
 
 
 def split(entries: Iterable[Entry], needs: Mapping[str, Collection[str]]) -> str:
-    """Return the content of the lock file. `needs` holds the names of the packages of each part.
+    """Return the content of the lock file. `needs` contains the names of the packages of each part.
 
     If a package has several versions for different Pythons, a part contains all of them.
 
-    Raises: MachineError: the packages of the parts together are not exactly those in `entries`.
+    Raises: MachineError: the packages of all parts are not exactly those in `entries`.
     """
     sections: dict[tuple[str, ...], list[str]] = {(part,): [] for part in PARTS}
     rest = set().union(*needs.values())
@@ -115,9 +115,9 @@ def split(entries: Iterable[Entry], needs: Mapping[str, Collection[str]]) -> str
         sections.setdefault((always[0],) if always else parts, []).append(entry.text)
         rest.discard(entry.name)
     if rest:
-        message = f"A part of the lock file alone needs packages that the whole does not need: {sorted(rest)}."
+        message = f"A part of the lock file needs packages that the whole file does not contain: {sorted(rest)}."
         raise MachineError(message)
-    text = "# Made by `make lock` from pyproject.toml, not to be edited: every version, with hashes, for all Pythons.\n"
+    text = "# Generated by `make lock` from pyproject.toml; do not edit. All versions with hashes, for all Pythons.\n"
     order = list(PARTS)
     for parts in sorted(sections, key=lambda parts: [order.index(part) for part in reversed(parts)]):
         text += f"\n{_MARK}{' '.join(parts)}: {'; '.join(PARTS[part] for part in parts)}\n{''.join(sections[parts])}"
@@ -168,12 +168,12 @@ def _compile(output: Path, arguments: list[str], requirements: str | None = None
         *uv("pip", "compile", str(PROJECT) if requirements is None else "-"),
         *("--output-file", str(output), "--quiet", *arguments),
         *("--universal", "--python-version", "3.10", "--no-python-downloads"),
-        # Each machine decides where packages are downloaded from, so the file contains no index and no URLs.
+        # Each machine decides from where it downloads packages, so the file contains no index and no URLs.
         *("--generate-hashes", "--no-emit-index-url", "--no-annotate", "--no-header"),
     ]
     done = subprocess.run(command, cwd=ROOT, check=False, input=requirements, text=True)
     if done.returncode != 0:
-        message = f"uv could not make the lock file (exit code {done.returncode}; its messages are above)."
+        message = f"uv could not create the lock file (exit code {done.returncode}; its messages are above)."
         raise MachineError(message)
 
 

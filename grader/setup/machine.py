@@ -1,8 +1,8 @@
-"""What this machine has and lacks: Pythons, a sourced ROS 2, system programs, and messages about what is missing.
+"""The properties of this machine: Pythons, a sourced ROS 2, system programs, and messages about missing ones.
 
-The set-up runs this before anything is installed, with any `python3`. If that is too old, the user must see a message
-instead of a SyntaxError. Therefore this module and bootstrap.py use only the syntax of Python 3.6 and the standard
-library.
+The set-up runs this module with any `python3`, before anything is installed. With an old Python, users must get a
+message instead of a SyntaxError. Therefore, this module and bootstrap.py use only the syntax of Python 3.6 and the
+standard library.
 """
 
 import json
@@ -26,17 +26,17 @@ NO_SANDBOX = (
 )
 
 CONTAINER = """\
-  - a container, started in this folder (--privileged, since the grader makes sandboxes of its own):
+  - a container, started in this folder (--privileged, since the grader creates its own sandboxes):
       docker run --rm -it --privileged --platform linux/amd64 -v "$PWD":/course -w /course debian:12 \\
           bash -c "apt-get update && apt-get install -y make python3 && CI=true make demo; exec bash"
-  - a ROS 2 Jazzy of your own, on any Linux: source /opt/ros/jazzy/setup.bash, then run make again."""
+  - your own ROS 2 Jazzy, on any Linux: source /opt/ros/jazzy/setup.bash, then run make again."""
 
 LEFT_TO_ROS = {"numpy": "python3-numpy", "em": "python3-empy", "lark": "python3-lark"}
-"""Modules that the set-up does not install if a ROS 2 is sourced (lock.SOURCED_BRINGS and the part `ros`), and the
-Debian packages that contain them.
+"""The modules that the set-up does not install if a ROS 2 is sourced (lock.SOURCED_BRINGS and the part `ros`), and the
+Debian packages that contain these modules.
 """
 _OLDEST_NUMPY = "1.25"
-"""The oldest version of numpy that is supported by matplotlib, which draws the pictures."""
+"""The oldest version of numpy that matplotlib supports. matplotlib draws the images."""
 _IMPORTS = f"""
 import importlib, json, sys
 def lacks(name):
@@ -68,11 +68,11 @@ class Python(NamedTuple):
     venv: bool
     headers: bool
     lacks: Tuple[str, ...] = ()
-    """The modules of LEFT_TO_ROS that it cannot import."""
+    """The modules of LEFT_TO_ROS that the interpreter cannot import."""
 
     @property
     def is_systems(self) -> bool:
-        """Whether the system's package manager installed it, and can therefore install its missing parts."""
+        """Whether the system's package manager installed the interpreter, and can install its missing parts."""
         return Path(self.path).parent == Path("/usr/bin")
 
 
@@ -85,7 +85,7 @@ class SourcedRos(NamedTuple):
 
 
 def sourced_ros(env: Mapping[str, str], ours: Path) -> Optional[SourcedRos]:
-    """Return the ROS 2 Jazzy that is sourced, or None. `ours` is the prefix of the wheels, which is ignored."""
+    """Return the sourced ROS 2 Jazzy, or None. `ours` is the prefix of the wheels, which is ignored."""
     if env.get("ROS_DISTRO") != "jazzy":
         return None
     for prefix in map(Path, clean(env).get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
@@ -99,7 +99,7 @@ def sourced_ros(env: Mapping[str, str], ours: Path) -> Optional[SourcedRos]:
 
 
 def platform_problem(system: str, machine: str, libc: Tuple[str, str], ros: Optional[SourcedRos]) -> str:
-    """Return why the ROS 2 wheels cannot be installed here and what to do instead, or an empty string if they can be.
+    """Return why the ROS 2 wheels cannot be installed here and what to do instead, or an empty string if they can.
 
     The arguments are platform.system(), platform.machine() and platform.libc_ver().
     """
@@ -120,9 +120,9 @@ def platform_problem(system: str, machine: str, libc: Tuple[str, str], ros: Opti
 
 
 def is_offline(env: Mapping[str, str], root: Path = Path("/")) -> bool:
-    """Return whether it is certain that no packages can be downloaded, because there is no network route.
+    """Return whether packages certainly cannot be downloaded, because the network has no route.
 
-    If a mirror, a proxy or a folder of wheels is configured, only an installer can find out. `root` contains /proc.
+    If a mirror, a proxy or a folder of wheels is configured, return False. `root` contains /proc.
     """
     settings = ("PIP_", "UV_", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY")
     home = Path(env.get("HOME", "/nowhere"))
@@ -138,16 +138,16 @@ def is_offline(env: Mapping[str, str], root: Path = Path("/")) -> bool:
 
 
 def closed_folder(path: str) -> Optional[Path]:
-    """Return the topmost parent folder of `path` that other users cannot enter. They cannot run programs inside it."""
+    """Return the topmost parent folder of `path` that other users cannot enter, and so run no programs in, or None."""
     folders = Path(path).resolve().parents
     return next((folder for folder in reversed(list(folders)) if not folder.stat().st_mode & stat.S_IXOTH), None)
 
 
 def probe(executable: str) -> Optional[Python]:
-    """Ask an interpreter for its properties. Return None if it does not run, like a shim for a missing Python.
+    """Return the properties of an interpreter, or None if it does not run, like a shim for a missing Python.
 
     Raises:
-        OSError: the machine cannot start another process, so nothing is known about the interpreter.
+        OSError: the machine cannot start another process.
     """
     try:
         asking = interpreter("-c", _PROBE, python=executable)
@@ -161,10 +161,10 @@ def probe(executable: str) -> Optional[Python]:
 
 
 def for_ros(python: Python, ros: SourcedRos) -> Python:
-    """Return the interpreter with what it lacks for this ROS 2. If its version does not match, return it unchanged."""
+    """Return the interpreter with the modules that it lacks for this ROS 2, or unchanged if the version differs."""
     if python.version[:2] != ros.python or not python.cpython:
         return python
-    # Like .venv, use the system's packages, but not those in a user's home.
+    # Like .venv, use the system's packages, but not those in the user's home.
     env = {**os.environ, "PYTHONNOUSERSITE": "1"}
     asking = interpreter("-c", _IMPORTS, *LEFT_TO_ROS, python=python.path, env=env, searches=True)
     try:
@@ -175,7 +175,7 @@ def for_ros(python: Python, ros: SourcedRos) -> Python:
 
 
 def find_pythons(path: str) -> Iterator[Python]:
-    """Yield the interpreters on PATH and in the system's folders: first `python3`, then the others from the newest."""
+    """Yield the interpreters on PATH and in the system's folders: first `python3`, then the others, newest first."""
     folders = list(dict.fromkeys([*filter(None, path.split(os.pathsep)), *SYSTEM_PATH]))
     observed = set()
     for name in ["python3", *(f"python3.{minor}" for minor in range(NEWEST[1], OLDEST[1] - 1, -1))]:
@@ -189,9 +189,9 @@ def find_pythons(path: str) -> Iterator[Python]:
 def choose_python(
     pythons: Iterable[Python], *, root: bool, wanted: Optional[Tuple[int, int]] = None
 ) -> Optional[Python]:
-    """Return the first suitable interpreter for .venv, preferring complete ones to those that lack something.
+    """Return the first suitable interpreter for .venv. Prefer complete ones to those that lack modules.
 
-    For root, prefer one that other users can run too (not below root's home), since the sandbox drops root's rights.
+    For root, prefer one that other users can also run (not in root's home), since the sandbox drops root's rights.
     `wanted` is the only suitable (major, minor) version: the one that a sourced ROS 2 was built for.
     """
     best: Optional[Tuple[Tuple[bool, bool, bool], Python]] = None
@@ -210,7 +210,7 @@ def choose_python(
 
 
 def missing_tools(path: str, ros: Optional[SourcedRos]) -> List[Need]:
-    """Return the programs that the system lacks. No compiler is needed if turtlesim is already installed."""
+    """Return the programs that the system lacks. A compiler is needed only if turtlesim is not installed."""
     tools = {"bwrap": Need("bubblewrap, the sandbox that student code runs in", "bubblewrap", NO_SANDBOX)}
     limits = Need("setpriv, prlimit and choom, which set the sandbox's limits", "util-linux")
     tools.update({"setpriv": limits, "prlimit": limits, "choom": limits})
@@ -223,7 +223,7 @@ def missing_tools(path: str, ros: Optional[SourcedRos]) -> List[Need]:
 
 
 def missing_of_tests(path: str) -> List[Need]:
-    """Return the missing programs that only some tests need. The other tests run without them."""
+    """Return the missing programs that only some tests need. The other tests run without these programs."""
     tools = {
         BROWSERS: Need("a browser", "chromium", "the tests of the pages do not run"),
         ("shellcheck",): Need("shellcheck", "shellcheck", "the test of the shell scripts does not run"),
@@ -239,10 +239,10 @@ def missing_of_python(
     newer: str = "",
     refused: Sequence[Python] = (),
 ) -> List[Need]:
-    """Return what the chosen Python lacks, or everything if there is no Python.
+    """Return what the chosen Python lacks, or everything if no Python was chosen.
 
-    `newer` is the package of a newer Python for a system whose default Python is too old. `refused` are the Pythons of
-    the `wanted` version that cannot import what the sourced ROS 2 needs.
+    `newer` is the package of a newer Python for a system whose default Python is too old. `refused` contains the
+    Pythons of the `wanted` version that cannot import what the sourced ROS 2 needs.
     """
     if python is None:
         name = f"python{wanted[0]}.{wanted[1]}" if wanted else newer or "python3"
@@ -280,7 +280,7 @@ def lack_message(
         lines += ["Install them with this command, then run make again:", "", "    " + how, ""]
     if any(need.what.startswith("CPython") for need in needs):
         lines += [
-            "If the system's own Python is older, use a newer system (Debian 12, Ubuntu 22.04), or",
+            "If the system's Python is older, use a newer system (Debian 12, Ubuntu 22.04), or",
             CONTAINER,
         ]
     return "\n".join(lines)

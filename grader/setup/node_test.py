@@ -1,4 +1,4 @@
-"""Let one node publish to another, as in a trial, to test the interpreter, ROS 2, the network and the interfaces."""
+"""Test the interpreter, ROS 2, the network and the interfaces: one node publishes to another, as in a trial."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ node.create_subscription(String, "doctor", heard.append, 10)
 deadline = time.monotonic() + 20.0
 while not heard and time.monotonic() < deadline:
     rclpy.spin_once(node, timeout_sec=0.5)
-sys.exit(None if heard else "no message arrived from it within 20 s")
+sys.exit(None if heard else "no message arrived within 20 s")
 """
 DOMAIN = 101
-"""The ROS domain of nodes outside a cell. Trials use this domain only if all others are taken."""
+"""The ROS domain of nodes outside a cell. Trials use it only if all others are in use."""
 
 
 def why_not_heard(ros: Ros, *, confined: bool) -> str | None:
-    """Let a node publish for up to 20 s. Return None if another node received a message, else the last output line.
+    """Publish for up to 20 s. Return None if another node received a message, or else the last line of output.
 
     If `confined` is True, the publisher is in a cell, and the other node is outside.
     """

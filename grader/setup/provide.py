@@ -1,4 +1,4 @@
-"""Install what the system lacks, as root or with sudo. If that is not possible, say why.
+"""Install programs that the system lacks, as root or with sudo, or return why this is not possible.
 
 Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
@@ -12,14 +12,14 @@ from typing import Callable, List, Mapping, Optional, Sequence
 from grader.common import package_managers
 
 TOLD_LINES = 3
-"""The number of lines of a package manager's output that are shown if it fails."""
+"""The number of lines of a failed package manager's output that are shown."""
 _ERROR = re.compile(r"(E:|W:|Err:|error|problem|fatal|no package|nothing provides|sudo:)", re.IGNORECASE)
 
 
 def provide(needs: Sequence[package_managers.Need], env: Mapping[str, str], say: Callable[[str], None]) -> str:
-    """Print a line with `say`, then install what is needed. Return why something could not be installed.
+    """Print a line with `say`, and then install the needs. Return why something could not be installed.
 
-    The required packages are installed first, together. Each optional package is installed separately, so that a
+    The required packages are installed first, in one command. Each optional package is installed separately, so that a
     missing one does not stop the others.
     """
     path = env.get("PATH", "")
@@ -31,12 +31,12 @@ def provide(needs: Sequence[package_managers.Need], env: Mapping[str, str], say:
     groups = _groups(needs)
     rights = _rights(path)
     if rights is None:
-        return "only root can install it, and there is no sudo"
+        return "only root can install it, and sudo is not installed"
     script = package_managers.script(manager, groups)
     command = package_managers.command(manager, needs, root=os.getuid() == 0)
     if rights[-1:] == ["-n"] and not _quietly(rights):
         if not _at_terminal():
-            return "only root can install it, and sudo needs a password, for which there is no terminal"
+            return "only root can install it, and sudo needs a terminal to ask for a password"
         rights = rights[:-1]
         say("The system lacks some programs. sudo asks for your password to install them (unless INSTALL_SYSTEM=0):")
         print(f"    sudo sh -c '{script}'", flush=True)
@@ -46,13 +46,13 @@ def provide(needs: Sequence[package_managers.Need], env: Mapping[str, str], say:
 
 
 def _groups(needs: Sequence[package_managers.Need]) -> List[List[package_managers.Need]]:
-    """Return groups of needs: all required needs together, and each optional need in its own group."""
+    """Return groups of needs: all required needs together, and each optional need separately."""
     musts = [need for need in needs if not need.lost]
     return [*([musts] if musts else []), *([need] for need in needs if need.lost)]
 
 
 def _rights(path: str) -> Optional[List[str]]:
-    """Return the prefix that runs a command as root, or None if that is not possible."""
+    """Return the prefix that runs a command as root, or None if this is not possible."""
     if os.getuid() == 0:
         return []
     sudo = package_managers.find_program("sudo", path)
@@ -71,7 +71,7 @@ def _at_terminal() -> bool:
 def _run(command: Sequence[str], program: str, env: Mapping[str, str]) -> str:
     """Run a package manager. Return its error message, or an empty string if it succeeded."""
     try:
-        # sudo asks for the password on the terminal itself, so redirecting these streams does not affect it.
+        # sudo opens the terminal for the password, so redirecting these streams does not affect the prompt.
         done = subprocess.run(
             command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=env
         )

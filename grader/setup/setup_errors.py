@@ -1,4 +1,4 @@
-"""One sentence about why a set-up stopped and what to do, derived from an error or from an installer's output.
+"""Messages about why a set-up stopped and what to do, from an error or from an installer's output.
 
 Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
@@ -17,14 +17,14 @@ from grader.common.system_errors import refusal, sentence
 
 MACHINE_BROKEN = 3
 NEEDED_MB = 700
-"""The size of a learner's .venv, including a reserve."""
+"""The space of a learner's .venv (MB), including a reserve."""
 AGAIN = "the same command continues from here, and the downloads are kept"
 NO_NETWORK = (
     "This machine cannot reach the Python packages ({}). Is it online? A proxy is read from HTTPS_PROXY, a mirror "
     "from pip's own configuration; " + AGAIN + "."
 )
 _FULL_MB = 50
-"""If there is less free space than this, the disk is taken to be the reason for any failure."""
+"""The free space below which the disk is considered to be the reason for any failure."""
 _NUMBER = re.compile(r"\[Errno (\d+)\]|\(os error (\d+)\)")
 _OFFLINE = re.compile(
     "(?:Temporary failure in )?name resolution|Name or service not known|No address associated with hostname|"
@@ -35,7 +35,7 @@ _WRITE = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
 
 
 def guarded(main: Callable[[], int]) -> int:
-    """Run a program of the set-up and return its exit code. System errors and Ctrl-C are printed as one sentence."""
+    """Run a program of the set-up and return its exit code. Print system errors and Ctrl-C as one message."""
     try:
         code = main()
         sys.stdout.flush()
@@ -43,12 +43,12 @@ def guarded(main: Callable[[], int]) -> int:
         print("\nStopped. The same command continues from here; the downloads are kept.", file=sys.stderr)
         return 130
     except BrokenPipeError:
-        _silence()  # The program that reads the output has exited.
+        _silence()  # the reader of the output has exited
         return 1
     except Exception as error:
         if os.environ.get("GRADER_DEBUG"):
             raise
-        fault = f"An error in the set-up itself: {type(error).__name__}: {error}. Set GRADER_DEBUG=1 to see where."
+        fault = f"An error in the set-up itself: {type(error).__name__}: {error}. GRADER_DEBUG=1 prints the traceback."
         print(of_error(error) or fault, file=sys.stderr)
         _silence()
         return MACHINE_BROKEN
@@ -57,12 +57,12 @@ def guarded(main: Callable[[], int]) -> int:
 
 def _silence() -> None:
     """Keep the interpreter from failing again when it exits and flushes its buffers."""
-    with suppress(OSError):  # it may be impossible to open a file
+    with suppress(OSError):  # opening a file may be impossible
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
 def of_error(error: BaseException) -> Optional[str]:
-    """Return the sentence for a system error in the set-up, or None for any other error."""
+    """Return the message for a system error in the set-up, or None for other errors."""
     if isinstance(error, OSError) and isinstance(error.filename, (str, bytes)):
         return _of_number(error.errno or 0, Path(os.fsdecode(error.filename)))
     if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
@@ -71,7 +71,7 @@ def of_error(error: BaseException) -> Optional[str]:
 
 
 def of_output(said: str, folder: Path) -> Optional[str]:
-    """Return one sentence about why an installer failed, or None. It printed `said` and writes to `folder`."""
+    """Return why an installer failed, or None. `said` is its output, and `folder` is the folder that it writes to."""
     found = _NUMBER.search(said)
     number = int(found.group(1) or found.group(2)) if found else 0
     if number in (errno.ENOSPC, errno.EDQUOT) or _fullest([folder]):
@@ -82,13 +82,13 @@ def of_output(said: str, folder: Path) -> Optional[str]:
 
 
 def offline(said: str) -> Optional[str]:
-    """Return the part of an installer's output that indicates a missing network, or None if there is none."""
+    """Return the part of an installer's output that shows that the network is missing, or None."""
     found = _OFFLINE.search(said)
     return found.group() if found else None
 
 
 def cache() -> Path:
-    """Return the folder where uv keeps its downloads."""
+    """Return the folder of uv's downloads."""
     named = os.environ.get("UV_CACHE_DIR") or "{}/uv".format(os.environ.get("XDG_CACHE_HOME") or "~/.cache")
     return Path(named).expanduser()
 
@@ -99,7 +99,7 @@ def _of_number(number: int, where: Optional[Path]) -> str:
         return sentence(number, str(where or ""), room)
     if number in _WRITE:
         reported = f"{where} cannot be written to ({os.strerror(number)})"
-        return f"{reported}: copy the course's folder to where you may write, such as your home, and try again there."
+        return f"{reported}: copy the course's folder to a writable folder, such as your home, and try again there."
     return sentence(number, str(where or ""))
 
 

@@ -1,4 +1,4 @@
-"""The resource limits of this user that matter for a trial: open files, processes, and the size of pipes."""
+"""The resource limits of this user that affect a trial: open files, processes, and the size of pipes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ LEAST_PROCESSES = 1024
 
 
 def shares() -> tuple[str, str]:
-    """Return the limits, and what to do if they are too low for grading (an empty string if they are not)."""
+    """Return the limits, and what to do if they are too low for grading, or an empty string."""
     files, processes = (resource.getrlimit(which)[0] for which in (resource.RLIMIT_NOFILE, resource.RLIMIT_NPROC))
     reads, writes = os.pipe()
     try:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 def uv(*arguments: str) -> list[str]:
-    """Return the command line of uv, as it is installed in .venv.
+    """Return the command line of the uv in .venv.
 
     uv uses the certificates of the system, as other programs do. If the system has none, uv uses its own.
     """

@@ -1,4 +1,4 @@
-"""The table of `python -m grader.benchmarks.all`, made in a process of its own, since benchmarks use these tests."""
+"""The table of `python -m grader.benchmarks.all`, printed by a separate process, since benchmarks use these tests."""
 
 from __future__ import annotations
 

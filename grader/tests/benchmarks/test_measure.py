@@ -1,4 +1,4 @@
-"""What a command costs. It is measured in a process of its own, since benchmarks use these tests."""
+"""The cost of a command, measured in a separate process, since benchmarks use these tests."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ print(json.dumps([counts, cpu_s, counts and group.folder.exists()]))
 """
 NOT_WAITED_FOR = """
 import os, signal, time
-signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # so nobody waits for the child process
+signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # so no process waits for the child
 reads, writes = os.pipe()
 if os.fork() == 0:
     while time.process_time() < 0.3:
@@ -41,7 +41,7 @@ def test_the_cpu_time_of_a_process_counts_also_if_nobody_waits_for_it() -> None:
     assert done.returncode == 0, done.stderr
     counts, cpu_s, left = json.loads(done.stdout)
     if not counts:
-        pytest.skip("no control group that counts CPU time can be made here")
+        pytest.skip("a control group that counts CPU time cannot be created here")
     assert cpu_s >= 0.3
     assert not left
 

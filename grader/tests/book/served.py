@@ -1,4 +1,4 @@
-"""A web server for a folder of pages, as an instructor would use one."""
+"""A web server for a folder of pages, as an instructor might use."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class _Quiet(http.server.SimpleHTTPRequestHandler):
 
 @contextmanager
 def served(folder: Path) -> Iterator[str]:
-    """Serve the folder on this machine; yields the URL, which ends with a slash."""
+    """Serve the folder on this machine. Yield the URL, which ends with a slash."""
     server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Quiet, directory=str(folder)))
     thread = threading.Thread(target=server.serve_forever, daemon=True)
     thread.start()

@@ -46,7 +46,7 @@ def url(book: Path) -> Iterator[str]:
 
 @pytest.fixture
 def requests() -> list[str]:
-    """The URLs that the tab has requested, and the errors that it has reported."""
+    """Collect the URLs that the tab requests and the errors that it reports."""
     return []
 
 

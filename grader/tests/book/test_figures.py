@@ -1,4 +1,4 @@
-"""The figures that a reader can change: they move like the simulator, and they describe in words what they show."""
+"""The interactive figures move like the simulator, and their text describes what they show."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 
 class Nothing:
-    """A canvas on which nothing is drawn."""
+    """A canvas that ignores everything."""
 
     def color_at(self, _x: float, _y: float) -> tuple[int, int, int]:
         return (0, 0, 0)
 
     def line(self, *_: object) -> None:
-        """Draw nothing."""
+        """Ignore the line."""
 
 
 @pytest.fixture(scope="module")

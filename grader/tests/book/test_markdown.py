@@ -1,4 +1,4 @@
-"""Markdown to the HTML of a lesson."""
+"""The conversion of Markdown to the HTML of a lesson."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A course without a set-up."""
+"""A copy of the course that has not been set up."""
 
 from __future__ import annotations
 

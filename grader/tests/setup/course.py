@@ -1,4 +1,4 @@
-"""A folder for the set-up. No command is really run."""
+"""A folder for tests of the set-up, in which no command is executed."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LEARNER, TESTS = bootstrap.PARTS["learner"], bootstrap.PARTS["tests"]
 
 
 class Course:
-    """A folder for the set-up. Commands are collected instead of run."""
+    """A folder for the set-up. Commands are recorded instead of executed."""
 
     def __init__(self, root: Path) -> None:
         self.root = root
@@ -44,15 +44,15 @@ class Course:
         return 0
 
     def provide(self, needs: list[Need], *_: object) -> str:
-        """A replacement for the package manager."""
+        """Replace the package manager."""
         self.requested.append([need.package for need in needs])
         self.needs = [need for need in self.needs if need.package not in self.granted]
         self.of_tests = [need for need in self.of_tests if need.package not in self.granted]
-        return "" if {need.package for need in needs} <= self.granted else "nobody may"
+        return "" if {need.package for need in needs} <= self.granted else "not allowed"
 
     @property
     def programs(self) -> list[str]:
-        """Return the name of the command that was run: venv or grader.setup.install."""
+        """Return the name of each command that was run: venv or grader.setup.install."""
         known = ("venv", "grader.setup.install")
         return [next(word for word in command if word in known) for command in self.commands]
 

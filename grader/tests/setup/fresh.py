@@ -1,7 +1,7 @@
 """A fresh clone of the course, with nothing installed.
 
-Each `make` target is run in a clone of its own, and one real task is done with the result. These tests need the network
-if the caches of pip and uv lack something. `.ci/doors` and `make test-all` run them.
+Each `make` target is run in a separate clone, and one real task is done with the result. These tests need the network
+if packages are missing in the caches of pip and uv. `.ci/doors` and `make test-all` run them.
 """
 
 from __future__ import annotations
@@ -19,27 +19,27 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).parents[3]
 SET_UP_S = 900
-"""Time limit of a command; with a full cache none takes a minute."""
+"""The time limit of a command (s). With full caches, every command takes less than a minute."""
 NETWORK = ("PIP_", "UV_", "SSL_CERT_", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY", "NO_PROXY")
-"""How this machine reaches packages. A fresh clone gets no other part of the environment."""
+"""The variables with which this machine reaches packages. A fresh clone gets no other part of the environment."""
 
 
 @dataclass(frozen=True)
 class Clone:
-    """The clone, and the home of its user."""
+    """A clone, and the home of its user."""
 
     folder: Path
     home: Path
     within: tuple[str, ...] = ()
-    """A prefix of each command: another user, or another view of the disks."""
+    """A prefix of each command, for another user or another view of the disks."""
     settings: tuple[tuple[str, str], ...] = ()
     """Additional variables."""
 
     def run(self, command: str, *, ends: int = 0, cwd: Path | None = None, **environment: str) -> str:
-        """Run a line of bash. Return everything that it printed.
+        """Run a line of bash. Return its output.
 
         Raises:
-            AssertionError: it ended with another exit code.
+            AssertionError: the exit code is not `ends`.
         """
         started = self._start(command, cwd or self.folder, environment)
         try:
@@ -65,10 +65,10 @@ class Clone:
         )
 
     def stop(self, command: str, at: str, number: signal.Signals) -> str:
-        """Run a command. When it prints `at`, send the signal to it and to all its children. Return what it printed.
+        """Run a command. When it prints `at`, send the signal to it and to all its children. Return its output.
 
         Raises:
-            AssertionError: it ended and had not printed `at`.
+            AssertionError: the command ended without printing `at`.
         """
         started = self._start(command, self.folder, {})
         with started:
@@ -83,17 +83,17 @@ class Clone:
             return printed + (started.stdout.read() if started.stdout else "")
 
     def make(self, target: str) -> str:
-        """Run the target, and check that the installed packages fit together. Return what it printed."""
+        """Run the target, and check that the installed packages are compatible. Return the output."""
         said = self.run(f"make {target}")
         self.run(".venv/bin/uv pip check --python .venv/bin/python")
         return said
 
     def lacks(self, module: str) -> bool:
-        """Return whether its Python lacks a module."""
+        """Return whether the Python of the clone lacks a module."""
         return "No module named" in self.run(f".venv/bin/python -c 'import {module}'", ends=1)
 
     def environment(self) -> dict[str, str]:
-        """An almost empty environment, as with `env -i`. Earlier downloads are used again."""
+        """Return an almost empty environment, as with `env -i`. Earlier downloads are used again."""
         network = {name: value for name, value in os.environ.items() if name.upper().startswith(NETWORK)}
         cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
         settings = Path.home() / ".config/pip/pip.conf"
@@ -116,7 +116,7 @@ def clone(folder: Path) -> Clone:
         cwd=ROOT, capture_output=True, text=True, check=True,
     ).stdout  # fmt: skip
     for name in filter(None, listed.split("\0")):
-        if (ROOT / name).is_file():  # not if it was removed without a commit
+        if (ROOT / name).is_file():  # skip a file that was removed without a commit
             (target / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / name, target / name)
     return Clone(target, home)

@@ -188,7 +188,7 @@ def test_installers_do_not_see_a_sourced_ros_or_an_active_environment() -> None:
 
 
 def bootstrapped(*arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run with the standard library only (-S), as on a machine where nothing is installed yet."""
+    """Run with only the standard library (-S), as on a machine where nothing is installed yet."""
     command = [sys.executable, "-S", "-m", "grader.setup.bootstrap", *arguments]
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
 

@@ -39,7 +39,7 @@ def test_a_learner_goes_on_without_a_sandbox_after_a_message(
     assert course.set_up() == 0
     assert course.programs == ["venv", "grader.setup.install"]
     (reported,) = [line for line in capsys.readouterr().out.splitlines() if "bubblewrap" in line]
-    assert reported.startswith("Without bubblewrap: no marks. It was not installed: nobody may. It comes with: ")
+    assert reported.startswith("Without bubblewrap: no marks. It was not installed: not allowed. To install it: ")
 
 
 def test_what_can_be_done_without_is_tried_for_once_and_reported_each_time(
@@ -63,7 +63,7 @@ def test_what_cannot_be_done_without_is_tried_for_each_time(course: Course, caps
     assert course.commands == []
     message = capsys.readouterr().err
     assert "  - cmake\n" in message
-    assert "They were not installed: nobody may.\n" in message
+    assert "They were not installed: not allowed.\n" in message
 
 
 def test_the_tests_need_a_sandbox(course: Course) -> None:

@@ -1,4 +1,4 @@
-"""The commands as files: what they do before they import a module of the grader."""
+"""The scripts of the commands, before they import a module of the grader."""
 
 from __future__ import annotations
 

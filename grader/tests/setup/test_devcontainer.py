@@ -1,4 +1,4 @@
-"""The development container, tested without starting one."""
+"""The configuration of the development container, tested without starting one."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ JAZZY = machine.SourcedRos("/opt/ros/jazzy", (3, 12), turtlesim=True)
 
 
 USERS = {**os.environ, **({} if SOURCED_ENV else {"ROS_DISTRO": ""})}
-"""A sourced ROS 2 other than the tests' ROS 2 has no effect."""
+"""Ignore a sourced ROS 2 other than that of the tests."""
 
 
 def states(lines: list[Line]) -> dict[str, str]:
@@ -33,13 +33,13 @@ def states(lines: list[Line]) -> dict[str, str]:
 
 @pytest.fixture
 def wheels() -> Ros:
-    """The ROS 2 of the tests looks like the wheels."""
+    """Make the ROS 2 of the tests look like the wheels."""
     return replace(find_ros(), kind="wheels")
 
 
 @pytest.fixture
 def bare(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
-    """Only files are read and nothing is run. Each test breaks one thing."""
+    """Replace all slow tests by results. Each test breaks one of them."""
     monkeypatch.setattr(bubblewrap, "why_unavailable", lambda: None)
     monkeypatch.setattr(underlay, "ensure", lambda _ros, _tell: Path("/cache/turtlesim"))
     monkeypatch.setattr(doctor, "look_at_node", lambda _ros, **_: Line("a node", "starts"))
@@ -168,7 +168,7 @@ def test_a_node_that_is_not_heard_is_reported(monkeypatch: pytest.MonkeyPatch, w
     monkeypatch.setattr(node_test, "_LISTENER", node_test._LISTENER.replace("20.0", "1.0"))
     line = doctor.look_at_node(wheels)
     assert line.state == "broken"
-    assert "no message arrived from it" in line.observed
+    assert "no message arrived" in line.observed
 
 
 def test_a_machine_without_a_sandbox_is_good_enough_for_ones_own_code(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -186,7 +186,7 @@ def test_a_node_that_is_not_heard_without_a_cell_is_reported(monkeypatch: pytest
     monkeypatch.setattr(node_test, "_TALKER", "raise SystemExit('no interfaces')")
     monkeypatch.setattr(node_test, "_LISTENER", node_test._LISTENER.replace("20.0", "1.0"))
     line = doctor.look_at_node(wheels, confined=False)
-    assert (line.state, "no message arrived from it" in line.observed) == ("broken", True)
+    assert (line.state, "no message arrived" in line.observed) == ("broken", True)
 
 
 def test_lines_are_plain_and_whole_when_piped() -> None:

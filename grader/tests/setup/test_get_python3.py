@@ -1,4 +1,4 @@
-"""`make` installs python3 if it is missing. The package manager is a stand-in and provides another stand-in."""
+"""`make` installs python3 if it is missing. The package manager is a stand-in that installs another stand-in."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SUDO_ASKS = '[ "$1" = -n ] && exit 1; exec "$@"'
 
 
 class Machine:
-    """A machine without python3: its PATH has stand-ins and the few programs that the script runs."""
+    """A machine without python3. Its PATH contains stand-ins and the few programs that the script runs."""
 
     def __init__(self, folder: Path, user: int) -> None:
         self.folder = folder
@@ -75,7 +75,7 @@ def test_without_rights_the_command_is_reported(tmp_path: Path, sudo: str) -> No
         machine.stand_ins.add("sudo", sudo)
     done = machine.run()
     assert done.returncode == 3
-    assert "There is no python3 here. Install it as root, then run make again: apt-get update && " in done.stderr
+    assert "python3 is not installed. Install it as root, then run make again: apt-get update && " in done.stderr
     assert [call for call in machine.calls() if call.startswith("apt-get")] == []
 
 
@@ -96,7 +96,7 @@ def test_a_failure_is_reported_in_the_managers_own_words(tmp_path: Path) -> None
 
 def test_without_a_package_manager_that_is_said(tmp_path: Path) -> None:
     done = Machine(tmp_path, 0).run()
-    assert (done.returncode, "There is no python3 here." in done.stderr) == (3, True)
+    assert (done.returncode, "python3 is not installed." in done.stderr) == (3, True)
 
 
 def test_make_runs_it_where_there_is_no_python3(tmp_path: Path) -> None:
@@ -107,7 +107,7 @@ def test_make_runs_it_where_there_is_no_python3(tmp_path: Path) -> None:
     (tmp_path / "grader").symlink_to(SCRIPT.parents[1])
     env = {"PATH": machine.stand_ins.path}
     done = subprocess.run([program, "python3"], cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
-    assert "There is no python3 here." in done.stderr, done
+    assert "python3 is not installed." in done.stderr, done
 
 
 def test_the_script_holds_for_shellcheck() -> None:

@@ -12,13 +12,13 @@ from grader.setup.bootstrap import PARTS
 
 
 class Installers:
-    """The requests to the installers, which are not run."""
+    """Records the requests to the installers instead of running them."""
 
     def __init__(self) -> None:
         self.pip: list[str] = []
         self.uv: list[str] = []
         self.failed: dict[str, str] = {}
-        """Return the output of an installer that fails, selected by its name."""
+        """The output of an installer that fails, by its name."""
 
     def run(self, command: list[str], _: dict[str, str]) -> install.Ran:
         if "--editable" in command:

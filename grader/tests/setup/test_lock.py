@@ -63,7 +63,7 @@ def applies(entry: lock.Entry, python: str) -> bool:
 
 
 def applying(python: str) -> dict[str, str]:
-    """Return name -> version of each package that the lock file installs for a Python. A name must have one version."""
+    """Return name -> version of each package that the lock file installs for a Python. Names must be unique."""
     found: dict[str, str] = {}
     for entry in ENTRIES:
         if applies(entry, python):
@@ -112,7 +112,7 @@ def test_ros_is_a_part_of_its_own() -> None:
 
 
 def named_by_the_project(parts: list[str]) -> list[Requirement]:
-    """The requirements in pyproject.toml for these parts of the lock file."""
+    """Return the requirements in pyproject.toml for these parts of the lock file."""
     project = tomllib.loads(lock.PROJECT.read_text(encoding="utf-8"))["project"]
     extras = {"grader": "view", "tests": "dev"}
     texts = chain.from_iterable(project["optional-dependencies"][extras.get(part, part)] for part in parts)
@@ -120,7 +120,7 @@ def named_by_the_project(parts: list[str]) -> list[Requirement]:
 
 
 def resolved(wanted: list[Requirement]) -> set[str]:
-    """Return the names of all packages that these need, according to the metadata of the installed packages."""
+    """Return the names of all packages that these requirements need, according to the installed metadata."""
     found: set[tuple[str, str]] = set()
     while wanted:
         need = wanted.pop()
@@ -134,7 +134,7 @@ def resolved(wanted: list[Requirement]) -> set[str]:
 @pytest.mark.parametrize("sourced", [pytest.param(False, marks=of_the_wheels), True], ids=["wheels", "sourced"])
 @pytest.mark.parametrize("parts", bootstrap.PARTS.values(), ids=list(bootstrap.PARTS))
 def test_each_set_up_has_all_that_its_packages_need(parts: list[str], *, sourced: bool) -> None:
-    # For this Python. setup/test_resolved.py asks uv about the others, which needs the network.
+    # Check this Python. test_resolved.py checks the others with uv, which needs the network.
     chosen = [part for part in parts if not (sourced and part == "ros")]
     needed = resolved([need for need in named_by_the_project(chosen) if not need.marker or need.marker.evaluate()])
     assert len(needed) > 70
@@ -143,7 +143,7 @@ def test_each_set_up_has_all_that_its_packages_need(parts: list[str], *, sourced
 
 
 def test_a_part_has_all_versions_of_a_package() -> None:
-    # The Python decides which one is installed.
+    # The version of Python decides which one is installed.
     for part, entries in PARTS.items():
         names = {entry.name for entry in entries}
         if part not in lock.ALWAYS:
@@ -152,7 +152,7 @@ def test_a_part_has_all_versions_of_a_package() -> None:
 
 
 def test_no_two_packages_write_the_same_file() -> None:
-    # uv installs in parallel, so chance would decide which of the two files remains.
+    # uv installs in parallel, so either of the two files could remain.
     names = {canonicalize_name(entry.name) for entry in ENTRIES}
     writers: dict[str, set[str]] = {}
     for package in metadata.distributions():

@@ -24,7 +24,7 @@ JAZZY = SourcedRos("/opt/ros/jazzy", (3, 12), turtlesim=False)
 
 @pytest.fixture
 def closed() -> Iterator[Path]:
-    """A folder below /tmp that only its owner can enter, with a folder in it."""
+    """Create a folder in /tmp that only its owner can access, with a folder in it."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name, "home")
         (folder / "bin").mkdir(parents=True)
@@ -34,7 +34,7 @@ def closed() -> Iterator[Path]:
 
 
 def fake_python(folder: Path, name: str, version: tuple[int, int, int], path: str | None = None) -> None:
-    """A program that answers the probe like an interpreter."""
+    """Create a program that answers the probe like an interpreter."""
     folder.mkdir(parents=True, exist_ok=True)
     answer = {"path": path or str(folder / name), "version": version, "cpython": True, "venv": True, "headers": True}
     (folder / name).write_text(f"#!/bin/sh\necho '{json.dumps(answer)}'\n")
@@ -68,7 +68,7 @@ def test_what_runs_first_reads_under_an_old_python(name: str) -> None:
 
 
 def too_new(tree: ast.Module) -> list[str]:
-    """Code that Python 3.6 can parse but not run: types in the syntax of later versions, and later modules."""
+    """Return code that Python 3.6 can parse but not run: types in the syntax of later versions, and later modules."""
     found = [node.module or "" for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
     found = [name for name in found if name in ("__future__", "collections.abc", "dataclasses")]
     for node in ast.walk(tree):
@@ -195,7 +195,7 @@ def test_a_python_is_tried_with_the_environment_that_the_ros_needs(tmp_path: Pat
     (tmp_path / "python3").chmod(0o755)
     bare = here._replace(path=str(tmp_path / "python3"))
     assert machine.for_ros(bare, ros).lacks == tuple(machine.LEFT_TO_ROS)
-    assert machine.for_ros(bare, ros._replace(python=(3, 9))).lacks == (), "it will not do whatever it has"
+    assert machine.for_ros(bare, ros._replace(python=(3, 9))).lacks == (), "its version does not match"
     assert machine.for_ros(here._replace(path="/nowhere/python3"), ros).lacks == tuple(machine.LEFT_TO_ROS)
 
 

@@ -1,4 +1,4 @@
-"""`make cluster` in a fresh clone: a submission is graded by a Dask worker."""
+"""`make cluster` in a fresh clone: a Dask worker grades a submission."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ STEP = "03-circle-publisher"
 
 @contextmanager
 def cluster(course: Clone) -> Iterator[str]:
-    """A scheduler and a worker, started as the instructions for many machines say. Returns the engine's name."""
+    """Start a scheduler and a worker with the documented commands. Yield the name of the engine."""
     address = course.home / "scheduler.json"
     commands = [
         ["scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(address)],

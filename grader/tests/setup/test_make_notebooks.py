@@ -26,7 +26,7 @@ def test_a_notebook_is_run_and_graded(tmp_path: Path) -> None:
     assert following == ["source .venv/bin/activate", f"jupyter lab exercises/{FIRST}/{FIRST}.ipynb"]
     assert (course.folder / "exercises" / FIRST / f"{FIRST}.ipynb").is_file()
     assert course.lacks("distributed")
-    # A student's notebook in a folder of their own, run by the installed kernel.
+    # The installed kernel executes a student's notebook in a separate folder.
     shutil.copytree(course.folder / "solutions" / STEP, course.home / STEP)
     activate = f"source {shlex.quote(str(course.folder / '.venv/bin/activate'))}"
     course.run(f"{activate} && jupyter execute --inplace {STEP}.ipynb", cwd=course.home / STEP)

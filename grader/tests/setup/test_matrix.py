@@ -1,4 +1,4 @@
-"""The real set-up in a fresh clone: with each Python, as an ordinary user, on a small disk, and interrupted."""
+"""The real set-up in a fresh clone: with each Python, as an ordinary user, on a small disk, and after interruptions."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ pytestmark = [pytest.mark.exhaustive, pytest.mark.door]
 PASSED = "Passed: 100 of 100 points."
 MINORS = range(machine.OLDEST[1], machine.NEWEST[1] + 1)
 ORDINARY = 54321
-"""The uid of a user that the system does not know."""
+"""The user id of a user that the system does not have."""
 STAGES = (
     "Making .venv",
     "Installing the installer",
@@ -33,11 +33,11 @@ STAGES = (
     "Set up:",
     "$ grader check",
 )
-"""The lines that the set-up prints when a stage begins or ends."""
+"""The lines that the set-up prints at the beginning or end of a stage."""
 
 
 def pythons() -> dict[int, str]:
-    """Return each suitable Python on this machine by its minor version: the system's and pyenv's."""
+    """Return each suitable Python on this machine by its minor version, from the system and from pyenv."""
     versions = sorted(Path.home().glob(".pyenv/versions/*/bin"))
     path = os.pathsep.join([*machine.SYSTEM_PATH, os.environ.get("PATH", ""), *map(str, versions)])
     fit = (python for python in machine.find_pythons(path) if python.cpython and python.venv and python.headers)
@@ -51,15 +51,15 @@ def pythons() -> dict[int, str]:
 def test_each_python(tmp_path: Path, minor: int) -> None:
     here = pythons()
     if minor not in here:
-        pytest.skip(f"there is no Python 3.{minor} with its headers here")
+        pytest.skip(f"Python 3.{minor} with headers is not installed")
     said = clone(tmp_path).run(f"make demo PYTHON={here[minor]}")
-    assert f"Making .venv with Python 3.{minor}." in said
+    assert f"Creating .venv with Python 3.{minor}." in said
     assert PASSED in said
 
 
 @pytest.fixture
 def ordinary(tmp_path: Path) -> Iterator[Clone]:
-    """The clone of an ordinary user. It has nothing that belongs to root."""
+    """Create a clone that belongs to an ordinary user, without any file of root."""
     if os.getuid() != 0:
         yield clone(tmp_path)
         return

@@ -1,4 +1,4 @@
-"""Installing system packages, with stand-ins for package managers and sudo."""
+"""The installation of system packages, with stand-ins for package managers and sudo."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ APT = "apt-get install -y -q --no-install-recommends -o DPkg::Lock::Timeout=60 -
 
 
 class Machine:
-    """A machine with stand-ins, and the messages on it."""
+    """A machine with stand-ins, and the messages of the set-up."""
 
     def __init__(self, folder: Path) -> None:
         self.stand_ins = StandIns(folder)
         self.said: list[str] = []
 
     def provide(self, *needs: Need, **env: str) -> str:
-        # The shell itself is the real one.
+        # The shell is the real one.
         given = {"PATH": f"{self.stand_ins.path}:/usr/bin:/bin", **env}
         return provide.provide(needs, given, self.said.append)
 
@@ -127,7 +127,7 @@ def test_nothing_is_touched_where_that_was_requested(machine: Machine) -> None:
 def test_without_a_manager_or_sudo_nothing_is_tried(machine: Machine) -> None:
     assert machine.provide(CMAKE) == "the set-up does not know a package manager of this system"
     machine.stand_ins.add("apt-get")
-    assert machine.provide(CMAKE) == "only root can install it, and there is no sudo"
+    assert machine.provide(CMAKE) == "only root can install it, and sudo is not installed"
     assert (machine.stand_ins.calls(), machine.said) == ([], [])
 
 
@@ -137,7 +137,7 @@ def test_where_there_is_no_terminal_nobody_is_prompted_for_a_password(
     machine.stand_ins.add("apt-get")
     machine.stand_ins.add("sudo", SUDO_ASKS)
     monkeypatch.setattr(sys, "stdin", open(os.devnull))  # noqa: SIM115, PTH123
-    assert "sudo needs a password, for which there is no terminal" in machine.provide(CMAKE)
+    assert "sudo needs a terminal to ask for a password" in machine.provide(CMAKE)
     assert machine.stand_ins.calls() == ["sudo -n true"]
 
 
@@ -156,7 +156,7 @@ needs = [package_managers.Need("cmake", "cmake"), package_managers.Need("bubblew
 print("why:", repr(provide.provide(needs, {{**os.environ, "PATH": "{tmp_path}:/usr/bin:/bin"}}, print)))
 """
     ours, theirs = pty.openpty()
-    # The command gets a session of its own, so that sudo finds this terminal.
+    # Start the command in a new session, so that sudo finds this terminal.
     command = ["setsid", "--ctty", sys.executable, "-c", code]
     with subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=theirs):
         os.close(theirs)

@@ -1,4 +1,4 @@
-"""The real set-up on a machine that refuses something: one sentence says what to do, and there is no traceback."""
+"""The real set-up on a machine without network, permission or space prints one message and no traceback."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ NOTHING_KEPT = (("PIP_CACHE_DIR", "/nowhere/pip"), ("UV_CACHE_DIR", "/nowhere/uv
 
 
 def refused(course: Clone, said: str) -> None:
-    """Check that `make demo` ends with this sentence."""
-    printed = course.run("make demo", ends=2)  # make has its own exit code for every failed command
+    """Check that `make demo` ends with this message."""
+    printed = course.run("make demo", ends=2)  # make exits with 2 if a command fails
     assert f"Error {MACHINE_BROKEN}" in printed
     (sentence,) = [line for line in printed.splitlines() if said in line]
     assert sentence.endswith(".")
@@ -45,7 +45,7 @@ def test_on_a_full_disk(tmp_path: Path, room: int) -> None:
 
 
 def on_a_disk(course: Clone, room: int) -> Clone:
-    """The clone on its own disk with this much space (bytes). Each command gets a new one."""
+    """Return the clone on a separate disk with this much space (bytes). Each command gets a new disk."""
     original = course.folder.with_name("original")
     course.folder.rename(original)
     course.folder.mkdir()

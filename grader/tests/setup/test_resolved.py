@@ -1,6 +1,6 @@
-"""Each part of the lock file is complete for every Python: uv resolves its list and finds nothing missing.
+"""Each part of the lock file is complete for every Python: uv resolves its list and finds no other packages.
 
-So each set-up is complete, since it consists of such parts. The test needs the network if uv's cache lacks something.
+Each set-up consists of such parts, so it is complete. The test needs the network if packages are missing in uv's cache.
 """
 
 from __future__ import annotations

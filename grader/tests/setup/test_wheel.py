@@ -1,4 +1,4 @@
-"""The course as a wheel, installed outside of a checkout: the same commands work in an empty home folder."""
+"""The course as a wheel, installed outside a checkout: the same commands work in an empty home folder."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ def run(*argv: object, cwd: Path, env: dict[str, str] | None = None) -> str:
 
 @pytest.fixture
 def installed(tmp_path: Path) -> Path:
-    """The command `grader` of an environment that was made from the lock file and our wheel."""
+    """Return the command `grader` in an environment created from the lock file and our wheel."""
     run(UV, "build", "--wheel", "--no-build-isolation", "--out-dir", tmp_path / "dist", ".", cwd=ROOT)
     run(UV, "venv", "--python", sys.executable, tmp_path / "venv", cwd=tmp_path)
     install = (UV, "pip", "install", "--python", tmp_path / "venv/bin/python", "--no-deps", "--no-build-isolation")
     text = lock.LOCK_FILE.read_text("utf-8")
-    # setuptools comes first, since it builds packages that have no wheel
+    # setuptools first, since it builds packages without a wheel
     for name, only in (("first", frozenset({"setuptools"})), ("rest", None)):
         file = tmp_path / f"{name}.txt"
         file.write_text(lock.select(text, ["setup", "grader", "ros"], only=only))

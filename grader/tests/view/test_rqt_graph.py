@@ -198,7 +198,7 @@ def test_a_sourced_rqt_graph_does_not_get_options_that_it_does_not_know(
 
 
 def test_what_may_be_missing_is_reported(tutorial: World) -> None:
-    # A process that occupies the port of a participant and sends nothing, like one that was stopped.
+    # This process uses the port of a participant but sends nothing, like a stopped process.
     port = 7400 + 250 * int(tutorial.env["ROS_DOMAIN_ID"]) + 10 + 2 * 100
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as silent:
         silent.bind(("127.0.0.1", port))
