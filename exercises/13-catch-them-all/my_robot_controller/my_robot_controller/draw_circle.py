@@ -29,7 +29,7 @@ def main(args=None):
     try:
         rclpy.spin(node)
     except (KeyboardInterrupt, ExternalShutdownException):
-        pass  # Ctrl-C is the way this node is meant to end.
+        pass  # Ctrl-C is the normal way to stop this node.
     finally:
         node.destroy_node()
         rclpy.try_shutdown()

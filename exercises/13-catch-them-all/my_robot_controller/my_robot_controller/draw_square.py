@@ -25,9 +25,9 @@ class DrawSquareNode(Node):
 
     def step(self):
         if self.publisher.get_subscription_count() == 0:
-            return  # nobody listens yet: a command sent now would be lost
+            return  # no subscriber yet: the command would be lost
         msg = Twist()
-        # TODO c: set the speeds that belong to the state, count the call, and change the state when it is over.
+        # TODO c: set the speeds of the state, count the call, and change the state when it is over.
         self.publisher.publish(msg)
 
 

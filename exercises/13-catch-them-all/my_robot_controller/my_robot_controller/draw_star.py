@@ -32,8 +32,8 @@ class DrawStarNode(Node):
 
     def step(self):
         if self.publisher.get_subscription_count() == 0 or not self.client.server_is_ready():
-            return  # the simulator is not there yet
-        # TODO 10: what belongs to the state? "corner": send the goal, once. "turn": nothing at all; a command would
+            return  # the simulator is not running yet
+        # TODO 10: what happens in each state? "corner": send the goal, once. "turn": nothing at all; a command would
         # abort the goal. "drive": a side in TICKS calls, then a command with zeros, then the next corner or the end.
 
     def drive(self, speed):

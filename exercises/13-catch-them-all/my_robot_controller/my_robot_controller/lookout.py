@@ -43,15 +43,15 @@ class LookoutNode(Node):
         pass
 
     def feedback_received(self, message):
-        # TODO 7: only remember what message.feedback says.
+        # TODO 7: store the value of message.feedback.
         pass
 
     def goal_ended(self, future):
-        # TODO 6: there is no goal any more. If it succeeded, the next one is on the other side.
+        # TODO 6: the goal has ended. If it succeeded, the next one is on the other side.
         pass
 
     def stop(self, request, response):
-        # TODO 8: if there is a goal, ask to cancel it, without waiting. Say in the response if there was one.
+        # TODO 8: if there is a goal, cancel it, without waiting. The response says whether there was one.
         return response
 
 

@@ -10,7 +10,7 @@ FASTEST_TURN = 3.0  # rad/s
 
 
 class TunableCircleNode(Node):
-    """Looks at its parameters before each command."""
+    """Reads its parameters before each command."""
 
     def __init__(self):
         super().__init__("tunable_circle")

@@ -1,9 +1,9 @@
-"""A node that keeps the turtle away from the walls. It is right: test it, and do not change it.
+"""A node that keeps the turtle away from the walls. It is correct: test it, and do not change it.
 
 What it promises:
 
 1. It publishes geometry_msgs/msg/Twist on /turtle1/cmd_vel, every 0.1 s.
-2. Before the first pose has come on /turtle1/pose, it publishes nothing.
+2. Before the first pose has arrived on /turtle1/pose, it publishes nothing.
 3. Away from the walls it drives straight on: linear.x is 1.0 m/s.
 4. Less than 1.0 m from a wall, it slows down to 0.5 m/s and turns to the left: angular.z is 1.5 rad/s. The walls are at
    0 m and at 11 m, in x and in y. When it is away from the wall, it drives straight on again.

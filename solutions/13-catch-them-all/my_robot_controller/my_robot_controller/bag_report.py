@@ -1,4 +1,4 @@
-"""Say what a bag holds: how many poses, at which rate, and the circle that they are on."""
+"""Print the number of poses in a bag, their rate, and the circle on which they lie."""
 
 import sys
 from pathlib import Path

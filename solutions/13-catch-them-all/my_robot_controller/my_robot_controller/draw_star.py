@@ -38,7 +38,7 @@ class DrawStarNode(Node):
 
     def step(self):
         if self.publisher.get_subscription_count() == 0 or not self.client.server_is_ready():
-            return  # the simulator is not there yet
+            return  # the simulator is not running yet
         # BEGIN SOLUTION
         if self.state == "corner":
             self.state = "turn"
@@ -55,7 +55,7 @@ class DrawStarNode(Node):
             self.state = "corner" if self.sides < SIDES else "done"
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 10: what belongs to the state? "corner": send the goal, once. "turn": nothing at all; a command would
+        # # TODO 10: what happens in each state? "corner": send the goal, once. "turn": nothing at all; a command would
         # # abort the goal. "drive": a side in TICKS calls, then a command with zeros, then the next corner or the end.
         # END STARTER
 

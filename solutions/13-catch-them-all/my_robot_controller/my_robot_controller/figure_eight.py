@@ -13,7 +13,7 @@ PERIOD = 0.1  # s
 
 
 class FigureEightNode(Node):
-    """Turns to the other side when a lobe is closed, and stops after two lobes."""
+    """Drives a lobe to the left and one to the right, and then stops."""
 
     def __init__(self):
         super().__init__("figure_eight")
@@ -23,7 +23,7 @@ class FigureEightNode(Node):
 
     def step(self):
         if self.publisher.get_subscription_count() == 0:
-            return  # nobody listens yet: a command sent now would be lost
+            return  # no subscriber yet: the command would be lost
         msg = Twist()
         # BEGIN SOLUTION
         turn = 2 * math.pi / (TICKS * PERIOD)  # rad/s

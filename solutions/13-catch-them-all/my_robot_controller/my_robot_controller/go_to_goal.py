@@ -13,7 +13,7 @@ CLOSE = 0.05  # m
 
 
 class GoToGoalNode(Node):
-    """Looks at the pose before each command."""
+    """Computes each command from the turtle's pose."""
 
     def __init__(self):
         super().__init__("go_to_goal")

@@ -73,7 +73,7 @@ class LookoutNode(Node):
         self.remaining = message.feedback.remaining
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 7: only remember what message.feedback says.
+        # # TODO 7: store the value of message.feedback.
         # pass
         # END STARTER
 
@@ -88,7 +88,7 @@ class LookoutNode(Node):
         self.turn()
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 6: there is no goal any more. If it succeeded, the next one is on the other side.
+        # # TODO 6: the goal has ended. If it succeeded, the next one is on the other side.
         # pass
         # END STARTER
 
@@ -100,7 +100,7 @@ class LookoutNode(Node):
             self.goal.cancel_goal_async()
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 8: if there is a goal, ask to cancel it, without waiting. Say in the response if there was one.
+        # # TODO 8: if there is a goal, cancel it, without waiting. The response says whether there was one.
         # END STARTER
         return response
 

@@ -15,7 +15,7 @@ TURN = math.pi / (TICKS * PERIOD)  # rad/s: an arc is half a circle
 
 
 class TwoPensNode(Node):
-    """Asks for a pen, draws, asks for a turtle and another pen, draws, and stands still."""
+    """Sets a pen, draws an arc, spawns a turtle, sets another pen, draws an arc, and stops."""
 
     def __init__(self):
         super().__init__("two_pens")
@@ -28,7 +28,7 @@ class TwoPensNode(Node):
 
     def step(self):
         if self.publisher.get_subscription_count() == 0:
-            return  # nobody listens yet: a command sent now would be lost
+            return  # no subscriber yet: the command would be lost
         msg = Twist()
         if self.state == "begin":
             if self.pen.service_is_ready() and self.spawn.service_is_ready():

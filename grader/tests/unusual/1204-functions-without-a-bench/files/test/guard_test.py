@@ -32,7 +32,7 @@ class Bench:
         self.run(1)
 
     def spin(self):
-        # Each turn does at most one thing: the guard's timer, the listener's message. Six turns are more than enough.
+        # Each call runs at most one callback: the guard's timer or the listener's. Six calls are more than enough.
         import time
 
         until = time.monotonic() + 0.02
