@@ -64,6 +64,7 @@ OURS = {
     ("in_cell", "_next_run"): "the command that colcon starts, in its cell",
     ("judging", "so_far"): "a submission that is already read",
     ("launcher", "main"): "a request of the conductor",
+    ("node_in_cell", "main"): "a request of the desk",
     ("node_process", "_find_pid"): "the output of bubblewrap",
     ("page_process", "main"): "a request of the desk",
     ("progress", "_read"): "the learner's state",
