@@ -1,4 +1,4 @@
-"""What a recording shows of targets, the turtles besides turtle1: where they were, and which names were announced."""
+"""The targets in a recording, which are the turtles other than turtle1: their places and the announced names."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def announcements(recording: Recording, topic: str) -> list[Announcement]:
 
 
 def _text(data: bytes) -> str:
-    """Return the characters of a serialized String. In CDR, a zero byte ends them, and it counts."""
+    """Return the characters of a serialized String. In CDR, its length includes a zero byte at the end."""
     if len(data) < HEADER:
         return ""
     (length,) = struct.unpack_from("<I", data, HEADER - 4)
@@ -66,13 +66,13 @@ def place_at(track: Track, t_s: float) -> tuple[float, float]:
 
 
 def distance_m(recording: Recording, track: Track, t_s: float) -> float:
-    """Return how far turtle1 is from a target at this time (m)."""
+    """Return the distance of turtle1 from a target at this time (m)."""
     (x, y), (to_x, to_y) = place_of_turtle1(recording, t_s), place_at(track, t_s)
     return math.hypot(to_x - x, to_y - y)
 
 
 def is_there(track: Track, from_s: float, to_s: float) -> bool:
-    """Return whether the target is there at any time between these two (s)."""
+    """Return whether the target exists at any time between these two times (s)."""
     return track.rows[0][0] <= to_s and (track.gone_s is None or track.gone_s >= from_s)
 
 

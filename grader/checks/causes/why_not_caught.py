@@ -1,4 +1,4 @@
-"""Why some targets were not caught: the turtle does not move, stands still, or has not enough time."""
+"""Why some targets were not caught: the turtle does not move, stops, or does not have enough time."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
         return _never_drives(evidence, left)
     if _moved_m(evidence, activity.end_s(recording) - STILL_S) <= STILL_M:
         return _stands_still(evidence, left)
-    text = "The turtle still drove when the time was over."
+    text = "The turtle was still driving at the end of the trial."
     if left:
         near_m, name = min((_nearest_m(evidence, track), track.turtle) for track in left)
         text += f" It came as near as {near_m:.1f} m to {shorten(name)}."
@@ -76,7 +76,7 @@ def _never_drives(evidence: Evidence, left: list[Track]) -> Cause:
     poses = sorted({each.topic for each in subscriptions if each.topic.endswith("/pose")} - {OWN_POSE})
     wanted = [f"/{track.turtle}/pose" for track in left]
     if set(poses) & set(wanted):
-        return Cause("never-drives", "All commands that arrived were zeros.", evidence.place("publish"))
+        return Cause("never-drives", "All commands that arrived had only zeros.", evidence.place("publish"))
     text = "The node does not subscribe to the pose of any target."
     if poses:
         text = f"The node subscribes to {shorten(poses[0])}, but to the pose of no target: {a_list(wanted)}."
@@ -102,12 +102,12 @@ def _stands_still(evidence: Evidence, left: list[Track]) -> Cause:
                 return why
         text = f"It stands beside {shorten(near.turtle)}."
         return Cause("stands-still", text, evidence.place("call_async", "publish"))
-    text = "The turtle stood still at the end. After a catch, the next target must become the nearest one."
+    text = "The turtle stood still at the end. After a catch, the node must choose the next nearest target."
     return Cause("stands-still", text, evidence.place("call_async", "publish"))
 
 
 def _moved_m(evidence: Evidence, from_s: float) -> float:
-    """Return how far apart the places of turtle1 are from this time on (m)."""
+    """Return the largest distance between two positions of turtle1 from this time on (m)."""
     frames = evidence.recording.frames
     rows = (frames.t_s >= from_s) & (frames.t_s <= activity.end_s(evidence.recording))
     if not rows.any():
@@ -116,9 +116,9 @@ def _moved_m(evidence: Evidence, from_s: float) -> float:
 
 
 def loop_variable(evidence: Evidence) -> Cause | None:
-    """Return the cause if a function that is made in a loop uses the loop's variable. Otherwise return None.
+    """Return the cause if a function that is created in a loop uses the loop variable, else None.
 
-    All these functions use the last value. A default value (`name=name`) keeps the value of each turn.
+    All these functions use the last value. A default value (`name=name`) keeps the value of each iteration.
     """
     for module in evidence.code.modules:
         for loop in (node for node in module.nodes if isinstance(node, ast.For)):
@@ -126,9 +126,9 @@ def loop_variable(evidence: Evidence) -> Cause | None:
             for made in ast.walk(loop):
                 if isinstance(made, ast.Lambda | ast.FunctionDef) and _uses(made, name):
                     text = (
-                        f"The function is made in a loop, and uses {shorten(name)}, the variable of the loop. When it "
-                        "is called, the loop is over, and the variable has its last value. Make the function in a "
-                        "method that gets the value as an argument."
+                        f"The function is created in a loop and uses {shorten(name)}, the loop variable. When it is "
+                        "called, the loop has ended, and the variable has its last value. Create the function in a "
+                        "method that takes the value as an argument."
                     )
                     return Cause("loop-variable", text, Where(module.file, made.lineno))
     return None

@@ -1,4 +1,4 @@
-"""Checks of a node that drives turtle1 to other turtles and has them removed, the nearest first."""
+"""Checks of a node that drives turtle1 to other turtles and requests their removal, the nearest first."""
 
 from __future__ import annotations
 
@@ -26,18 +26,19 @@ if TYPE_CHECKING:
     from grader.trial.recording import Recording
 
 NEARER_M = 0.5
-"""A target counts as nearer if it is nearer by more than this (m). The turtle drives while the node decides."""
+"""The minimum difference of two distances for one target to count as nearer (m). The turtle moves while the node
+decides."""
 SLACK_M = 0.1
-"""A pose is a little old when the node decides, and the turtle drives on (m)."""
+"""The additional distance that is allowed because a pose is slightly old when the node decides (m)."""
 OFTEN = 3
-"""How many calls for one target are too many. A node may ask twice if a response is late."""
+"""The number of calls for one target that are too many. A node may call twice if a response is late."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Catches:
-    """How many targets there must be, at least."""
+    """The minimum number of targets."""
 
-    turtles: float = number(1, at_least=1, about="How many turtles must be there to be caught, at least.")
+    turtles: float = number(1, at_least=1, about="The minimum number of turtles to catch.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,7 +46,7 @@ class WithinReach:
     """The service that removes a target, and the distance from which the node may call it (m)."""
 
     service: str = string("the full name of a service", start="/", about="The service that the node calls.")
-    reach_m: float = number(above=0, about="How near turtle1 must be to the target.")
+    reach_m: float = number(above=0, about="The maximum distance of turtle1 from the target.")
 
 
 def catches(evidence: Evidence, params: Catches) -> Finding:
@@ -60,7 +61,7 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
         text = "The turtle must drive to each target: publish on /turtle1/cmd_vel."
         return failed(observed, expected, Cause("not-driven", text, evidence.place("create_client", "ActionClient")))
     if evidence.trial.scenario.targets and "kill" in recording.interventions:
-        text = "Only the spawner removes a target. Ask it with its service /catch."
+        text = "Only the spawner may remove a target. Call its service /catch."
         cause = Cause("not-driven", text, evidence.place("create_client"))
         return failed("The node removed a target itself, with /kill.", expected, cause)
     if len(gone) == len(tracks) >= params.turtles:
@@ -79,15 +80,15 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
 
 
 def _forbidden(recording: Recording) -> str | None:
-    """Return the call that moved turtle1, or None. Removing a target is no such call."""
+    """Return the call that moved turtle1, or None. The removal of a target is allowed."""
     moving = tuple(name for name in recording.interventions if name in MOVING)
     return moved_by(replace(recording, interventions=moving), from_start=True)
 
 
 def nearest_first(evidence: Evidence, _: NoParams) -> Finding:
-    """Each time, the target that was nearest when the last one was caught is the next one."""
+    """After each catch, the next target is the one that was nearest to turtle1 at that time."""
     recording = evidence.recording
-    expected = "Each time, the next target is the one that is nearest to turtle1."
+    expected = "The next target is always the one that is nearest to turtle1."
     gone = caught(recording)
     if not gone:
         return failed("No target was caught.", expected, why_not_caught(evidence, list(recording.tracks)))
@@ -118,14 +119,17 @@ def _other_order(
         f"{chosen_m:.1f} m, but {shorten(track.turtle)} was caught first."
     )
     names = [each.turtle for each in gone]
-    text = "Compute the distance from turtle1 to each target that is left, each time anew."
+    text = "After each catch, compute the distance from turtle1 to each remaining target again."
     recording = evidence.recording
     by_start = sorted(gone, key=lambda each: distance_m(recording, each, 0.0))
     farthest = max(recording.tracks, key=lambda each: distance_m(recording, each, 0.0))
     if names == sorted(names):
         text = "The targets were caught in the order of their names."
     elif [each.turtle for each in by_start] == names:
-        text = "The targets were caught by their distances from the start. After each catch, turtle1 is somewhere else."
+        text = (
+            "The targets were caught in the order of their distances from the start. After each catch, turtle1 is "
+            "at another place."
+        )
     elif gone[0] is farthest:
         text = "The first target was the farthest one."
     return failed(observed, expected, Cause("other-order", text, evidence.place("min", "sorted", "sort", "max")))
@@ -151,12 +155,12 @@ def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
             observed = f"When the node called {params.service} for {track.turtle}, it was {away_m:.2f} m away."
             return failed(observed, expected, Cause("from-afar", "", where), near_edge=_near(away_m, params))
     if often:
-        observed = f"The node called {params.service} for {often[0]} again and again."
-        text = "Remember that the node has asked, until the response is there."
-        return failed(observed, f"{expected} Once is enough.", Cause("catch-again", text, where))
+        observed = f"The node called {params.service} for {often[0]} repeatedly."
+        text = "Store that the node has called the service, until the response arrives."
+        return failed(observed, f"{expected} One call is enough.", Cause("catch-again", text, where))
     if not calls:
         return failed(f"The node never called {params.service}.", expected, why_unasked(evidence, params.service))
-    return passed("The node asked for each target when it was near.")
+    return passed("The node called the service for each target when it was near.")
 
 
 def _near(away_m: float, params: WithinReach) -> bool:
@@ -169,7 +173,7 @@ CATCHES = Kind(
     "All turtles are caught",
     Catches,
     catches,
-    about="All turtles besides turtle1 are gone before the end, and turtle1 only drove.",
+    about="All turtles except turtle1 are removed before the end, and only velocity commands moved turtle1.",
     drives=True,
 )
 NEAREST_FIRST = Kind(
@@ -178,12 +182,12 @@ NEAREST_FIRST = Kind(
     "The nearest one is caught first",
     NoParams,
     nearest_first,
-    about="Each time, the turtle that was nearest to turtle1 after the last catch is the next one.",
+    about="After each catch, the next turtle is the one that was nearest to turtle1.",
 )
 WITHIN_REACH = Kind(
     "within_reach",
     "trial",
-    "The node catches from near by",
+    "The node catches only near targets",
     WithinReach,
     within_reach,
     about="The node calls the service that removes a turtle when turtle1 is near enough, and only then.",

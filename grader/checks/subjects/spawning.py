@@ -1,4 +1,4 @@
-"""Checks of a node that spawns turtles, announces those that are left, and removes those that were caught."""
+"""Checks of a node that spawns turtles, announces the remaining ones, and removes those that were caught."""
 
 from __future__ import annotations
 
@@ -27,30 +27,28 @@ if TYPE_CHECKING:
     from grader.trial.observed import Call
 
 LATE_S = 1.05
-"""How long an announcement may be behind the truth (s): two periods of the topic."""
+"""The maximum delay of an announcement (s): two periods of the topic."""
 AT_ONCE_S = 0.1
-"""A turtle may be gone this much after it is no longer announced (s)."""
+"""The maximum time between the end of the announcements of a turtle and its removal (s)."""
 OFTEN = 3
-"""A node may also publish each change, but not more than this many times the messages of the timer."""
+"""The maximum number of messages, as a multiple of the timer's messages. A node may also publish each change."""
 ALIKE_M = 0.01
 """Places that differ by less than this are the same (m)."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Spawns:
-    """How many turtles the node spawns, the beginning of their names, and the limits of their coordinates (m)."""
+    """The number of turtles that the node spawns, the prefix of their names, and the range of their coordinates (m)."""
 
-    turtles: float = number(at_least=1, about="How many turtles the node spawns.")
-    name: str = string(
-        "the beginning of a name", default="target", about="What the names begin with. A number follows."
-    )
+    turtles: float = number(at_least=1, about="The number of turtles that the node spawns.")
+    name: str = string("the beginning of a name", default="target", about="The prefix of the names. A number follows.")
     low_m: float = number(1.0, at_least=0, about="The smallest coordinate of a turtle.")
     high_m: float = number(10.0, at_least=0, about="The largest coordinate of a turtle.")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Announces:
-    """The topic with the names of the turtles that are left, and the time between two messages (s)."""
+    """The topic with the names of the remaining turtles, and the time between two messages (s)."""
 
     topic: str = string("the full name of a topic", start="/", about="The topic.")
     period_s: float = number(0.5, above=0, about="The time between two messages.")
@@ -62,7 +60,9 @@ class Removes:
 
     service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
     type: str = string("a service type, as in turtlesim/srv/Kill", about="Its type. The request has the field name.")
-    topic: str = string("the full name of a topic", start="/", about="The topic with the names of those that are left.")
+    topic: str = string(
+        "the full name of a topic", start="/", about="The topic with the names of the remaining turtles."
+    )
 
 
 def spawns(evidence: Evidence, params: Spawns) -> Finding:
@@ -93,7 +93,7 @@ def spawns(evidence: Evidence, params: Spawns) -> Finding:
         if len(there) < len(calls):
             text = "turtlesim refused a name that another turtle has."
         elif len(there) > len(wanted):
-            text = "Count the requests when you send them: the responses come later."
+            text = "Count the requests when you send them, because the responses arrive later."
         return failed(observed, expected, Cause("target-count", text, where))
     return _places(evidence, params, calls, expected) or passed(f"The node spawned {count(len(there), 'turtle')}.")
 
@@ -117,9 +117,9 @@ def _places(evidence: Evidence, params: Spawns, calls: list[Call], expected: str
 
 
 def announces(evidence: Evidence, params: Announces) -> Finding:
-    """Each message on the topic has the names of all turtles that are left, and of no other."""
+    """Each message on the topic has the names of all remaining turtles, and no other names."""
     expected = (
-        f"Every {params.period_s:g} s, the node publishes the names of all targets that are left, with spaces between."
+        f"Every {params.period_s:g} s, the node publishes the names of all remaining targets, separated by spaces."
     )
     heard = announcements(evidence.recording, params.topic)
     where = evidence.place("publish", "create_publisher")
@@ -137,7 +137,7 @@ def announces(evidence: Evidence, params: Announces) -> Finding:
     begin_s, longest_s = max(((at_s, later_s - at_s) for at_s, later_s in pairwise(times_s)), key=lambda gap: gap[1])
     most = Band.at_most(1.4 * params.period_s)
     if not most.holds(longest_s):
-        observed = f"After the message at {begin_s:.1f} s, none came for {longest_s:.1f} s."
+        observed = f"After the message at {begin_s:.1f} s, no message arrived for {longest_s:.1f} s."
         crash = crash_of(evidence)
         if crash is not None:
             return crash_finding(evidence, crash, end_observed(evidence), expected)
@@ -148,11 +148,11 @@ def announces(evidence: Evidence, params: Announces) -> Finding:
         observed = f"{len(heard)} messages arrived in {times_s[-1] - times_s[0]:.1f} s."
         cause = Cause("timer-period", "Publish in the callback of one timer.", evidence.place("create_timer"))
         return failed(observed, expected, cause)
-    return passed("The node announces the targets that are left.", near_edge=most.near(longest_s))
+    return passed("The node announces the remaining targets.", near_edge=most.near(longest_s))
 
 
 def _wrong_names(evidence: Evidence, message: Announcement, expected: str) -> Finding | None:
-    """Return the failed finding about an announcement that was not true in the last second, or None."""
+    """Return the failed finding about an announcement that was wrong for more than a second, or None."""
     tracks = evidence.recording.tracks
     from_s, to_s = message.t_s - LATE_S, message.t_s
     where = evidence.place("publish")
@@ -167,23 +167,23 @@ def _wrong_names(evidence: Evidence, message: Announcement, expected: str) -> Fi
     strange = [name for name in message.names if name not in around]
     known = {track.turtle for track in tracks}
     if strange and any(part in name for name in strange for part in known | {"target"} if name not in known):
-        text = 'The text is the names and one space between two of them: " ".join(names).'
+        text = 'The text consists of the names, separated by single spaces: " ".join(names).'
         return failed(f'{at} is "{shorten(message.text)}".', expected, Cause("target-format", text, where))
     if strange:
-        text = "Remove a name from the list when it is caught, and add it when the response of /spawn is there."
-        observed = f"{at} names {a_list([shorten(name) for name in strange])}, which is not there."
+        text = "Remove a name from the list when it is caught, and add it when the response of /spawn arrives."
+        observed = f"{at} names {a_list([shorten(name) for name in strange])}, which does not exist."
         return failed(observed, expected, Cause("still-announced", text, where))
     missing = sorted(throughout - called - set(message.names))
     if missing:
         observed = f"{at} does not name {a_list([shorten(name) for name in missing])}."
         stuck = waits_in_callback(evidence)
-        text = "The list of those that are left gets a name in the callback that receives the response of /spawn."
+        text = "Add a name to the list in the callback that receives the response of /spawn."
         return failed(observed, expected, stuck or Cause("target-unannounced", text, where))
     return None
 
 
 def removes(evidence: Evidence, params: Removes) -> Finding:
-    """Each turtle that the trial caught was killed, and none else; unknown names change nothing."""
+    """Each turtle that the trial caught was killed, and no other turtle. Unknown names change nothing."""
     expected = f"When {params.service} is called, the node removes this turtle with /kill, and no other."
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     recording = evidence.recording
@@ -220,12 +220,12 @@ def _not_killed(evidence: Evidence, name: str, topic: str, kills: list[Call], ex
         return failed(observed, expected, Cause("not-killed", text, where))
     heard = announcements(evidence.recording, topic)
     if heard and not any(name in message.names for message in heard):
-        text = f"{name} was never announced. Perhaps it is not in the list of those that are left."
-        return failed(f"{name} was caught, but it is still there.", expected, Cause("target-unannounced", text, where))
+        text = f"{name} was never announced. Perhaps it is not in the list of the remaining turtles."
+        return failed(f"{name} was caught, but it still exists.", expected, Cause("target-unannounced", text, where))
     why = waits_in_callback(evidence) or why_unasked(evidence, "/kill")
     if why.diagnosis == "service-not-called":
         why = Cause("not-killed", "The callback of the service must send a request to /kill.", where)
-    return failed(f"{name} was caught, but it is still there.", expected, why)
+    return failed(f"{name} was caught, but it still exists.", expected, why)
 
 
 def _callback(evidence: Evidence) -> Where | None:
@@ -242,7 +242,7 @@ SPAWNS = Kind(
     "The node spawns turtles",
     Spawns,
     spawns,
-    about="The node spawns a number of turtles with the right names, on the field and not all at one place.",
+    about="The node spawns a number of turtles with the right names, on the field and at different places.",
 )
 ANNOUNCES = Kind(
     "announces_targets",
@@ -250,12 +250,12 @@ ANNOUNCES = Kind(
     "The node announces the turtles",
     Announces,
     announces,
-    about="Regularly, a String has the names of all spawned turtles that are left, with spaces between them.",
+    about="The node regularly publishes a String with the names of all remaining turtles, separated by spaces.",
 )
 REMOVES = Kind(
     "removes_targets",
     "trial",
-    "The node removes what was caught",
+    "The node removes caught turtles",
     Removes,
     removes,
     about="The node removes each turtle whose name a `[[trial.call]]` has in its field `name`, and no other.",

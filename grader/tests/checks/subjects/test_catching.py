@@ -1,4 +1,4 @@
-"""A node that drives turtle1 to the targets, and has them removed, the nearest first."""
+"""A node that drives turtle1 to the targets and requests their removal, the nearest first."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ LOOP = CATCHER.replace(
     "            self.create_subscription(Pose, name, lambda pose: print(name), 10)\n        self.timer",
 )
 AHEAD = [(0.1 * number, 0.5, 0.0) for number in range(1, 100)]
-"""Commands that drive turtle1 to the right, from x=5.54 m on, with 0.5 m/s."""
+"""Commands that drive turtle1 to the right, from x=5.54 m, at 0.5 m/s."""
 
 
 def at(name: str, x: float, gone_s: float | None) -> Track:
