@@ -14,7 +14,7 @@ from grader.report import charts
 from grader.report.calls_and_goals import call_rows, goal_rows, moments
 from grader.report.expectations import must_drive
 from grader.report.graph_drawing import GraphDrawing, draw_graph
-from grader.report.scene import scene_of
+from grader.report.scene import executables, scene_of
 from grader.report.shapes import SIDE_M
 from grader.report.svg import LEFT, SIDE, TOP, scene_svg, sign
 
@@ -69,7 +69,8 @@ class Run:
 def runs_of(evidences: Sequence[Evidence], key: str = "run") -> list[Run]:
     """Return the trials that ran, in order. Each has a title if there are several. `key` is the prefix of all ids."""
     several = len(evidences) > 1
-    tried = [(number, evidence) for number, evidence in enumerate(evidences) if evidence.run.recording is not None]
+    drawn = [evidence for evidence in evidences if not evidence.trial.beside]
+    tried = [(number, evidence) for number, evidence in enumerate(drawn) if evidence.run.recording is not None]
     return [_run(evidence, f"{key}-{number}" if number else key, several, len(tried)) for number, evidence in tried]
 
 
@@ -84,7 +85,7 @@ def _run(evidence: Evidence, key: str, several: bool, among: int) -> Run:
     graph = draw_graph(recording, f"{key}-graph")
     return Run(
         key=key,
-        title=evidence.trial.executable if several else "",
+        title=executables(evidence) if several else "",
         duration_s=recording.duration_s,
         canvas=Markup(scene_svg(scene, turtle=True, name=f"{key}-canvas")),
         legend=tuple((Markup(sign(role)), text) for role, text in scene.legend),

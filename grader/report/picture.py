@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw, ImageFont
 from grader.checks.outcome import Status
 from grader.common.words import printable
 from grader.report.output_file import not_written
-from grader.report.scene import Scene, scene_of
+from grader.report.scene import Scene, executables, scene_of
 from grader.report.scene_image import paint
 from grader.report.shapes import DEEP, LOOKS, SEA, SIDE_M, Rgb, Role
 from grader.submission.reader import read
@@ -74,7 +74,7 @@ def draw_picture(evidence: Evidence, report: Report) -> Image.Image:
         _axes(pen, panel)
         _legend(pen, scene, panel)
         if len(trials) > 1:
-            name = printable(each.trial.executable)
+            name = printable(executables(each))
             pen.text((panel.left, panel.top - HEADING / 2), name, fill=INK, font=_font(18), anchor="lm")
         if scene.notice:
             _middle(pen, scene.notice, panel)

@@ -133,6 +133,6 @@ def _why_this_clock(evidence: Evidence) -> str:
         return f"Your tests were run {count(len(evidence.run.bench.runs), 'time')}."
     if first is None:
         return "The node was not run." if evidence.run.overwhelmed is None else "The trial could not be finished."
-    others = [(view.trial.executable, view.run.recording) for view in evidence.views()]
+    others = [(view.trial.executable, view.run.recording) for view in evidence.views() if not view.trial.beside]
     differ = [(name, other) for name, other in others if other is not None and other.clock != first.clock]
     return "; ".join([first.why, *(f"{name} in {other.clock} time: {other.why}" for name, other in differ)])

@@ -94,6 +94,12 @@ def scene_of(evidence: Evidence) -> Scene:
     return Scene(tuple(shapes), tuple(legend), tuple(facts), notice)
 
 
+def executables(evidence: Evidence) -> str:
+    """Return the names of the programs that ran in this trial."""
+    beside = evidence.exercise.beside(evidence.trial.id)
+    return a_list([spec.executable for spec in (evidence.trial, *beside)])
+
+
 def _without_recording(evidence: Evidence) -> Scene:
     if evidence.run.bench is not None:
         return Scene(notice="The tests need no turtle.")

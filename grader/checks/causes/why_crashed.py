@@ -52,6 +52,12 @@ def _why_undeclared(scene: CrashScene) -> Cause:
     return Cause("parameter-undeclared", f"{scene.crash.meaning}{declared}")
 
 
+def _why_value(scene: CrashScene) -> Cause | None:
+    if "empty" not in scene.crash.message or not any(name in scene.crash.message for name in ("min()", "max()")):
+        return None
+    return Cause("crash", "There was nothing to compare. Check first whether there is any value.")
+
+
 EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "AssertionError": why_field,
     "AttributeError": why_no_attribute,
@@ -67,6 +73,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "RuntimeError": why_refused,
     "TypeError": why_type,
     "UnboundLocalError": why_unbound,
+    "ValueError": _why_value,
 }
 """Exception -> the function that finds its cause in the source code, or returns None."""
 
