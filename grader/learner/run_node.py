@@ -86,7 +86,7 @@ def run(program: Program, *, view: bool) -> int:
                 file=sys.stderr,
             )
             return 1
-        with nullcontext() if _turtle_is_there(env) else _turtlesim(env, view=view):
+        with nullcontext() if _beside_another(env) else _turtlesim(env, view=view):
             print(
                 f"{program.executable} is running. Press Ctrl-C to stop it and turtlesim.\n",
                 file=sys.stderr,
@@ -140,13 +140,17 @@ def _with_overlay(env: Mapping[str, str], overlay: Path, folder: Path) -> dict[s
     }
 
 
-def _turtle_is_there(env: Mapping[str, str]) -> bool:
-    """Return whether a turtlesim is running already, for example `grader sim --view` in another terminal."""
+def turtle_is_there(env: Mapping[str, str]) -> bool:
+    """Return whether a turtlesim runs already, for example `grader sim --view` in another terminal."""
     start = interpreter("-m", "grader.ros2.main", "node", "list", env=env, searches=True)
     listed = subprocess.run(start.argv, env=start.env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
-    there = b"/turtlesim" in listed.stdout.split()
+    return b"/turtlesim" in listed.stdout.split()
+
+
+def _beside_another(env: Mapping[str, str]) -> bool:
+    there = turtle_is_there(env)
     if there:
-        print("A turtlesim is running already, and the node uses it.", file=sys.stderr)
+        print("A turtlesim runs already, and the node uses it.", file=sys.stderr)
     return there
 
 

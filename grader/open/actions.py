@@ -69,6 +69,9 @@ class Actions:
     async def turtlesim(self, request: Request) -> object:
         """Start or stop turtlesim."""
         if request.get("on") is True:
+            if await self.programs.beside_another():
+                message = "A turtlesim runs already, in a terminal. To see one here, end that one first, with Ctrl-C."
+                raise UsageError(message)
             await self.programs.start_turtlesim()
         else:
             await self.programs.turtlesim.stop()

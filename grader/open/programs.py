@@ -12,7 +12,9 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from grader.common.interpreter import interpreter
+from grader.learner.run_node import turtle_is_there
 from grader.open.linked_cell import linkable
+from grader.ros.shell import users_environment
 from grader.view.address import Address, remembered
 
 if TYPE_CHECKING:
@@ -29,8 +31,15 @@ READY_S = 30.0
 """The maximum time for starting turtlesim (s)."""
 NO_CELL = "There is no sandbox here, so the program runs under your account, as in a terminal."
 _LOOK_S = 0.05
+_NO_DAEMON = {"GRADER_ROS2_DAEMON": "0"}
+"""A daemon of ros2 would stay."""
 _ADDRESS = re.compile(r"See it move: http://127\.0\.0\.1:(\d+)/#(\S+)")
 _SCREENS = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
+
+
+def _turtle_is_there() -> bool:
+    env = users_environment(None, lambda _: None, {**os.environ, **_NO_DAEMON})
+    return turtle_is_there(env)
 
 
 class Program:
@@ -119,6 +128,10 @@ class Programs:
                 return Address(int(found[1]), found[2])
         return remembered("turtlesim")
 
+    async def beside_another(self) -> bool:
+        """Return whether a turtlesim runs that was not started here. A second one would get the same commands."""
+        return not self.turtlesim.running and await asyncio.to_thread(_turtle_is_there)
+
     async def start_turtlesim(self) -> None:
         """Start `grader sim --view`."""
         await self.turtlesim.start("-m", "grader.cli", "sim", "--view")
@@ -130,7 +143,8 @@ class Programs:
 
     async def start_node(self, step: str, executable: str) -> None:
         """Start this executable of the step beside turtlesim: in a cell if there can be one, else like `grader run`."""
-        await self.start_turtlesim()
+        if not await self.beside_another():
+            await self.start_turtlesim()
         workspace = str(self._workspace) if self._workspace else None
         if await asyncio.to_thread(linkable):
             settings = {"step": step, "executable": executable, "workspace": workspace}

@@ -19,7 +19,7 @@ function item(check) {
   mark.setAttribute("aria-hidden", "true");
   const about = document.createElement("div");
   about.append(span("hidden-text", `${WORDS[check.kind]}: `), check.title);
-  if (check.max) about.append(" ", span("points", `${check.points} of ${check.max} points`));
+  if (check.max) about.append(" ", span("points", `(${check.points} of ${check.max} points)`));
   if (check.text && check.kind !== "skipped") about.append(span("observed", check.text));
   row.append(mark, about);
   return row;

@@ -15,6 +15,7 @@ function setText(element, text) {
 export class TurtlePane {
   constructor(pane) {
     this.link = null;
+    this.refused = "";
     this.running = { turtlesim: false, node: false };
     this.simulator = new Simulator({ send: (said) => this.link?.send(said), within: pane });
     this.log = new LogLines(find("rosout"));
@@ -30,6 +31,7 @@ export class TurtlePane {
 
   async change(name, wanted) {
     const { problem } = await act(name, wanted);
+    this.refused = problem ?? "";
     if (problem) setText(this.status, problem);
   }
 
@@ -43,7 +45,7 @@ export class TurtlePane {
     this.lines(programs.lines.join("\n"));
     if (programs.turtlesim && !this.link) this.connect();
     if (!programs.turtlesim && this.link) this.disconnect();
-    if (!this.link) setText(this.status, programs.problem || "turtlesim is not running.");
+    if (!this.link) setText(this.status, programs.problem || this.refused || "No turtlesim was started here.");
   }
 
   choose(names) {

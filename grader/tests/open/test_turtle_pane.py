@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import signal
+import subprocess
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,8 +17,8 @@ from grader.open.programs import NO_CELL
 from grader.sandbox import bubblewrap
 from grader.tests.browser import violations
 from grader.tests.domains import own_domain
-from grader.tests.open.course import CIRCLE, Course, course
-from grader.tests.waiting import until, until_gone
+from grader.tests.open.course import CIRCLE, GRADER, Course, course
+from grader.tests.waiting import HANG_S, until, until_gone
 
 if TYPE_CHECKING:
     import pytest
@@ -60,6 +62,30 @@ def test_the_turtle_in_the_page(browser: Browser, tmp_path: Path, monkeypatch: p
         assert learner.end() == 0
         for pid in started:
             until_gone(pid)
+
+
+def test_a_second_turtlesim_is_not_started_beside_one_in_a_terminal(
+    browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(own_domain()))
+    for learner in course(tmp_path):
+        learner.run("start", CIRCLE)
+        learner.save()
+        learner.start()
+        with subprocess.Popen([str(GRADER), "sim"], env=learner.env, stderr=subprocess.PIPE, text=True) as terminal:
+            assert terminal.stderr is not None
+            while "Spawning turtle" not in terminal.stderr.readline():
+                assert terminal.poll() is None
+            page = learner.opened(browser)
+            page.get_by_role("button", name="Turtle", exact=True).click()
+            page.get_by_role("button", name="Start turtlesim").click()
+            page.get_by_text("A turtlesim runs already, in a terminal.").wait_for()
+            page.get_by_role("button", name="Run it").click()
+            page.locator("#node-lines").get_by_text("[draw_circle]").wait_for()
+            assert page.get_by_role("button", name="Start turtlesim").is_visible()
+            page.close()
+            terminal.send_signal(signal.SIGINT)
+            assert terminal.wait(HANG_S) == 0
 
 
 def drive(learner: Course, browser: Browser) -> None:
