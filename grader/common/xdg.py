@@ -17,6 +17,6 @@ def state() -> Path:
 
 
 def _folder(variable: str, default: str) -> Path:
-    """Return the grader's folder inside the one named by `variable`. As specified, a relative path is ignored."""
+    """Return the grader's folder inside the one named by `variable`. The specification ignores relative paths."""
     named = os.environ.get(variable, "")
     return (Path(named) if named.startswith("/") else Path.home() / default) / "grader"

@@ -200,7 +200,7 @@ class Recorder(Node):
         if self._subscribed[group] >= most:
             return False
         if topic == "/turtle1/cmd_vel" and type_name == "geometry_msgs/msg/Twist":
-            return False  # the simulator itself reports it, because checks judge what moved the turtle
+            return False  # the simulator reports commands: checks judge the ones that moved the turtle
         # The simulator reports what it sends. The subscription is for messages that other nodes send on its topics.
         return self._simulated.get(topic) != type_name or bool(self.count_publishers(topic) > 1)
 

@@ -149,7 +149,10 @@ def _measured(evidence: Evidence, params: CircleParams, trajectory: Trajectory, 
         direction = "clockwise" if turns < 0.0 else "counter-clockwise"
         cause = "The sign of angular.z sets the direction: a positive value turns left, which is counter-clockwise."
         if (_steady(evidence) or (0.0, 0.0))[0] < 0.0:
-            cause = "linear.x is negative, so the turtle drives backwards. Forwards, a positive angular.z turns left."
+            cause = (
+                "linear.x is negative, so the turtle drives backwards. When it drives forwards, a positive "
+                "angular.z turns left."
+            )
         observed = f"The turtle drove the circle {direction}."
         return failed(observed, expected, Cause("wrong-direction", cause, _line(evidence)))
     near = round_.near(fitted.rms) or size.near(fitted.radius) or place.near(centre) or long.near(forward)
