@@ -28,7 +28,7 @@ def hand_out(to: Path) -> None:
         message = f"{to} is not an empty folder. Name a new folder."
         raise UsageError(message)
     if not (root / "solutions").is_dir():
-        message = f"The repository for students needs solutions/, but {root} has no such folder."
+        message = f"The repository for students needs solutions/, but {root} does not have this folder."
         raise UsageError(message)
     package = Path(__file__).parent.parent
     files = package / "repository" if (package / "repository").is_dir() else root

@@ -48,7 +48,8 @@ def validate(
     unknown = [name for name in names if name not in files]
     if unknown:
         message = (
-            f"There is no exercise {a_list(unknown, 'or')}. The exercises are {a_list(list(files), most=len(files))}."
+            f"The course has no exercise {a_list(unknown, 'or')}. "
+            f"The exercises are {a_list(list(files), most=len(files))}."
         )
         raise UsageError(message)
     problems = [

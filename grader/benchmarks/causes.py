@@ -8,7 +8,7 @@ tests/unusual that follow ROS time. A package that still passes is ignored. For 
 benchmark prints how often each of these is true:
 
 - first: the first failed check names the cause, at a line that must change;
-- at all: any failed check names the cause in this way;
+- at all: any failed check names the cause like this;
 - false: a failed check names a wrong cause. A diagnosis that only repeats what was observed does not count.
 
 Each is counted twice: by the diagnoses that the operators expect, and by facts without diagnoses (the difference

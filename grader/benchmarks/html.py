@@ -73,7 +73,7 @@ def _making(submission: Path, folder: Path, times: int) -> None:
         pages.append(seconds)
     f_s, page_s = statistics.median(bare), statistics.median(pages)
     print(f"F = {f_s:.2f} s wall (medians of {times})")
-    print(f"making a page       {page_s:6.3f} s = {page_s / f_s:.2f} F   ({size_kb:.0f} KB)")
+    print(f"creating a page     {page_s:6.3f} s = {page_s / f_s:.2f} F   ({size_kb:.0f} KB)")
 
 
 def page_cost(recording: Path, page: Path) -> tuple[float, float]:
@@ -97,7 +97,7 @@ def _showing(folder: Path, times: int) -> None:
         (reports / f"student{number}.json").write_text(to_json(named))
         (reports / f"student{number}.html").touch()
     making = interpreter("-m", "grader.cli", "class-page", str(reports)).argv
-    print(f"making a class page {cost(making).wall_s:6.2f} s for {_CLASS}, with the start of Python")
+    print(f"creating a class page {cost(making).wall_s:6.2f} s for {_CLASS}, including the start of Python")
     browser = find_browser()
     if browser is None:
         print("Chromium is missing, so the time to show the pages in a browser was not measured")

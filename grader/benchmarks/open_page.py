@@ -30,7 +30,7 @@ AIM_MORE_S = 0.1
 AIM_SIZE = 600_000
 AIM_READY_S = 1.0
 AIM_IDLE = 0.01
-"""The aim for the share of one core while nothing happens."""
+"""The aim for the share of one core of an idle page."""
 _REST_S = 2.0
 """The shortest time that a learner needs between two saves (s), during which the next trial is prepared."""
 _PATIENCE_S = 300

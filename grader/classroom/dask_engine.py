@@ -153,7 +153,7 @@ class DaskEngine:
         return best if best is not None and free[best] > 0 else None
 
     def _look(self) -> list[Event]:
-        """Update the list of workers. Return an event for each task whose worker is gone."""
+        """Update the list of workers. Return an event for each task whose worker was lost."""
         self._looked = time.monotonic()
         try:
             self._threads = dict(self._client.nthreads())

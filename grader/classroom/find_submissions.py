@@ -56,7 +56,7 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
     """Return all submissions in the given folders, archives and packages except `leave_out`, sorted by student.
 
     Raises:
-        UsageError: no submission was found, or the exercise is not known.
+        UsageError: no submission was found, or the exercise cannot be determined.
     """
     wanted = find_exercise(exercise).id if exercise else None
     found = [each for path in given for each in _in(path, wanted, leave_out)]
@@ -77,7 +77,7 @@ def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
     """Yield each submission with its exercise. Without one, yield the submission once for each exercise of the others.
 
     Raises:
-        UsageError: no exercise is known.
+        UsageError: the exercise cannot be determined.
     """
     known = sorted({each.exercise for each in found} - {UNKNOWN})
     for each in found:

@@ -36,7 +36,7 @@ Pace = Literal["waits", "works"]
 class Task:
     """A submission, its exercise, and how to grade it.
 
-    `content` is the files of the submission, or the reason why there are none. `package` is the name of the package's
+    `content` is the files of the submission, or the reason why they are missing. `package` is the name of the package's
     folder. `grader` is the key of the grader that created the task. Only a worker with the same key may grade it.
     """
 
@@ -140,7 +140,7 @@ def _submission(task: Task, files: dict[str, bytes] | None = None) -> Submission
 
 
 def _refused(task: Task, exercise: Exercise, reason: str) -> Graded:
-    """Return a result with 0 points for a submission without a package. The reason comes first."""
+    """Return a result with 0 points for a submission without a package. The reason is the first outcome."""
     what = "a package" if exercise.package else "answers.toml"
     title = f"The submission contains {what}"
     expected = f"One folder with {what} in it, or a .zip or .tar.gz of this folder."

@@ -106,7 +106,7 @@ def open_class(folder: Path | None) -> ClassFolders:
     found = next((each for each in tried if (each / CONFIG).is_file()), None)
     if found is None:
         message = (
-            f"There is no {CONFIG} in {folder or Path.cwd()}. Go to the course's folder, or name it with --course. "
+            f"{folder or Path.cwd()} has no {CONFIG}. Go to the course's folder, or name it with --course. "
             "`grader class new DIR` creates a class."
         )
         raise UsageError(message)

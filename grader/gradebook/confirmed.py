@@ -108,7 +108,7 @@ def submissions_of(gradebook: Any, steps: Collection[str]) -> Iterator[tuple[str
 def provisional_grades(submission: Any) -> list[Any]:  # noqa: ANN401 - nbgrader's SubmittedAssignment
     """Return the grades that autograde reads from the output of a kernel: those of code cells without a solution.
 
-    The grades of the exercise's own notebook come first.
+    The grades of the exercise's own notebook are first.
     """
     step = submission.assignment.name
     grades = []

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 TIMESTAMP = "timestamp.txt"
-"""The file in which nbgrader stores when a submission was handed in."""
+"""The file in which nbgrader stores the time of a submission."""
 MOST_TIMESTAMP = 100
 """The maximum size of that file (bytes)."""
 MOST_BYTES = tree.MAX_FILE_BYTES

@@ -46,7 +46,7 @@ class RestoreCells(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
             for name, (metadata, source) in known.items()
             if name not in observed and metadata["nbgrader"]["locked"]
         ]
-        # The cell that loads the magics comes first, and cells with points come last.
+        # Insert the cell that loads the magics at the beginning, and cells with points at the end.
         nb.cells = [
             *(cell for cell in missing if not cell.metadata.nbgrader.grade),
             *cells,

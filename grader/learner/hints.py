@@ -24,7 +24,7 @@ def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
     After the last hint, the last one is repeated. If `step` is a single letter, it names a part of the current step.
 
     Raises:
-        UsageError: no step was started, or the step has no such part.
+        UsageError: no step was started, or the step does not have the part.
     """
     if step is not None and part is None and re.fullmatch("[A-Za-z]", step):
         step, part = None, step
@@ -93,7 +93,7 @@ def _next(exercise: Exercise, wanted: list[int], known: StepProgress) -> int | N
     unread = [index for index in in_order if index not in known.read]
     if unread:
         return unread[0]
-    # All hints were read. Repeat the last one for a failed check, or else the last one of all.
+    # All hints were read. Repeat the last one for a failed check, or else the last hint.
     return max(failed or open_, default=None)
 
 

@@ -47,7 +47,7 @@ def _parts(text: str) -> dict[str, str] | None:
                 found[member.name] = ast.dump(_without_docstring(member))
             elif not _is_text(member):
                 rest.append(ast.dump(member))
-    return {**found, "the lines outside of functions": "\n".join(rest)}
+    return {**found, "the lines outside functions": "\n".join(rest)}
 
 
 def _without_docstring(function: ast.FunctionDef | ast.AsyncFunctionDef) -> ast.AST:

@@ -68,7 +68,7 @@ def run(program: Program, *, view: bool) -> int:
     """Build the package, and run the program beside a turtlesim until Ctrl-C. Return the exit code for the user.
 
     `view` shows the turtle on a page. If a turtlesim is running already, the program drives its turtle. The exit code
-    is 0 after Ctrl-C, and 1 if the build failed or the node ended with an error; what they printed is on the terminal.
+    is 0 after Ctrl-C, and 1 if the build failed or the node ended with an error. Their output is on the terminal.
     """
     from grader.ros import shell
 

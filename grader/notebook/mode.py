@@ -1,4 +1,4 @@
-"""Whether a notebook is executed by nbgrader or inside a cell, which changes what the magics do."""
+"""Whether a notebook is executed by nbgrader or inside a cell, which changes the behaviour of the magics."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Open UDP sockets inside a cell, send them to the grader outside, and then become another program.
 
-This file runs as a script of its own, before any code of a student is in the cell. Its arguments are the descriptor of
-the Unix socket to the grader, the ports with commas between them, and the command of the other program.
+This file is executed as a script, before any student code is in the cell. Its arguments are the descriptor of
+the Unix socket to the grader, the ports separated by commas, and the command of the other program.
 """
 
 import os
@@ -12,7 +12,7 @@ HOST = "127.0.0.1"
 
 
 def main() -> None:
-    """Send the sockets, in the order of the ports, and execute the command."""
+    """Send the sockets in the order of the ports, and execute the command."""
     connection, ports, *command = sys.argv[1:]
     opened = []
     for port in map(int, ports.split(",")):

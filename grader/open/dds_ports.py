@@ -1,7 +1,7 @@
-"""The UDP ports of DDS participants on this machine: which of them a node in a cell gets, and which it may reach.
+"""The UDP ports of DDS participants on this machine: the ports of a node in a cell, and those that it may reach.
 
 A participant has two ports that depend on the domain and on its number (DDSI-RTPS, 9.6.1.1). In addition, the reader
-that rmw_fastrtps has for ros_discovery_info gets the first free port from 7000 on, whatever the domain.
+that rmw_fastrtps has for ros_discovery_info gets the first free port from 7000 on, in every domain.
 """
 
 from __future__ import annotations
@@ -14,24 +14,24 @@ from grader.errors import MachineError
 
 HOST = "127.0.0.1"
 PARTICIPANTS = 32
-"""A new node announces itself to this many participants (maxInitialPeersRange in graph/loopback.xml)."""
+"""The number of participants to which a new node announces itself (maxInitialPeersRange in graph/loopback.xml)."""
 FIRST_OWN = 7000
 OTHERS = 64
-"""How many ports from FIRST_OWN on are left to the other nodes of this machine."""
+"""The number of ports from FIRST_OWN on that are reserved for the other nodes of this machine."""
 _TRIED = 64
 
 
 def participant_ports(domain: int, number: int) -> tuple[int, int]:
-    """Return the ports for the discovery and for the messages of a participant. The first one is even."""
+    """Return the ports of a participant for discovery and for messages. The first port is even."""
     first = 7400 + 250 * domain + 10 + 2 * number
     return first, first + 1
 
 
 @dataclass(frozen=True)
 class Ports:
-    """`own` are the sockets outside of the cell for what is sent to the node. `others` are the ports of other nodes.
+    """`own` contains the sockets outside the cell for data to the node. `others` contains the ports of other nodes.
 
-    Inside of the cell, `others` are taken. Therefore, the node gets the same ports there as `own`.
+    Inside the cell, `others` are in use. Therefore, the node gets the same ports there as `own`.
     """
 
     own: tuple[socket.socket, ...]
@@ -41,8 +41,8 @@ class Ports:
 def reserve(domain: int) -> Ports:
     """Bind the ports of one participant on this machine, and return them.
 
-    The numbers are high, because nodes take the lowest free ones. A second participant of the same program would not
-    be reachable, and hardly any program has one.
+    The numbers are high, because nodes use the lowest free ports. A second participant of the same program cannot
+    be reached, but hardly any program has one.
 
     Raises:
         MachineError: all ports are in use.
@@ -52,7 +52,7 @@ def reserve(domain: int) -> Ports:
         if own:
             break
     else:
-        message = f"Too many nodes run in ROS domain {domain} on this machine. End some of them."
+        message = f"Too many nodes run in ROS domain {domain} on this machine. Stop some of them."
         raise MachineError(message)
     for last in range(FIRST_OWN + OTHERS, FIRST_OWN + OTHERS + _TRIED):
         if reader := _bound((last,)):
@@ -60,7 +60,7 @@ def reserve(domain: int) -> Ports:
             return Ports((*own, *reader), (*chain.from_iterable(pairs), *range(FIRST_OWN, last)))
     for each in own:
         each.close()
-    message = f"The ports {FIRST_OWN} to {FIRST_OWN + OTHERS + _TRIED} of this machine are in use. End some nodes."
+    message = f"The ports {FIRST_OWN} to {FIRST_OWN + OTHERS + _TRIED} of this machine are in use. Stop some nodes."
     raise MachineError(message)
 
 

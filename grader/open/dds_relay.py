@@ -1,6 +1,6 @@
-"""Pass the datagrams of DDS between a node in a cell, which has a network of its own, and the nodes of this machine.
+"""Forward DDS datagrams between a node in a cell, which has a separate network, and the nodes of this machine.
 
-A node in a cell reaches nothing but this relay, and the relay reaches nothing but 127.0.0.1: the ports of the
+A node in a cell can reach only this relay, and the relay can reach only 127.0.0.1: the ports of the
 participants of one ROS domain, and ports that one of these participants has announced. To the other nodes, the node
 looks like any other node of this machine.
 """
@@ -30,9 +30,9 @@ _HERE = socket.inet_aton(HOST)
 
 
 class Relay:
-    """Passes datagrams on while `selector` is served: call the data of each ready key.
+    """Forwards datagrams while `selector` is served: call the data of each ready key.
 
-    `inside` are sockets in the network of the cell, bound to `ports.others` in this order.
+    `inside` contains sockets in the cell's network, bound to `ports.others` in this order.
     """
 
     def __init__(self, selector: BaseSelector, domain: int, ports: Ports, inside: Sequence[socket.socket]) -> None:
@@ -71,7 +71,7 @@ class Relay:
         self._inside[0].sendto(datagram, (HOST, port))
 
     def _as_seen_inside(self, locator: re.Match[bytes]) -> bytes:
-        """Return the locator with the address that leads to this relay: the cell has no other addresses."""
+        """Return the locator with the address of this relay, since the cell has no other addresses."""
         (port,) = struct.unpack("<I", locator[2])
         if FIRST_OWN <= port < FIRST_OWN + OTHERS:
             self._reachable.add(port)

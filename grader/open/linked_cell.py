@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from grader.ros.installation import Ros
 
 LIMITS = replace(NODE_LIMITS, cpu_s=4 * 3600)
-"""The limits of a node of a trial, but it may run for an afternoon."""
+"""The limits of a node in a trial, but with more processor time."""
 PROFILE = Path(grader.graph.__file__).with_name("loopback.xml")
 """The Fast DDS profile for a network that has only 127.0.0.1."""
 LAUNCHER = Path(grader.trial.__file__).with_name("launcher.py")
@@ -51,10 +51,10 @@ class LinkedCell:
     first: int = 0
     """The process id of the launcher, which becomes the node."""
     out_of: str | None = None
-    """The limit that the node has exceeded, if that has ended it."""
+    """The limit that the node has exceeded, if it was stopped for this reason."""
 
     def interrupt(self) -> None:
-        """Send SIGINT to the process group of the node, as Ctrl-C does. Before the node has begun, end the cell."""
+        """Send SIGINT to the process group of the node, as Ctrl-C does. Before the node has started, end the cell."""
         with suppress(ProcessLookupError):
             if os.getpgid(self.first) == self.first:
                 os.killpg(self.first, signal.SIGINT)
@@ -62,16 +62,16 @@ class LinkedCell:
                 self.kill()
 
     def kill(self) -> None:
-        """End the cell and everything in it."""
-        # The whole group, because while bubblewrap starts, it has a child that does not yet die with it.
+        """End the cell and all its processes."""
+        # Kill the whole group, because a child of bubblewrap that is starting does not yet die with it.
         with suppress(ProcessLookupError):
             os.killpg(self.process.pid, signal.SIGKILL)
 
     def await_ready(self) -> None:
-        """Wait until the launcher can take its order.
+        """Wait until the launcher can receive its order.
 
         Raises:
-            MachineError: it has ended.
+            MachineError: the launcher has exited.
         """
         assert self.process.stdout is not None
         received = b""
@@ -79,10 +79,10 @@ class LinkedCell:
             byte = os.read(self.process.stdout.fileno(), 1)
             if not byte:
                 lines = received.decode("utf-8", "replace").strip().splitlines() or ["no message"]
-                message = f"The sandbox did not start: {lines[-1]}. `grader doctor` says what is missing."
+                message = f"The sandbox did not start: {lines[-1]}. `grader doctor` shows what is missing."
                 raise MachineError(message)
             received += byte
-        # Nothing has forked yet but bubblewrap, each of whose processes has one child.
+        # Only bubblewrap has forked so far, and each of its processes has one child.
         self.first = list(family(self.process.pid))[-1]
 
     def over(self, what: str) -> None:
@@ -92,24 +92,24 @@ class LinkedCell:
 
 
 def linkable() -> bool:
-    """Return whether a node in a cell can meet the nodes of this machine: cells work, and ROS 2 uses Fast DDS."""
+    """Return whether a node in a cell can reach the nodes of this machine: cells work, and ROS 2 uses Fast DDS."""
     return os.environ.get("RMW_IMPLEMENTATION", FAST_DDS) == FAST_DDS and bubblewrap.usable()
 
 
 def environment(ros: Ros, domain: int, overlays: Sequence[Path] = ()) -> dict[str, str]:
-    """Return the environment of a node in this cell. `overlays` are install folders inside of it."""
+    """Return the environment of a node in this cell. `overlays` are install folders inside the cell."""
     env = installation.environment(ros, home=bubblewrap.HOME, overlays=overlays, domain=domain)
-    # The profile says what LOCALHOST would say, but without shared memory, which the cell does not share.
+    # The profile has the settings of LOCALHOST, but without shared memory, which the cell does not share.
     reach = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT", "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILE)}
     return {**env, **reach}
 
 
 @contextmanager
 def linked_cell(ros: Ros, domain: int) -> Iterator[LinkedCell]:
-    """Start the launcher of trials in a cell, with a relay to the nodes in this ROS domain. The cell ends at the end.
+    """Start the launcher of trials in a cell, with a relay to this ROS domain. The cell ends with the context.
 
     Raises:
-        MachineError: the cell could not be started, or there is no free port.
+        MachineError: the cell could not be started, or all ports are in use.
     """
     with ExitStack() as stack:
         ports = reserve(domain)

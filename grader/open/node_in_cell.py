@@ -1,7 +1,7 @@
 """`python -m grader.open.node_in_cell SETTINGS`: build a package and run one of its programs, both in a cell.
 
-The program meets the turtlesim of this machine (linked_cell.py). It ends with Ctrl-C, and with the process that has
-started this one: that process holds the other end of standard input.
+The program can reach the turtlesim of this machine (linked_cell.py). It ends with Ctrl-C, or with the process that has
+started this one, which has the other end of standard input.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from grader.ros.installation import Ros
 
 STOP_S = 4.0
-"""How long the program may take to end after Ctrl-C (s). Then it is killed."""
+"""The time that the program has to end after Ctrl-C (s) before it is killed."""
 _LOOK_S = 0.2
 _CHUNK = 65536
 
@@ -43,7 +43,7 @@ def run(program: Program) -> int:
     """Build the package, and run the program until Ctrl-C. Return the exit code, as `grader.learner.run_node.run` does.
 
     Raises:
-        GraderError: the package cannot be read, it has no such program, or the machine cannot build or run it.
+        GraderError: the package cannot be read, it does not have the program, or the machine cannot build or run it.
     """
     env = shell.users_environment(None, _tell)
     ros = underlay.with_turtlesim(installation.find_ros(), _tell)
@@ -51,11 +51,11 @@ def run(program: Program) -> int:
     built = build(open_submission(program.folder), ros, in_cell=True, tell=lambda _: None)
     if built.build.exit_code != 0 or built.build.package != program.package:
         print(built.build.log.rstrip())
-        print("\nThe package could not be built: colcon says why, above.")
+        print("\nThe package could not be built. See the messages of colcon above.")
         return 1
     if program.executable not in built.build.executables:
         message = (
-            f"The package has no executable {program.executable}. Look at the list console_scripts in "
+            f"The package has no executable {program.executable}. See the list console_scripts in "
             f"{program.folder / 'setup.py'}."
         )
         raise UsageError(message)
@@ -99,29 +99,29 @@ def _until_it_ends(cell: LinkedCell, program: Program) -> int:
         for key, _ in cell.selector.select(_LOOK_S):
             key.data()
         if asked_s and time.monotonic() - asked_s[0] > STOP_S:
-            print(f"\n{program.executable} did not end on Ctrl-C, so it was stopped by force.")
+            print(f"\n{program.executable} did not end after Ctrl-C, so it was killed.")
             cell.kill()
             return 0
     code = cell.process.wait()
     if asked_s:
         return 0
     if cell.out_of:
-        print(f"\n{program.executable} was stopped, because it used too much of the machine: {cell.out_of}.")
+        print(f"\n{program.executable} was stopped, because it exceeded its limit on {cell.out_of}.")
         return 1
-    how = "without an error." if code == 0 else f"with exit code {code}. The lines above say where, and why."
-    print(f"\n{program.executable} has ended by itself, {how}")
+    how = "without an error." if code == 0 else f"with exit code {code}. The lines above show where and why."
+    print(f"\n{program.executable} has ended {how}")
     return 0 if code == 0 else 1
 
 
 def _read_order(cell: LinkedCell, stop: Callable[[], None]) -> None:
-    """Stop at the end of standard input, which nobody writes to."""
+    """Stop at the end of standard input, on which no data arrives."""
     if not os.read(sys.stdin.fileno(), _CHUNK):
         cell.selector.unregister(sys.stdin)
         stop()
 
 
 class _Output:
-    """Passes the output of the node on, with the paths of the learner's own files instead of those of the copies."""
+    """Prints the output of the node, with the paths of the learner's files instead of those of the copies."""
 
     def __init__(self, cell: LinkedCell, program: Program) -> None:
         assert cell.process.stdout is not None
@@ -133,7 +133,7 @@ class _Output:
         self._copies, self._own = f"{copies}/".encode(), f"{program.folder}/".encode()
 
     def pass_on(self) -> None:
-        """Read what is there, and write the lines that are complete."""
+        """Read the available data, and print the complete lines."""
         chunk = os.read(self.pipe.fileno(), _CHUNK)
         self.ended = not chunk
         whole, newline, rest = (self._rest + chunk).rpartition(b"\n")

@@ -59,7 +59,7 @@ class Program:
     async def start(self, *arguments: str, says: str = "", held: bool = False) -> None:
         """Start `python ARGUMENTS` unless the program is running already. `says` is a line before its output.
 
-        If the program is `held`, its standard input is a pipe that closes when this process ends, however it ends.
+        If the program is `held`, its standard input is a pipe that closes when this process ends for any reason.
         """
         if self.running:
             return
@@ -142,7 +142,7 @@ class Programs:
             await asyncio.sleep(_LOOK_S)
 
     async def start_node(self, step: str, executable: str) -> None:
-        """Start this executable of the step beside turtlesim: in a cell if there can be one, else like `grader run`."""
+        """Start this executable of the step beside turtlesim: in a cell if possible, or else like `grader run`."""
         if not await self.beside_another():
             await self.start_turtlesim()
         workspace = str(self._workspace) if self._workspace else None

@@ -67,7 +67,7 @@ class Ros:
 
     @property
     def all_prefixes(self) -> tuple[Path, ...]:
-        """The ament prefixes, including the underlay if there is one."""
+        """The ament prefixes, including the underlay, if any."""
         return (*self.prefixes, *([self.underlay] if self.underlay else []))
 
 

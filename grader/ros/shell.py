@@ -56,7 +56,7 @@ def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sour
         f'elif [ -n "${{BASH_VERSION-}}" ]; then eval {shlex.quote(_completion_of_grader("bash"))}; fi',
     ]
     if sourced:
-        # A sourced ROS 2 may have an rqt_graph that comes first on PATH and does not know --text and --output.
+        # A sourced ROS 2 may have an rqt_graph that is first on PATH and does not support --text and --output.
         lines.append(f'rqt_graph() {{ {shlex.quote(str(Path(sys.prefix, "bin/rqt_graph")))} "$@"; }}')
     return "\n".join(lines) + "\n"
 

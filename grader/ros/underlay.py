@@ -92,7 +92,7 @@ def _key_of_sources(ros: installation.Ros) -> str:
 
 
 def _key_of_compiler(compiler: Path | None) -> str:
-    # Asking the compiler for its version would take longer than everything else. A new compiler has a different
+    # Running the compiler to get its version would take too long. A new compiler has a different
     # modification time or size.
     if compiler is None:
         return "none"

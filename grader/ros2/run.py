@@ -42,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
 
     command = [*_words(args.prefix), *_program(_path(args)), *args.argv]
     if shutil.which(command[0]) is None:
-        message = f"The prefix cannot be started: there is no command '{command[0]}'"
+        message = f"The prefix cannot be started: the command '{command[0]}' does not exist"
         raise Ros2Error(message)
     sys.stdout.flush()
     return run_child(command)

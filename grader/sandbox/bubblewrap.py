@@ -3,7 +3,7 @@
 bubblewrap creates two kinds of containers:
 
 - a **room** contains our processes of one trial (the simulator). They run as an ordinary user,
-  with separate pid and network namespaces, and only the loopback interface. They receive what a student's node sends,
+  with separate pid and network namespaces, and only the loopback interface. They receive a student node's messages,
   with libraries that may have security holes;
 - a **cell** contains a student's process. It has its own user, pid, ipc, uts, cgroup and mount namespaces, no network
   but the room's, no files of the disk except those in `View`, a filter of system calls (system_calls.py), and

@@ -1,4 +1,4 @@
-"""Control groups: the kernel limits what the processes of a cell use together, if the grader may create groups.
+"""Control groups: the kernel limits the total use of the processes of a cell, if the grader may create groups.
 
 Root may create them nearly everywhere. An ordinary user may if systemd has delegated a part of the tree and the
 grader runs in it. The limit of the group is `ABOVE` higher than that of usage.py, so that usage.py stops a cell first

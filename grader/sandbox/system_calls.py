@@ -37,7 +37,7 @@ DENIED = {
         "uselib": 134, "_sysctl": 156, "nfsservctl": 180,
     },
     # A user may have 128 instances of inotify. All users together may have 65,536 asynchronous requests.
-    "things that one cell could use up for others": {
+    "resources that one cell could use up for others": {
         "inotify_init": 253, "inotify_init1": 294, "inotify_add_watch": 254, "inotify_rm_watch": 255,
         "io_setup": 206, "io_destroy": 207, "io_getevents": 208, "io_submit": 209, "io_cancel": 210,
         "io_pgetevents": 333, "sync": 162, "syncfs": 306,

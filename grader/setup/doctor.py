@@ -122,7 +122,7 @@ def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None)
     if stamp.digest != bootstrap.digest():
         yield Line("set-up", "older than requirements.lock or pyproject.toml", "advice", "make demo")
     elif os.path.realpath(stamp.ros) == os.path.realpath(now):
-        yield Line("set-up", "as the lock file says")
+        yield Line("set-up", "matches the lock file")
     elif now == bootstrap.WHEELS:
         todo = f"source {stamp.ros}/setup.bash; or make demo, for the course's own ROS 2"
         yield Line("set-up", f"made for {made_for}, which is not sourced", "broken", todo)

@@ -27,7 +27,7 @@ def provide(needs: Sequence[package_managers.Need], env: Mapping[str, str], say:
     if env.get("INSTALL_SYSTEM") == "0":
         return "INSTALL_SYSTEM=0 forbids changes to the system"
     if manager is None:
-        return "the set-up does not know a package manager of this system"
+        return "the set-up does not support the package manager of this system"
     groups = _groups(needs)
     rights = _rights(path)
     if rights is None:

@@ -147,7 +147,7 @@ class TurtlesimNode(Node):
         return response
 
     def add_turtle(self, wanted: str, start: Start) -> str:
-        """Add a turtle at `start`. Return its name, or "" if that cannot be done; the log says why."""
+        """Add a turtle at `start`. Return its name, or "" after logging an error."""
         name = self.world.spawn(wanted, start)
         if not name:
             self.get_logger().error(f"A turtle named [{wanted}] already exists")
@@ -168,7 +168,7 @@ class TurtlesimNode(Node):
         return response
 
     def remove_turtle(self, name: str) -> None:
-        """Remove a turtle. The log says if there is none with this name."""
+        """Remove a turtle. Log an error if no turtle has this name."""
         if self.world.kill(name):
             self._hide(name)
         else:

@@ -28,7 +28,7 @@ class _DeferringActionServer(ActionServer):
     """
 
     def __init__(self, *args: Any, on_result_request: Callable[[bytes], object], **kwargs: Any) -> None:  # noqa: ANN401
-        """Create the server. `on_result_request` runs with the goal's id when a client asks for a result."""
+        """Create the server. `on_result_request` runs with the goal's id when a client requests the result."""
         self._on_result_request = on_result_request
         super().__init__(*args, **kwargs)
 

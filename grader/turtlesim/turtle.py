@@ -147,13 +147,13 @@ class Turtle:
         self._teleports.append(_Relative(linear, angular))
 
     def rotate_to(self, theta: float) -> Rotation:
-        """Accept a goal of rotate_absolute, and abort the current goal if there is one."""
+        """Accept a goal of rotate_absolute, and abort the current goal, if any."""
         self.abort_rotation()
         self.rotation = Rotation(theta=theta, start=self.theta)
         return self.rotation
 
     def abort_rotation(self) -> None:
-        """Abort the current rotation, if there is one."""
+        """Abort the current rotation, if any."""
         if self.rotation is not None:
             self.rotation.end = "aborted"
             self.rotation = None

@@ -2,7 +2,7 @@
 
 A page from another site in the same browser can also send requests to 127.0.0.1. The guard detects such requests,
 because the browser sends the site of the page (Origin) and the name that the page used for this machine (Host).
-In addition, such a page does not have the token.
+In addition, pages of other sites do not have the token.
 """
 
 from __future__ import annotations

@@ -88,7 +88,7 @@ class Player:
             profiles = getattr(connection.ext, "offered_qos_profiles", [])
             made[connection.topic] = self._node.create_publisher(kind, topic, bag_qos.to_play(profiles))
         if chosen and not made:
-            message = "[ERROR] [ros2bag]: No topic of this bag can be published here."
+            message = "[ERROR] [ros2bag]: No topic of this bag can be published."
             raise Ros2Error(message)
         return made
 

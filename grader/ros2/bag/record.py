@@ -152,7 +152,7 @@ def _add_discovery(parser: argparse.ArgumentParser) -> None:
         "--polling-interval",
         type=int,
         default=100,
-        help="interval of looking for new topics, in milliseconds (default: 100)",
+        help="interval between searches for new topics, in milliseconds (default: 100)",
     )
     parser.add_argument("--ignore-leaf-topics", action="store_true", help="exclude topics without subscriptions")
 

@@ -65,6 +65,6 @@ def call(node: Node, kind: str, service: str, request: Any = None) -> Any:  # no
     settle(node, client.service_is_ready)
     future = client.call_async(request if request is not None else made.Request())
     if not spin_until(node, future.done, DEADLINE_S):
-        message = f"Exception while calling service of node '{service.rpartition('/')[0]}': no answer came"
+        message = f"Exception while calling service of node '{service.rpartition('/')[0]}': the node did not respond"
         raise Ros2Error(message)
     return future.result()

@@ -30,7 +30,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         choices=[2, 3],
         help="format of package.xml (default: 3)",
     )
-    parser.add_argument("--description", default="TODO: Package description", help="what the package is for")
+    parser.add_argument("--description", default="TODO: Package description", help="purpose of the package")
     parser.add_argument(
         "--license",
         default="TODO: License declaration",

@@ -99,7 +99,7 @@ def run(args: argparse.Namespace) -> int:
         try:
             publisher = node.create_publisher(made, topic, qos.profile(args))
         except Exception as error:
-            wrong = f"The topic '{args.topic_name}' cannot be published on: {str(error).splitlines()[0]}"
+            wrong = f"Cannot publish on the topic '{args.topic_name}': {str(error).splitlines()[0]}"
             raise Ros2Error(wrong) from error
         # Existing subscriptions should also receive the first message.
         settle(node, lambda: publisher.get_subscription_count() >= max(wanted, 1), args.spin_time)

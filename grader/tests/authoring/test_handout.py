@@ -57,7 +57,7 @@ def test_a_copy_without_solutions_cannot_make_the_repository(
     students: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("grader.authoring.handout.course_folder", lambda: students / "course")
-    with pytest.raises(UsageError, match="has no such folder"):
+    with pytest.raises(UsageError, match="does not have this folder"):
         hand_out(tmp_path / "again")
     assert not (tmp_path / "again").exists()
 

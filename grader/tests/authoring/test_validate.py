@@ -133,5 +133,5 @@ def test_all_missing_things_are_reported_together(root: Path) -> None:
 
 
 def test_an_unknown_exercise_is_an_error_that_lists_all(root: Path) -> None:
-    with pytest.raises(UsageError, match=f"There is no exercise 09-x. The exercises are {NEW}."):
+    with pytest.raises(UsageError, match=f"The course has no exercise 09-x. The exercises are {NEW}."):
         validate(["09-x"], course=root / "course")

@@ -206,14 +206,14 @@ SUBMISSIONS: dict[str, Callable[[Path, Path], object]] = {
     "links": with_links,
     "when": lambda folder, _: (folder / readable.TIMESTAMP).write_text("yesterday evening"),
 }
-"""Student -> what is wrong with the student's folder in the exchange."""
+"""Student -> the fault of the student's folder in the exchange."""
 BESIDE: dict[str, Callable[[Path, Path], object]] = {
     "beside": beside,
     "never": lambda folder, _: (folder / readable.TIMESTAMP).write_text("yesterday evening"),
     "deep": lambda folder, _: (folder / f"{HOMEWORK}.ipynb").write_text("[" * 100_000),
     "blocks": lambda folder, _: pipe(folder / f"{HOMEWORK}.ipynb"),
 }
-"""Student -> what is wrong with the student's folder in submitted/."""
+"""Student -> the fault of the student's folder in submitted/."""
 
 
 def scores(term: Term) -> dict[str, float]:

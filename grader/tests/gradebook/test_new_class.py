@@ -56,7 +56,7 @@ def test_an_invalid_roster_is_a_usage_error(tmp_path: Path, text: str, why: str)
 
 
 def test_a_folder_without_a_course_is_a_usage_error(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"There is no nbgrader_config\.py"):
+    with pytest.raises(UsageError, match=r"has no nbgrader_config\.py"):
         open_class(tmp_path)
 
 

@@ -19,7 +19,7 @@ class Node:
         return self.speed
 '''
 
-REST = "The code is the same in __init__ and the lines outside of functions."
+REST = "The code is the same in __init__ and the lines outside functions."
 
 
 @pytest.mark.parametrize(

@@ -34,7 +34,7 @@ def test_a_student_solves_the_released_notebook(tmp_path: Path, monkeypatch: pyt
         page.set_default_timeout(DEADLINE_MS)
         page.goto(address.replace("PATH", f"{STEP}/{STEP}.ipynb"))
         page.get_by_role("heading", name="Step 03: draw a circle").first.wait_for()
-        # The kernel that the notebook names is installed, so JupyterLab does not ask for one.
+        # The kernel that the notebook names is installed, so JupyterLab does not open a dialog to choose a kernel.
         page.get_by_text(DISPLAY_NAME).first.wait_for()
         page.screenshot(path=pictures / "lab-1-opened.png")
 

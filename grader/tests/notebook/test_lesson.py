@@ -1,4 +1,4 @@
-"""`%lesson` shows a step's lesson in a notebook, whatever folder the notebook is in."""
+"""`%lesson` shows a step's lesson in a notebook in any folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The node of step 03, hostile: it prints what it could read, write and reach, and leaves a process behind.
+"""A hostile node of step 03 that prints the data that it could read, write and reach, and leaves a process behind.
 
 test_node_in_cell.py replaces the words in capital letters.
 """

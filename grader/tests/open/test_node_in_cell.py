@@ -1,4 +1,4 @@
-"""A node that is started in the page runs in a cell: it meets the live turtle, and nothing else of this machine."""
+"""A node that is started in the page runs in a cell. It can reach the live turtle, but nothing else of this machine."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ needs_cells = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sa
 
 @pytest.fixture(scope="module")
 def learner(tmp_path_factory: pytest.TempPathFactory) -> Course:
-    """A learner who has started step 03, without a server."""
+    """Create a learner who has started step 03, without a server."""
     made = Course(tmp_path_factory.mktemp("learner"))
     made.run("start", CIRCLE)
     return made
@@ -45,7 +45,7 @@ def learner(tmp_path_factory: pytest.TempPathFactory) -> Course:
 
 @contextmanager
 def running(start: Start, learner: Course, domain: int) -> Iterator[subprocess.Popen[str]]:
-    """Start a program as the page does. At the end, kill it and what is in its process group."""
+    """Start a program as the page does. At the end, kill its process group."""
     process = subprocess.Popen(
         start.argv,
         env={**start.env, "ROS_DOMAIN_ID": str(domain), "PYTHONUNBUFFERED": "1"},
@@ -70,14 +70,14 @@ def in_cell(learner: Course) -> Start:
 
 @dataclass(frozen=True)
 class Machine:
-    """What an attack may find on this machine: a secret, and ports on which somebody listens."""
+    """The targets of an attack on this machine: a secret, and ports with listening sockets."""
 
     home: Path
     tcp: socket.socket
     udp: list[socket.socket]
 
     def reached(self) -> list[str]:
-        """What an attack has done outside of its cell."""
+        """The effects of an attack outside its cell."""
         found = [path.parent.name for path in (self.home / "written", self.home / "ros2_ws/written") if path.exists()]
         for listening in (self.tcp, *self.udp):
             listening.settimeout(0)
@@ -115,7 +115,7 @@ def hostile(learner: Course, found: Machine, name: str) -> None:
 
 
 def left_behind(name: str) -> list[int]:
-    """The processes of this machine with this name as their first argument."""
+    """Return the processes of this machine with this name as their first argument."""
     found = []
     for place in Path("/proc").glob("[0-9]*"):
         try:
@@ -144,7 +144,7 @@ def test_an_attack_reaches_nothing_and_leaves_nothing(learner: Course, *, defend
                 output += line
             until(lambda: bool(left_behind(name)))
             left = left_behind(name)
-            # The page dies.
+            # Kill the page's process.
             process.stdin.close()
             if defended:
                 assert process.wait(HANG_S) == 0
@@ -167,7 +167,7 @@ def test_an_error_names_the_learners_own_file(learner: Course) -> None:
         output = process.stdout.read()
         assert process.wait(HANG_S) == 1
     assert f'File "{learner.node}", line ' in output
-    assert "draw_circle has ended by itself, with exit code 1." in output
+    assert "draw_circle has ended with exit code 1." in output
 
 
 @needs_cells
@@ -181,7 +181,7 @@ def test_a_package_that_cannot_be_built_says_why(learner: Course) -> None:
         assert process.wait(HANG_S) == 1
     setup.write_text(before)
     assert "no setup today" in output
-    assert "The package could not be built: colcon says why, above." in output
+    assert "The package could not be built. See the messages of colcon above." in output
 
 
 def test_without_a_sandbox_the_page_says_that_the_node_runs_as_the_user(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,4 @@
-"""A learner solves step 03 in the page, with two mistakes on the way."""
+"""A learner solves step 03 in the page, after two mistakes."""
 
 from __future__ import annotations
 

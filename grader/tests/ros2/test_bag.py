@@ -67,7 +67,7 @@ def record(here: World, options: str = "/count", count: int = 300) -> Running:
 
 
 def numbers(folder: Path) -> list[int]:
-    """Return the values in a bag. They are read by another library than the one that wrote them."""
+    """Return the values in a bag. A different library reads them."""
     (file,) = folder.glob("*.mcap")
     with file.open("rb") as stream:
         found = list(make_reader(stream).iter_messages())
@@ -131,7 +131,7 @@ def test_a_disk_that_is_full_is_reported_and_the_bag_can_be_read(quiet: World) -
     # because it would truncate them.
     command = "ulimit -f 8; PYTHONDONTWRITEBYTECODE=1 exec ros2 bag record -o bag /count"
     recorder = quiet.start(f'bash -c "{command}"', "Recording...")
-    quiet.start("python3 talker.py 900", "sent")  # fewer than the queue of the talker holds
+    quiet.start("python3 talker.py 900", "sent")  # fewer than the depth of the talker's queue
     assert recorder.process.wait(HANG_S) == 1
     recorder.wait_for("File too large")
     quiet.run("ros2 bag reindex bag")

@@ -32,7 +32,7 @@ FILES_ONLY = {
     "ros2 run turtlesm turtlesim_node": (1, ["Package 'turtlesm' not found", "Did you mean 'turtlesim'?"]),
     "ros2 run turtlesim turtlesim": (1, ["No executable found", "Did you mean 'turtlesim_node'?"]),
     "ros2 run rclpy node": (1, ["No executable found", "Executables of rclpy: none"]),
-    "ros2 run --prefix nope turtlesim turtlesim_node": (1, ["there is no command 'nope'"]),
+    "ros2 run --prefix nope turtlesim turtlesim_node": (1, ["the command 'nope' does not exist"]),
     'ros2 run --prefix "\'" turtlesim turtlesim_node': (1, ["The prefix cannot be read"]),
     "ros2 pkg prefix turtlesm": (1, ["Package not found", "Did you mean 'turtlesim'?"]),
     "ros2 pkg executables turtlesm": (1, ["Package 'turtlesm' not found", "Did you mean 'turtlesim'?"]),
@@ -107,7 +107,7 @@ FILES_ONLY = {
     ),
     "ros2 topic pub /a std_msgs/msg/UInt8 '{data: 2.5}'": (1, ["expected a whole number"]),
     "ros2 topic pub /a std_msgs/msg/Bool '{data: 2}'": (1, ["expected true or false"]),
-    "ros2 topic pub '/a b' std_msgs/msg/Bool": (1, ["The topic '/a b' cannot be published on"]),
+    "ros2 topic pub '/a b' std_msgs/msg/Bool": (1, ["Cannot publish on the topic '/a b'"]),
     "ros2 topic pub -n 'a b' /a std_msgs/msg/Bool": (1, ["The ROS 2 node could not be created"]),
 }
 WITH_TURTLESIM = {

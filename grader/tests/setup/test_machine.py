@@ -57,7 +57,14 @@ RUNS_FIRST = (
         "common/package_managers.py",
         "common/system_errors.py",
     ),
-    *("setup/__init__.py", "setup/bootstrap.py", "setup/machine.py", "setup/provide.py", "setup/setup_errors.py"),
+    *(
+        "setup/__init__.py",
+        "setup/bootstrap.py",
+        "setup/compiled_modules.py",
+        "setup/machine.py",
+        "setup/provide.py",
+        "setup/setup_errors.py",
+    ),
 )
 
 
