@@ -95,6 +95,7 @@ KINDS: Mapping[str, Kind[Any]] = {
         cancel.NO_GOAL_AFTER,
         star.STAR,
         spawning.SPAWNS,
+        spawning.PLACES_DIFFER,
         spawning.ANNOUNCES,
         spawning.REMOVES,
         catching.CATCHES,

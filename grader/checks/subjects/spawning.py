@@ -47,6 +47,14 @@ class Spawns:
 
 
 @dataclass(frozen=True, kw_only=True)
+class PlacesDiffer:
+    """Another trial (an id) in which the same node ran, and what the names of its turtles begin with."""
+
+    other: str = string("the id of a trial", about="Another trial of the same node.")
+    name: str = string("the beginning of a name", default="target", about="What the names of the turtles begin with.")
+
+
+@dataclass(frozen=True, kw_only=True)
 class Announces:
     """The topic with the names of the remaining turtles, and the time between two messages (s)."""
 
@@ -114,6 +122,28 @@ def _places(evidence: Evidence, params: Spawns, calls: list[Call], expected: str
         text = "Draw new numbers for each turtle, for example with random.uniform."
         return failed(observed, expected, Cause("target-place", text, where))
     return None
+
+
+def places_differ(evidence: Evidence, params: PlacesDiffer) -> Finding:
+    """The places of the turtles are other ones than in another trial of the same node."""
+    expected = "Each time the node is started, the turtles are at other places."
+    now, before = (_spawned(each) for each in (evidence, evidence.from_trial(params.other)))
+    if now and now[: len(before)] == before[: len(now)]:
+        observed = f"The node was started twice, and {params.name}1 was at {_at(now[0])} both times."
+        text = "Draw the places with random, and leave out random.seed: it makes the numbers the same each time."
+        where = evidence.place("seed") if evidence.code.calls("seed") else evidence.place("Request")
+        return failed(observed, expected, Cause("target-place", text, where))
+    return passed(expected)
+
+
+def _spawned(evidence: Evidence) -> list[tuple[float, float]]:
+    """Return the places in the requests to /spawn (m)."""
+    made = [call for call in calls_of(evidence) if not call.by_trial and call.service == "/spawn"]
+    return [(float(call.request["x"]), float(call.request["y"])) for call in made]
+
+
+def _at(place: tuple[float, float]) -> str:
+    return f"x={place[0]:.2f}, y={place[1]:.2f}"
 
 
 def announces(evidence: Evidence, params: Announces) -> Finding:
@@ -243,6 +273,14 @@ SPAWNS = Kind(
     Spawns,
     spawns,
     about="The node spawns a number of turtles with the right names, on the field and at different places.",
+)
+PLACES_DIFFER = Kind(
+    "places_differ",
+    "trial",
+    "The places are random",
+    PlacesDiffer,
+    places_differ,
+    about="The turtles are at other places than in another trial of the same node.",
 )
 ANNOUNCES = Kind(
     "announces_targets",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from grader.checks.outcome import Status
-from grader.checks.subjects.spawning import ANNOUNCES, REMOVES, SPAWNS
+from grader.checks.subjects.spawning import ANNOUNCES, PLACES_DIFFER, REMOVES, SPAWNS
 from grader.tests.checks.made import DURATION_S, NODE, NODE_FILE, evidence, found, recording, submission
 from grader.trial.observed import Call, Track
 from grader.trial.recording import Message
@@ -127,3 +127,11 @@ def test_a_turtle_is_announced_again_and_again() -> None:
 )
 def test_who_was_caught_must_be_removed_and_nobody_else(calls: list[Call], gone: dict[str, float]) -> None:
     assert diagnosis(of_removes(given(calls=calls, gone=gone))) == "not-killed"
+
+
+def test_places_that_are_the_same_each_time_are_not_random() -> None:
+    twice = given()
+    finding = found(PLACES_DIFFER, twice, other=twice.trial.id)
+    assert diagnosis(finding) == "target-place"
+    assert "x=2.00, y=3.00 both times" in finding.observed
+    assert found(PLACES_DIFFER, given(calls=[]), other=twice.trial.id).status is Status.PASSED
