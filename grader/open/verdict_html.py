@@ -43,7 +43,8 @@ def _html(evidence: Evidence, report: Report, folder: Path) -> str:
         return f"vscode://file{quote(str(file))}" + (f":{where.line}" if where.line else "")
 
     checks = shown_checks(evidence, report)
-    runs = runs_of(evidence.views())
+    # Without a package, the simulator ran only to check answers, and nothing moved its turtle.
+    runs = runs_of(evidence.views()) if evidence.exercise.package else []
     fault = evidence.fault.message if evidence.fault and not evidence.fault.unreadable else ""
     values = {
         "to_fix": [each for each in checks if each.kind in ("failed", "error", "advice")],

@@ -30,13 +30,23 @@ function tell(text, tone = "") {
   answer.textContent = text;
 }
 
+// Return the text as nodes. What stands between backticks becomes code.
+function withCode(text) {
+  return text.split("`").map((part, index) => {
+    if (index % 2 === 0) return part;
+    const code = document.createElement("code");
+    code.textContent = part;
+    return code;
+  });
+}
+
 function showHints(state) {
   update(find("hints"), state.hints.map((text, index) => ({
     key: `hint-${index}`,
     text,
     make: () => {
       const item = document.createElement("li");
-      item.textContent = text;
+      item.append(...withCode(text));
       return item;
     },
   })));

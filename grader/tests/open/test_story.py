@@ -81,6 +81,17 @@ def test_the_story_of_step_03(learner: Course, browser: Browser) -> None:
     page.close()
 
 
+def test_answers_get_no_picture_of_a_turtle_and_hints_show_code(learner: Course, browser: Browser) -> None:
+    learner.run("start", "02")
+    page = learner.opened(browser, "02-discover-topics/index.html")
+    verdict(page, "0 of 100 points")
+    page.get_by_role("article").filter(has_text="answers.toml has no answers yet.").wait_for()
+    assert page.locator("#details [data-key^=run-]").count() == 0
+    page.get_by_role("button", name="Hint").click()
+    page.locator("#hints code").get_by_text("grader start 02", exact=True).wait_for()
+    page.close()
+
+
 def test_the_files_are_judged_before_the_trial(begun: Course, browser: Browser) -> None:
     page = begun.opened(browser)
     verdict(page, "Not passed yet")
