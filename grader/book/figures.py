@@ -17,7 +17,7 @@ FIGURES = {
     "03-circle-publisher": Figure("circle", "how-fast-how-often"),
     "06-pose-subscriber": Figure("frames", "where-it-is-and-how-far-it-has-come"),
     "07-challenges": Figure("goal", "d-a-drive-to-a-goal"),
-    "09-parameters": Figure("radius", "say-no"),
+    "09-parameters": Figure("radius", "reject-a-value"),
 }
 """The figures by step. A figure whose section does not exist is at the end of the lesson."""
 
