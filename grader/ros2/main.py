@@ -1,6 +1,6 @@
 """The command `ros2`: run the `ros2` of a sourced ROS 2 if it has one, or else run a verb of ours.
 
-This module imports little. A verb imports parts of rclpy only when it runs.
+This module imports few modules. A verb imports parts of rclpy only when it runs.
 """
 
 from __future__ import annotations

@@ -89,7 +89,7 @@ print(sorted(str(path.relative_to(below)) for path in below.rglob("*")), (below 
 
 def test_a_cell_inherits_no_descriptor() -> None:
     done = run("import os; print(len([fd for fd in os.listdir('/proc/self/fd') if int(fd) > 2]))")
-    assert int(done.stdout) == 1  # listing the folder opens one
+    assert int(done.stdout) == 1  # listing the folder opens a descriptor
 
 
 @pytest.mark.parametrize("place", ["/", "/usr", "/etc", "/dev", sys.prefix])
