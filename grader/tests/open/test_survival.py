@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import signal
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,6 +37,18 @@ def children(pid: int) -> list[int]:
     return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
 
 
+@contextmanager
+def asleep(pid: int) -> Iterator[None]:
+    """Stop a process and all processes below it for a while, as a laptop that sleeps does."""
+    stopped = [pid]
+    for each in stopped:
+        os.kill(each, signal.SIGSTOP)
+        stopped += children(each)
+    yield
+    for each in stopped:
+        os.kill(each, signal.SIGCONT)
+
+
 def test_the_page_survives_what_people_do(own: Course, browser: Browser) -> None:
     page = own.opened(browser)
     verdict(page, "15 of 100")
@@ -57,6 +71,13 @@ def test_the_page_survives_what_people_do(own: Course, browser: Browser) -> None
     own.save("2.0", "3.0")
     verdict(page, "50 of 100 points")
     second.value.close()
+
+    # The machine sleeps, and finds another file when it wakes up.
+    with asleep(own.processes[-1].pid):
+        own.save()
+    verdict(page, "Passed: 100")
+    own.save("2.0", "3.0")
+    verdict(page, "50 of 100 points")
 
     # The server is killed and started again. The address and the token stay the same, and the open page continues.
     before = own.url
