@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grader.trial.rest import GoneError, Threads
-from grader.trial.rest import Look as LookAtThreads
+from grader.trial.rest import GoneError, Look, Threads
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -91,12 +90,12 @@ class GroupThreads:
         for threads in self._each:
             threads.close()
 
-    def look(self) -> LookAtThreads:
+    def look(self) -> Look:
         """Look at every thread once."""
         looks = self.looks()
-        return LookAtThreads(all(look.asleep for look in looks), sum((look.runs for look in looks), ()))
+        return Look(all(look.asleep for look in looks), sum((look.runs for look in looks), ()))
 
-    def looks(self) -> list[LookAtThreads]:
+    def looks(self) -> list[Look]:
         """Look at every thread once, and return the result for each process."""
         return [threads.look() for threads in self._each]
 
