@@ -64,7 +64,7 @@ UNSTEADY = "The tests depend on timing, on random numbers, or on the state that 
 
 def _observed(run: NodeRun) -> str:
     if run.over:
-        return "The tests on the right node did not end in time."
+        return "The tests of the right node did not finish in time."
     name = shorten(run.test.rpartition("::")[2] or run.test, 60)
     if run.outcome == "import":
         return f"{shorten(run.test, 60)} cannot be imported."
@@ -124,7 +124,9 @@ def _is_silent(evidence: Evidence, broken: str) -> bool:
 def _hung(expected: str, code: TestCode, run: NodeRun | None) -> Finding:
     text = "A test that waits for a message that never arrives must give up: it needs a deadline."
     where = code.tests[0].where if code.tests else None
-    observed = "The tests did not end in time." if run is not None else "The tests did not end in time on other nodes."
+    observed = (
+        "The tests did not finish in time." if run is not None else "The tests of other nodes did not finish in time."
+    )
     return failed(observed, expected, Cause("test-hangs", text, where))
 
 
