@@ -49,10 +49,16 @@ def test_a_solution_passes_from_any_start(step: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize(
-    "step", ["02-discover-topics", "11-bags", pytest.param("07-challenges", marks=pytest.mark.exhaustive)]
+    "step",
+    [
+        "02-discover-topics",
+        "11-bags",
+        pytest.param("07-challenges", marks=pytest.mark.exhaustive),
+        pytest.param("13-catch-them-all", marks=pytest.mark.exhaustive),
+    ],
 )
 def test_a_recording_is_judged_again(step: str, tmp_path: Path) -> None:
-    """The steps are one without a package, one without a simulator, and one with several trials."""
+    """One step has no package, one no simulator, one several trials, and one several nodes in a trial."""
     first, again, kept = tmp_path / "first.json", tmp_path / "again.json", tmp_path / "kept"
     assert grader("check", f"solutions/{step}", "--json", first, "--recording", kept).returncode == 0
     done = grader("regrade", kept, "--json", again)
