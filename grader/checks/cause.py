@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Cause:
-    """A diagnosis id, the cause in words (empty if the observation is enough), and the place to look at.
+    """A diagnosis id, the cause in words (empty if the observation is enough), and the place in the code to look at.
 
     `fix` is the smallest change that would fix the mistake, if known. The grader tries it but never shows it to a
     student.

@@ -1,4 +1,4 @@
-"""The stable id of each known mistake, with its meaning in one line.
+"""The stable id of each known mistake, with a one-line explanation.
 
 Each failed check has one of these ids. Reports, class pages and instructors' scripts count them, so the meaning of an
 id never changes, although the wording of a message may. `python -m grader.tests.catalogue` writes the table of all ids

@@ -1,4 +1,4 @@
-"""The ids of mistakes of two nodes that spawn and catch turtles, with their meanings. diagnoses.py has all ids."""
+"""The ids of mistakes in nodes that spawn and catch turtles, with their meanings. diagnoses.py lists all ids."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The ids of mistakes in the files of a submission, with their meanings. diagnoses.py has all ids."""
+"""The ids of mistakes in the files of a submission, with their meanings. diagnoses.py lists all ids."""
 
 from __future__ import annotations
 

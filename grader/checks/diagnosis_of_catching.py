@@ -1,4 +1,4 @@
-"""The ids of mistakes of two nodes, one of which spawns turtles that the other one catches."""
+"""The ids of mistakes in two nodes, one of which spawns turtles that the other one catches."""
 
 from __future__ import annotations
 

@@ -119,7 +119,7 @@ def judge_early(evidence: Evidence) -> Early:
 
 
 def _judges_trial(exercise: Exercise, spec: CheckSpec, trial: str) -> bool:
-    """Return whether the check judges the recording of this trial, also from the viewpoint of a node beside."""
+    """Return whether the check judges this trial's recording, perhaps from the viewpoint of an additional node."""
     return KINDS[spec.kind].stage == "trial" and trial in (spec.trial, exercise.trial(spec.trial).beside)
 
 
@@ -128,7 +128,7 @@ def _blocks(finding: Finding) -> bool:
 
 
 def _in_order(specs: Iterable[CheckSpec]) -> list[CheckSpec]:
-    """Sort the checks so that each one comes after all those that it needs. These needs are never circular."""
+    """Sort the checks so that each one comes after all those that it needs. Dependencies are never circular."""
     waiting = list(specs)
     done: dict[str, CheckSpec] = {}
     while waiting:
@@ -165,7 +165,7 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
         return kind.judge(evidence, spec.params)
     except MachineError as error:
         return Finding(Status.ERROR, str(error))
-    except Exception as error:  # an exception in one check must not discard the other outcomes of a class
+    except Exception as error:  # an exception in one check must not discard the other outcomes of a whole class
         return unreadable(in_words(error))
 
 

@@ -78,7 +78,7 @@ class Kind(Generic[P]):
         return None if self.early is None or isinstance(params, Finding) else self.early(evidence, params)
 
     def request(self, evidence: Evidence, values: Mapping[str, Param]) -> Requested | None:
-        """Return the requirements of a check with these parameter values for a drawing, or None."""
+        """Return the requirements to draw for a check with these parameter values, or None."""
         params = self._params(evidence, values)
         return None if self.requested is None or isinstance(params, Finding) else self.requested(evidence, params)
 
@@ -145,9 +145,9 @@ def strings(*, about: str) -> Any:
 
 
 def table(*, about: str, optional: bool = False) -> Any:
-    """Create a field for a table with numbers, strings, true or false. Its value is a tuple of names and values.
+    """Create a field for a table of numbers, strings and booleans. The value is a tuple of names and values.
 
-    If it is optional, the default is an empty table.
+    If the field is optional, the default is an empty table.
     """
 
     def accept(value: object) -> tuple[tuple[str, Any], ...] | None:

@@ -37,7 +37,7 @@ def read_numbers(evidence: Evidence) -> OwnNumbers | Finding:
 
 
 def drawn_numbers(evidence: Evidence) -> OwnNumbers | Finding:
-    """Return the numbers for the student named in the file. They are drawn again, not read from the file."""
+    """Return the numbers of the student named in the file. They are drawn again rather than read from the file."""
     found = read_numbers(evidence)
     return found if isinstance(found, Finding) else draw_numbers(numbers_spec(evidence), found.student)
 

@@ -116,14 +116,14 @@ def end_observed(evidence: Evidence) -> str:
 
 
 def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:
-    """Return the last exception in stderr. For a chain of exceptions, return the first that Ctrl-C did not cause."""
+    """Return the last exception in stderr. In a chain, return the first that Ctrl-C did not cause."""
     last: list[Crash] = []
     for chained, crash in read_tracebacks(text, files):
         last = [*last, crash] if chained else [crash]
     roots = [crash for crash in last if crash.error not in STOPS]
     if not roots:
         return None
-    # rclpy's own exceptions are the clearest. The first exception of a chain may not include a line of student code.
+    # The exceptions of rclpy are the clearest. The first traceback of a chain may not contain a line of student code.
     root = next((crash for crash in roots if crash.error in RCLPY_ERRORS), roots[0])
     return replace(root, where=root.where or next((crash.where for crash in last if crash.where is not None), None))
 
@@ -137,9 +137,9 @@ def read_tracebacks(text: str, files: Mapping[str, bytes]) -> Iterable[tuple[boo
 
 
 def _blocks(lines: list[str]) -> Iterable[tuple[bool, list[str]]]:
-    """Yield the lines of each traceback after its first line, and whether another exception was being handled.
+    """Yield each traceback without its first line, and whether another exception was being handled when it occurred.
 
-    Tracebacks of exceptions that Python ignored are left out, because they did not crash the node.
+    Exceptions that Python ignored are skipped, because they did not crash the node.
     """
     starts = [index for index, line in enumerate(lines) if line.strip() == START]
     for index, start in enumerate(starts):
@@ -168,7 +168,7 @@ def _crash(lines: list[str], files: Mapping[str, bytes]) -> Crash | None:
 
 
 def _own_file(path: str, files: Mapping[str, bytes]) -> str | None:
-    """Return the file of the submission that was installed or linked at this path, preferring the longest match."""
+    """Return the submission file that was installed or linked at this path, preferring the longest match."""
     tail = f"/{path}"
     ends = [
         file
@@ -179,7 +179,7 @@ def _own_file(path: str, files: Mapping[str, bytes]) -> str | None:
 
 
 def _is_beside(path: str) -> bool:
-    """Return whether a file next to setup.py may be at this path, and not a file of another package, such as rclpy."""
+    """Return whether this may be the path of a file next to setup.py, and not of another package such as rclpy."""
     folders = path.split("/")[:-1]
     return not any(name in folders for name in PACKAGES) or folders[-1] in PACKAGES
 

@@ -87,7 +87,7 @@ class CrashScene:
         return max(around, key=lambda each: each.lineno, default=None)
 
     def class_around(self, node: ast.AST) -> ast.ClassDef | None:
-        """Return the class that the node is a direct member of, or None."""
+        """Return the class whose body directly contains the node, or None."""
         return next((each for each in self.classes if node in each.body), None)
 
     def top_functions(self) -> list[Function]:

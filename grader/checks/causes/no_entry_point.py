@@ -1,4 +1,4 @@
-"""Why the executable of the exercise does not exist, and which similar entry setup.py has."""
+"""Why the executable of the exercise does not exist, with any similar entry in setup.py."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ def why_without_assert(test: TestFunction) -> Cause:
 
 
 def always_true(code: TestCode) -> Cause | None:
-    """Return the cause if an assert is always true: a tuple or a string as its condition."""
+    """Return the cause if an assert is always true because its condition is a tuple or a string."""
     for module in code.modules:
         for node in module.nodes:
             if isinstance(node, ast.Assert) and isinstance(node.test, ast.Tuple) and node.test.elts:
@@ -66,7 +66,7 @@ def always_false(code: TestCode) -> Cause | None:
 
 
 def swallowed(code: TestCode) -> Cause | None:
-    """Return the cause if an except catches the failure of an assert."""
+    """Return the cause if an except clause catches the failure of an assert."""
     for module in code.modules:
         for node in module.nodes:
             if isinstance(node, ast.Try) and any(isinstance(each, ast.Assert) for each in _below(node.body)):

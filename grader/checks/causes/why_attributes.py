@@ -72,7 +72,7 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
 
 
 def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None:
-    """Return the cause if an object of rclpy, a message or a plain value has no such attribute."""
+    """Return the cause if an rclpy object, a message or a plain value has no such attribute."""
     if owner in ros_names.FIELDS:
         fields = ros_names.FIELDS[owner]
         guess = nearest(name, fields)
@@ -125,7 +125,7 @@ def _class_for_object(name: str) -> Cause:
 
 
 def _set_twice(scene: CrashScene, name: str, text: str) -> Cause:
-    """Return the cause, which names the line that sets the object again if there is one."""
+    """Return the cause. If the name of the object is assigned more than once, the cause lists these lines."""
     holders = [dotted(node.value) for node in scene.on_line if isinstance(node, ast.Attribute) and node.attr == name]
     for holder in filter(None, holders):
         lines = [
@@ -140,7 +140,7 @@ def _set_twice(scene: CrashScene, name: str, text: str) -> Cause:
 
 
 def _of_own_type(scene: CrashScene, owner: str, name: str) -> Cause:
-    """Return the cause if a class of the file has no such attribute: only its objects have it, or nothing has it."""
+    """Return the cause if a class in the file has no such attribute: only its instances do, or it does not exist."""
     own = scene.class_named(owner)
     assert own is not None
     outside = next((each for each in scene.top_functions() if each.name == name), None)
@@ -191,7 +191,7 @@ def _of_none(scene: CrashScene, name: str) -> Cause | None:
 
 
 def _no_object(scene: CrashScene) -> Cause:
-    """Return the cause if rclpy.spin gets None, for example from a function without return."""
+    """Return the cause if rclpy.spin gets None, for example from a function without a return statement."""
     text = "rclpy.spin was called with None instead of a node."
     given = {dotted(call.args[0]) for call in scene.calls_on_line("spin") if call.args}
     for node in scene.nodes:

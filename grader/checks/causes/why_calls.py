@@ -90,7 +90,7 @@ def _kind(argument: ast.expr, scene: CrashScene) -> str:
 
 
 def why_type(scene: CrashScene) -> Cause | None:
-    """Return the cause of a TypeError: too few, too many or wrong arguments, or something that cannot be called."""
+    """Return the cause of a TypeError: too few, too many or wrong arguments, or an object that is not callable."""
     text = scene.crash.message
     found = callback_called(scene) or swapped(scene)
     if found is not None:

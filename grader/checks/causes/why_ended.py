@@ -18,7 +18,7 @@ SPINS = ("spin", "spin_once", "spin_until_future_complete")
 
 
 def why_ended(evidence: Evidence) -> Cause:
-    """Return the cause of a program that exited before Ctrl-C without an exception."""
+    """Return the reason why the program exited before Ctrl-C without an exception."""
     code = evidence.code
     bare = named_only(evidence, "rclpy.init", "rclpy.spin", "main")
     if bare is not None:
@@ -67,7 +67,7 @@ def _is_spin(call: ast.Call) -> bool:
 
 
 def why_no_node(evidence: Evidence) -> Cause:
-    """Return the cause of a program that runs without creating a node."""
+    """Return the reason why the program runs without creating a node."""
     code = evidence.code
     bare = named_only(evidence, "rclpy.init", "main")
     if bare is not None:

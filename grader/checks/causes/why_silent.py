@@ -38,7 +38,7 @@ def why_qos(evidence: Evidence) -> Cause | None:
 
 
 def why_nothing(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
-    """Return the cause of a silent node, or None. `sends` are the functions that publish or log."""
+    """Return the reason why the node is silent, or None. `sends` are the functions that publish or log."""
     fault = timer_fault(evidence)
     if fault is not None:
         return fault
@@ -150,7 +150,7 @@ WAITS = ("spin_until_future_complete", "send_goal", "cancel_goal", "get_result")
 
 
 def waits_inside(node: ast.AST) -> bool:
-    """Return whether this waits for a response: spin_until_future_complete, Client.call, or a loop until it is done."""
+    """Return whether this waits for a response: spin_until_future_complete, Client.call, or a loop on done()."""
     if isinstance(node, ast.While):
         return _calls(node.test, "done")
     if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):

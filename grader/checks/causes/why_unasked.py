@@ -53,7 +53,7 @@ def waits_in_callback(evidence: Evidence) -> Cause | None:
 
 
 def _wrong_name(evidence: Evidence, wanted: str) -> Cause | None:
-    """Return the cause if a client uses the name of a service that the simulator does not have, else None."""
+    """Return the cause if a client uses the name of a service that does not exist in the simulator, else None."""
     clients = evidence.code.calls("create_client")
     names = {call: evaluate(call.argument(1, "srv_name"), call.module.names) for call in clients}
     if any(isinstance(name, str) and f"/{name.strip('/')}" == wanted for name in names.values()):

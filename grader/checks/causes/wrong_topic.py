@@ -1,4 +1,4 @@
-"""Why a topic name is wrong: misspelt, without the name of the turtle, in a namespace, of another turtle."""
+"""Why a topic name is wrong: it is misspelt, lacks the turtle's name, has a namespace, or is another turtle's."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def why_topic(wanted: str, topic: str, evidence: Evidence) -> Cause:
 
 
 def _is_absolute(evidence: Evidence, topic: str) -> bool:
-    """Return whether the source has this whole name, so that no namespace was added to it."""
+    """Return whether the source contains this full name, which means that no namespace was added to it."""
     calls = evidence.code.calls("create_publisher")
     return any(evaluate(call.argument(1, "topic"), call.module.names) == topic for call in calls)
 

@@ -43,7 +43,7 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def _sending_loop(evidence: Evidence) -> Where | None:
-    """Return a loop that publishes or logs, and waits in between, or None."""
+    """Return a loop that publishes or logs and then waits, or None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.While) and ast.unparse(node.test) in ALWAYS:

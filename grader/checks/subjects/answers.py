@@ -55,7 +55,7 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class OneOf:
-    """The strings that are right. Upper and lower case and spaces do not matter."""
+    """The correct strings. Neither case nor spaces matter."""
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
     accepts: tuple[str, ...] = strings(about="The right answers. Upper and lower case and spaces do not matter.")
@@ -74,7 +74,7 @@ def answer_text(evidence: Evidence, params: OneOf) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class AllOf:
-    """The strings that must all be in the list, in any order, and no others."""
+    """The strings that the list must contain, in any order, with no others."""
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
     items: tuple[str, ...] = strings(about="All items of the right answer, in any order.")
@@ -91,7 +91,7 @@ def answer_list(evidence: Evidence, params: AllOf) -> Finding:
 class GraphQuestion:
     """A question about the ROS graph: the topics, types or nodes of the endpoints that match all these parameters.
 
-    With `connected_to`, only topics on which that node has the opposite endpoint count.
+    If `connected_to` is set, a topic counts only if that node has the opposite endpoint on it.
     """
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
@@ -167,7 +167,7 @@ def _why(answer: str, find: str, truth: Collection[str], others: Collection[str]
 
 @dataclass(frozen=True, kw_only=True)
 class AnswerRate:
-    """The mean rate (Hz) of the messages whose type has this ending."""
+    """The mean rate (Hz) of the messages whose type name ends in this way."""
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
     type_ends: str = string(
@@ -192,7 +192,7 @@ def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
     if Band.around(truth, truth * params.tolerance_percent / 100.0).holds(given):
         return passed(f"{given:g} Hz is right.")
     why = Cause("wrong-answer", "`ros2 topic hz` shows the number of messages per second.")
-    # The answer cannot be 0 here: the handout writes 0 for an answer that is still missing.
+    # The answer cannot be 0 here: the handout contains 0 for an answer that is still missing.
     if Band.around(truth, truth * params.tolerance_percent / 100.0).holds(1.0 / given):
         why = Cause(
             "period-for-rate",
@@ -202,7 +202,7 @@ def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
 
 
 def _given(evidence: Evidence, name: str, form: str, kind: type) -> Answer | Finding:
-    """Return the answer, or the finding that it is missing or has the wrong type."""
+    """Return the answer, or a failed finding if it is missing or has the wrong type."""
     found = evidence.answers
     where = Where(FILE, found.lines.get(name) if found is not None else None)
     answer = found.given.get(name) if found is not None else None

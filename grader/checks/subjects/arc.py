@@ -59,7 +59,7 @@ class Arc:
 
 
 def arc(evidence: Evidence, params: Arc) -> Finding:
-    """The piece of the trajectory is an arc of the right radius, direction, angle and speed."""
+    """The piece of the trajectory is an arc with the right radius, direction, angle and speed."""
     expected = _expected(params)
     moved = moved_otherwise(evidence, expected)
     if moved is not None:
@@ -153,7 +153,7 @@ def _expected(params: Arc) -> str:
 
 
 def _chosen(evidence: Evidence, params: Arc) -> Steps:
-    """Return for each step of the trajectory whether it belongs to the arc."""
+    """Return an array that says whether each step of the trajectory belongs to the arc."""
     trajectory = evidence.trajectory
     chosen = (trajectory.steps > RESTS_M) & (trajectory.t_s > params.from_s) & (trajectory.t_s <= params.until_s)
     if params.color is None:
@@ -166,7 +166,7 @@ def _chosen(evidence: Evidence, params: Arc) -> Steps:
 
 
 def _pieces(evidence: Evidence, chosen: Steps) -> int:
-    """Return the number of separate pieces of the trajectory. The turtle also moves between two pieces."""
+    """Return the number of pieces of the trajectory that are separated by other movements of the turtle."""
     moves = evidence.trajectory.steps > RESTS_M
     return int((np.diff(np.flatnonzero(chosen[moves])) > 1).sum()) + 1
 
@@ -206,6 +206,6 @@ ARC = Kind(
     arc,
     about="Velocity commands drive the turtle on an arc, in a certain colour or in a certain part of the trial.",
     drives=True,
-    # A second arc to the other side leaves the first circle, but not one of twice the radius.
+    # A second arc, to the other side, leaves the circle of the first one, but stays within twice its radius.
     radius_m=lambda params: max(params.radius_m, min(2.0 * params.radius_m, MOST_ROOM_M)),
 )

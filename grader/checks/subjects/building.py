@@ -1,4 +1,4 @@
-"""Checks of the build: colcon built the package, and the install folder has the files that it should have."""
+"""Checks of the build: colcon built the package, and the install folder contains the files that it should."""
 
 from __future__ import annotations
 
@@ -181,7 +181,7 @@ def _setup_line(evidence: Evidence) -> int | None:
 
 
 def installs(evidence: Evidence, _: NoParams) -> Finding:
-    """package.xml and the marker file in the resource index are installed: ROS 2 finds the package by them."""
+    """package.xml and the marker file in the resource index are installed: ROS 2 uses both to find the package."""
     installed = evidence.built.installed
     name = _package_name(evidence)
     wanted = {

@@ -1,4 +1,4 @@
-"""Checks of cancelling a goal when the trial requests it, and of sending no goal afterwards."""
+"""Checks that the node cancels its goal when the trial requests it, and sends no goal afterwards."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class NoGoalAfter:
 
 
 def cancels_goal(evidence: Evidence, params: CancelsGoal) -> Finding:
-    """The call of the service cancels the turtle's current goal in time."""
+    """When the trial calls the service, the turtle's current goal is cancelled in time."""
     expected = f"The goal is cancelled within {params.within_s:g} s after a call of {params.service}."
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     if not any(call.response is not None for call in calls):
@@ -80,7 +80,7 @@ def _goes_on(evidence: Evidence, params: CancelsGoal, goal: Goal, took_s: float,
 
 
 def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
-    """After the call of the service, no goal arrives."""
+    """After the service call, no goal arrives."""
     expected = f"After a call of {params.service}, the node sends no more goals."
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     goals = goals_of(evidence)

@@ -1,4 +1,4 @@
-"""Checks of a node that drives turtle1 to other turtles and requests their removal, the nearest first."""
+"""Checks of a node that drives turtle1 to other turtles and requests their removal, nearest first."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class WithinReach:
 
 
 def catches(evidence: Evidence, params: Catches) -> Finding:
-    """All targets were removed before SIGINT, and turtle1 only drove."""
+    """All targets were removed before SIGINT, and turtle1 moved only by driving."""
     recording = evidence.recording
     expected = f"All targets are caught within {recording.duration_s:g} s, and turtle1 only drives."
     tracks = recording.tracks
@@ -80,7 +80,7 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
 
 
 def _forbidden(recording: Recording) -> str | None:
-    """Return the call that moved turtle1, or None. The removal of a target is allowed."""
+    """Return the service call that moved turtle1, or None. Removing a target is allowed."""
     moving = tuple(name for name in recording.interventions if name in MOVING)
     return moved_by(replace(recording, interventions=moving), from_start=True)
 

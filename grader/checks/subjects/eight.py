@@ -58,7 +58,7 @@ class Lobe:
 
 
 def lobes_of(trajectory: Trajectory) -> list[Lobe]:
-    """Split the trajectory where it changes from left turns to right turns or back."""
+    """Split the trajectory where it changes from left turns to right turns or vice versa."""
     side = np.where(
         trajectory.steps > RESTS_M, np.sign(np.where(np.abs(trajectory.turn) > STRAIGHT_RAD, trajectory.turn, 0.0)), 0.0
     )

@@ -74,7 +74,7 @@ def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
 
 
 def _unheard(evidence: Evidence) -> Cause | None:
-    """Return the cause if no goal is sent with a method for its feedback, else None."""
+    """Return the cause if no goal is sent with a feedback callback, else None."""
     sends = evidence.code.calls("send_goal_async")
     if not sends or any(call.argument(1, "feedback_callback") is not None for call in sends):
         return None

@@ -1,4 +1,4 @@
-"""Checks of a function that fits a circle: the centre and the radius, and an error where there is no circle."""
+"""Checks of a function that fits a circle: its centre and radius, and an error if the points determine none."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def tolerances(arc: Arc, rounding_m: float) -> tuple[float, float, float]:
 
 
 def stopped(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
-    """Return a finding about a call that raised an exception or was ended, or None."""
+    """Return a finding about a call that raised an exception or ended the program, or None."""
     if called.ended == "exit 0":
         return None
     where = evidence.code.start
@@ -118,7 +118,7 @@ def _missing(evidence: Evidence, called: Called, expected: str, name: str) -> Fi
 
 
 def _late(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
-    """Return a finding about a call that did not end, or that was not made because of an earlier one, or None."""
+    """Return a finding about a call that did not return, or was not made because an earlier one did not, or None."""
     late = any(each.ended == TOO_LATE for each in evidence.run.called or ())
     if not late or called.ended not in (TOO_LATE, ""):
         return None
@@ -130,7 +130,7 @@ def _late(evidence: Evidence, called: Called, expected: str, name: str) -> Findi
 
 
 def _why_raised(evidence: Evidence, crash: Crash, id_: str) -> Cause | None:
-    """Return the cause of an exception that is typical of a fit, or None."""
+    """Return the cause of an exception that is typical of circle fitting, or None."""
     if any(each.id == id_ and each.lists for each in evidence.trial.calls.points):
         others = [each for each in evidence.run.called or () if each.id != id_ and each.values is not None]
         if others:

@@ -71,7 +71,7 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
 
 
 def requested_goal(_: Evidence, params: Goal) -> Requested:
-    """Return a ring around the points that count as arrived, and four strokes that lead to it."""
+    """Return a ring around the points where the turtle counts as arrived, and four strokes that lead to it."""
     x, y = params.x_m, params.y_m
     near, far = params.tolerance_m, params.tolerance_m + STROKE_M
     rays = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))

@@ -1,4 +1,4 @@
-"""Checks of an action client of rotate_absolute: the goals that arrive, their ends, and the requests for results."""
+"""Checks of a client of the action rotate_absolute: its goals, their outcomes, and its requests for the results."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ LARGE_RAD = 7.0
 
 @dataclass(frozen=True, kw_only=True)
 class SendsGoals:
-    """`total` goals of rotate_absolute, beginning with the `nth` (from 1). Each heading is `turn_deg` further."""
+    """`total` goals, beginning with the `nth` (from 1). Each heading is `turn_deg` to the left of the previous one."""
 
     heading_deg: float = number(about="The heading of the goal, in degrees: 0 is to the right, 90 is up.")
     nth: float = number(1, at_least=1, about="The number of the first goal that is compared, from 1.")

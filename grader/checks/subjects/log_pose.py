@@ -1,4 +1,4 @@
-"""Checks of the logged position and distance of the turtle, compared with the simulator's own frames."""
+"""Checks of the logged position and distance of the turtle, compared with the simulator's frames."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ FEWEST = 3
 
 @dataclass(frozen=True, kw_only=True)
 class LogPosition:
-    """The logged x and y may be at most `lag_s` old and may differ by the tolerance."""
+    """The logged x and y may be at most `lag_s` old and may differ by at most the tolerance."""
 
     format: str = string("a log line with x and y in it", about="The format of a line with the numbers `x` and `y`.")
     tolerance_m: float = number(0.02, above=0, about="The maximum error of x and y.")
@@ -39,7 +39,7 @@ class LogPosition:
 
 @dataclass(frozen=True, kw_only=True)
 class LogDistance:
-    """The logged distance driven since the start may be at most `lag_s` old and may differ by the tolerance."""
+    """The logged distance driven since the start may be at most `lag_s` old and may differ by at most the tolerance."""
 
     format: str = string("a log line with distance in it", about="The format of a line with the number `distance`.")
     tolerance_m: float = number(0.05, above=0, about="The maximum error of the distance.")
@@ -47,7 +47,7 @@ class LogDistance:
 
 
 def log_position(evidence: Evidence, params: LogPosition) -> Finding:
-    """Every line shows where the turtle was when it was logged."""
+    """Every line shows the position of the turtle at the time of logging."""
     recording, frames = evidence.recording, evidence.recording.frames
     logged = _trusted(recording, params.format)
     expected = "Each line shows where the turtle is at that moment, with two decimal places."
@@ -160,7 +160,7 @@ def _overwritten(evidence: Evidence) -> Cause | None:
 
 
 def _trusted(recording: Recording, format_: str) -> list[Line]:
-    """Return the lines in the format that no stall of the machine delayed."""
+    """Return the lines in the format that were not delayed by a stall of the machine."""
     return [line for line in student_log.in_format(recording, format_) if not recording.stalled(line.t_s)]
 
 
@@ -175,7 +175,7 @@ def _too_few(evidence: Evidence, text_: str) -> Finding:
 
 
 def _window(recording: Recording, t_s: float, lag_s: float) -> slice:
-    """Return the frames that a line logged at this time may describe; at least one."""
+    """Return the frames (at least one) that a line logged at this time may describe."""
     times = recording.frames.t_s
     begin = int(np.searchsorted(times, t_s - lag_s))
     end = int(np.searchsorted(times, t_s + EARLY_S))

@@ -26,7 +26,7 @@ class NoCalls:
 
 
 def no_calls(evidence: Evidence, params: NoCalls) -> Finding:
-    """The node's file uses none of the functions, under whatever name."""
+    """The node's file uses none of the functions, under any name."""
     uses = uses_of(evidence.code.modules, evidence.node_file, params.names)
     if uses:
         first = uses[0]

@@ -67,7 +67,7 @@ def valid(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def why_not_read(evidence: Evidence, manifest: Manifest) -> Cause:
-    """Return the cause of a package.xml that catkin_pkg, and therefore colcon, cannot read."""
+    """Return the reason why catkin_pkg, and therefore colcon, cannot read package.xml."""
     problem = manifest.problem or ""
     tag = ROS_1_TAGS.search(problem)
     if tag is not None:
@@ -134,7 +134,7 @@ def _imported(evidence: Evidence) -> dict[str, Where]:
 def _why_not_declared(
     evidence: Evidence, manifest: Manifest, name: str, needed: Sequence[str], imported: Mapping[str, Where]
 ) -> Cause:
-    """Return the cause of a package `name` that package.xml does not declare at all."""
+    """Return the reason why package.xml does not declare the package `name` at all."""
     guess = nearest(name, [each for each in manifest.run_depends if each not in needed and not _used(evidence, each)])
     if guess is not None:
         cause = f'It declares "{shorten(guess)}". Is that a typing error?'
@@ -159,7 +159,7 @@ def _why_not_declared(
 
 
 def _used(evidence: Evidence, package: str) -> bool:
-    """Return whether any Python file of the submission imports the package, so that its name is no typing error."""
+    """Return whether any Python file of the submission imports the package, so its name is not a typo."""
     line = re.compile(rf"^\s*(from|import)\s+{re.escape(package)}\b".encode(), re.MULTILINE)
     return any(path.endswith(".py") and line.search(data) for path, data in evidence.submission.files.items())
 

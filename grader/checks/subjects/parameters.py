@@ -35,7 +35,7 @@ class Declares:
 
 
 def declares(evidence: Evidence, params: Declares) -> Finding:
-    """The node answered a `describe_parameters` call of the trial with a float, a description and this range."""
+    """When the trial called `describe_parameters`, the node responded with a float, a description and this range."""
     name = params.parameter
     limits = f"{shown(params.at_least)} to {shown(params.at_most)}"
     expected = f"The parameter {name} is a float with a description and the range {limits}."
@@ -65,7 +65,7 @@ def declares(evidence: Evidence, params: Declares) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class SetsParameter:
-    """The response of the node to a `[[trial.set]]` of this parameter to this value, and of others in the same call."""
+    """The response of the node when `[[trial.set]]` sets this parameter, and perhaps others in the same call."""
 
     parameter: str = string("the name of a parameter", about="The parameter.")
     value: float = number(about="The value that the trial sets.")
@@ -115,7 +115,7 @@ def set_calls(evidence: Evidence) -> list[Call]:
 
 
 def was_accepted(call: Call) -> bool:
-    """Return whether the node accepted what this call sets."""
+    """Return whether the node accepted the values that this call sets."""
     return bool((_result(call) or {}).get("successful"))
 
 
@@ -129,7 +129,7 @@ def _also(params: SetsParameter) -> str:
 
 
 def _result(call: Call | None) -> Any | None:  # noqa: ANN401 - a SetParametersResult as plain data
-    """Return the result of a call that sets one parameter, or several at once; None if the node did not respond."""
+    """Return the result of a call that sets one or more parameters; None if the node did not respond."""
     response = (call.response or {}) if call is not None else {}
     return next(iter(response.get("results", [])), response.get("result"))
 

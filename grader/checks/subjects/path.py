@@ -238,7 +238,7 @@ def _size(evidence: Evidence) -> str:
 
 
 def _replaced(evidence: Evidence) -> Cause | None:
-    """Return the cause if some commands drive, but another one replaces each of them at once; else None."""
+    """Return the cause if each command that drives the turtle is immediately replaced by another one, else None."""
     commands = evidence.commands
     after = {id(command): later for command, later in pairwise(commands)}
     driving = [command for command in commands[:-1] if command.linear[0]]
@@ -266,7 +266,7 @@ def _line(evidence: Evidence) -> Where | None:
 def no_wall(evidence: Evidence, _: NoParams) -> Finding:
     """No frame was clamped to the canvas. The check is skipped for a turtle that never moved."""
     trajectory = evidence.trajectory
-    # A turtle that is teleported back in time would never touch a wall.
+    # A turtle that is always teleported away before it reaches a wall would never touch one.
     moved = moved_otherwise(evidence, "The turtle never touches a wall.")
     if moved is not None:
         return moved

@@ -37,7 +37,7 @@ class Pause:
 
 
 def pause(evidence: Evidence, params: Pause) -> Finding:
-    """The turtle moves, stands still in time, and continues in time."""
+    """The turtle moves, and then stops and continues within the allowed times."""
     trajectory = evidence.trajectory
     within = Band.at_most(params.within_s)
     expected = f"The turtle stands still within {params.within_s:g} s after {params.from_s:g} s"

@@ -1,4 +1,4 @@
-"""Checks of a program that reads a bag: the line that it prints, and how it ends if the bag has no poses."""
+"""Checks of a program that reads a bag: the line that it prints, and its error if the bag contains no poses."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
 
 
 def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
-    """Without a pose in the bag, the program ends with an exit code other than 0 and a message."""
+    """If the bag contains no pose, the program exits with an exit code other than 0 and a message."""
     called = evidence.called(params.call)
     name = evidence.trial.executable
     expected = f"{name} prints one sentence about what is missing, and ends with an exit code other than 0."

@@ -52,7 +52,7 @@ FASTEST_HZ = 40.0
 
 @dataclass(frozen=True, kw_only=True)
 class Rate:
-    """The mean rate from the first to the last arrival with its tolerance, and the limits of each single interval.
+    """The mean rate from the first to the last arrival with its tolerance, and the limits of every interval.
 
     The first command may arrive up to `first_within_s` after the start, and the last one up to `max_interval_s` before
     the end.
@@ -138,7 +138,7 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
 
 
 def _follows_poses(evidence: Evidence, mean_hz: float) -> bool:
-    """Return whether the node acts once per pose. Poses set that rate in both clocks, so simulated time shows it."""
+    """Return whether the node acts once per pose. This rate is the same in simulated time and in wall time."""
     return abs(mean_hz - POSES_HZ) <= 0.5 and not evidence.code.calls("create_timer")
 
 
@@ -147,7 +147,7 @@ def _extremes(measured: Measured) -> tuple[float, float]:
 
 
 def _slow_timer(evidence: Evidence, params: Rate, amount: int) -> Cause | None:
-    """Return the cause if a timer is so slow that no more than this amount can have arrived, else None."""
+    """Return the cause if a timer is so slow that no more messages than this can have arrived, else None."""
     for timer, period in _timers(evidence):
         if period is not None and abs(evidence.recording.duration_s / period - amount) <= 1.0:
             why = Cause("timer-period", PERIOD, timer.where).fixed_by(_right_period(timer, params))
@@ -156,7 +156,7 @@ def _slow_timer(evidence: Evidence, params: Rate, amount: int) -> Cause | None:
 
 
 def _period_cause(cause: Cause, period: float, params: Rate) -> Cause:
-    """Return the cause of a wrong timer period, for example the rate in its place."""
+    """Return the cause of a wrong timer period, for example that the rate was given instead."""
     if abs(period - params.rate_hz) > SAME * params.rate_hz:
         return cause
     text = "create_timer takes the period in seconds, not the rate. The period is 1 divided by the rate."

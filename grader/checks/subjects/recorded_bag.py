@@ -27,7 +27,7 @@ ROUND_M = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class InBag:
-    """A folder of the package."""
+    """A folder in the package."""
 
     bag: str = string("the name of a folder", about=BAG)
 

@@ -1,4 +1,4 @@
-"""Checks of services: the requests of the node to the simulator, and its responses to the trial."""
+"""Checks of services: the node's requests to the simulator, and its responses to the trial."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ CLOSE = 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class CallsService:
-    """A call of a service of the simulator with these fields. `after` names a service that must be called before it."""
+    """A call to a simulator service with these fields. `after` names a service that must be called before it."""
 
     service: str = string("the full name of a service", start="/", about="The service.")
     fields: tuple[tuple[str, Any], ...] = table(about="The relevant fields of the request, with their values.")
@@ -42,7 +42,7 @@ class CallsService:
 
 
 def calls_service(evidence: Evidence, params: CallsService) -> Finding:
-    """The node called the service of the simulator with these fields."""
+    """The node called the simulator service with these fields."""
     request = ", ".join(f"{name}={_value(value)}" for name, value in params.fields)
     after = params.after.strip()
     expected = f"The node calls {params.service} with {request}" + (f", after it has called {after}." if after else ".")
@@ -52,7 +52,7 @@ def calls_service(evidence: Evidence, params: CallsService) -> Finding:
         index for index, call in enumerate(made) if call in calls and not wrong_fields(call.request, params.fields)
     ]
     if right:
-        # Two calls may arrive at the same time, so their order counts.
+        # Two calls may arrive at the same time, so compare their order instead of their times.
         first = next((index for index, call in enumerate(made) if call.service == after), None) if after else -1
         in_order = first is not None and right[-1] >= first
         too_early = bool(first is not None and after) and _before_the_answer(made[right[-1]], made[first or 0])
@@ -95,7 +95,7 @@ def _other_request(evidence: Evidence, params: CallsService, calls: list[Call], 
 
 @dataclass(frozen=True, kw_only=True)
 class AnswersCall:
-    """The response of the node to a call of the trial: the `nth` call of the service, from 1."""
+    """The node's response to a call by the trial: the `nth` call to the service, counted from 1."""
 
     service: str = string("the full name of a service", start="/", about="The service.")
     type: str = string("a service type, as in std_srvs/srv/SetBool", about="Its type.")
@@ -105,7 +105,7 @@ class AnswersCall:
 
 
 def answers_call(evidence: Evidence, params: AnswersCall) -> Finding:
-    """The node answered the call of the trial in time, with these fields."""
+    """The node answered the trial's call in time, with these fields."""
     wanted = ", ".join(f"{name}={_value(value)}" for name, value in params.fields)
     expected = f"The node answers a call of {params.service} within {params.within_s:g} s, with {wanted}."
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
@@ -127,7 +127,7 @@ def answers_call(evidence: Evidence, params: AnswersCall) -> Finding:
 
 
 def no_response(evidence: Evidence, service: str, type_: str, call: Call | None, expected: str) -> Finding:
-    """Return the failed finding about a call of the trial that got no response."""
+    """Return the failed finding about a call by the trial that got no response."""
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_observed(evidence), expected)

@@ -48,7 +48,7 @@ class Spawns:
 
 @dataclass(frozen=True, kw_only=True)
 class PlacesDiffer:
-    """Another trial (an id) in which the same node ran, and what the names of its turtles begin with."""
+    """Another trial (an id) in which the same node ran, and the prefix of its turtles' names."""
 
     other: str = string("the id of a trial", about="Another trial of the same node.")
     name: str = string("the beginning of a name", default="target", about="What the names of the turtles begin with.")
@@ -125,7 +125,7 @@ def _places(evidence: Evidence, params: Spawns, calls: list[Call], expected: str
 
 
 def places_differ(evidence: Evidence, params: PlacesDiffer) -> Finding:
-    """The places of the turtles are other ones than in another trial of the same node."""
+    """The turtles are in different places than in another trial of the same node."""
     expected = "Each time the node is started, the turtles are at other places."
     now, before = (_spawned(each) for each in (evidence, evidence.from_trial(params.other)))
     if now and now[: len(before)] == before[: len(now)]:
@@ -147,7 +147,7 @@ def _at(place: tuple[float, float]) -> str:
 
 
 def announces(evidence: Evidence, params: Announces) -> Finding:
-    """Each message on the topic has the names of all remaining turtles, and no other names."""
+    """Each message on the topic contains the names of all remaining turtles, and no other names."""
     expected = (
         f"Every {params.period_s:g} s, the node publishes the names of all remaining targets, separated by spaces."
     )

@@ -124,6 +124,6 @@ STAR = Kind(
     about="The turtle drives straight sides and turns between them by goals, is back at its start, and stands still.",
     drives=True,
     requested=requested_star,
-    # No point of the star is further away from its start than a side is long, and the walls have a margin anyway.
+    # No point of the star is further from its start than the length of a side, and the walls have a margin anyway.
     radius_m=lambda params: max(params.side_m - 0.4, 0.1),
 )

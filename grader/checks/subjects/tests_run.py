@@ -1,4 +1,4 @@
-"""Checks of running a student's tests: they pass on the right node, and fail on broken ones."""
+"""Checks of a student's tests when they run: they pass on the right node, and fail on broken ones."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Topic:
-    """The full name of the topic, and its message type as in "geometry_msgs/msg/Twist"."""
+    """The full name of the topic, and its message type, such as "geometry_msgs/msg/Twist"."""
 
     topic: str = string("the full name of a topic", start="/", about="The topic.")
     type: str = string("a message type, as in geometry_msgs/msg/Twist", about="The type of its messages.")
