@@ -62,9 +62,9 @@ def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
     desk.tell("Reading")
     try:
         graded = watched.grade(desk.tell, desk.early)
-        # The disk of the progress may be slow.
-        desk.judged(graded.report)
+        # Before the verdict, which shows the button for the next step: that needs the progress, also on a slow disk.
         steps.note(watched.exercise, watched.folder, graded.report, workspace)
+        desk.judged(graded.report)
         desk.detailed(verdict_html(graded.evidence, graded.report, watched.folder))
     except GraderError as error:
         desk.failed(str(error))
