@@ -1,4 +1,4 @@
-"""Grade all submissions of an order, even if worker processes die."""
+"""Grade all submissions in an order, even if worker processes die."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from grader.classroom.task import Done
 
 TRIES = 2
-"""The number of times that a submission may kill its worker or end with an `error` before the error is its result."""
+"""The number of times that a submission may kill its worker or end with an `error` before that is its result."""
 LOOK_S = 0.5
 """The maximum time to wait for events of the engine (s)."""
 

@@ -29,7 +29,7 @@ CONNECT_S = 10.0
 WORKERS_S = 60.0
 """The maximum time to wait for the first worker, or for a new one after all workers are gone (s)."""
 LOOK_S = 1.0
-"""The interval of checking which workers are available (s)."""
+"""The interval between checks for available workers (s)."""
 
 # The Dask worker's process keeps these workers after a task, so the next task does not have to start one.
 _idle: list[Worker] = []

@@ -74,7 +74,7 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
 
 
 def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
-    """Yield each submission with its exercise. Without one, yield the submission once for each exercise of the others.
+    """Yield each submission with its exercise. Yield one without an exercise once for each exercise of the others.
 
     Raises:
         UsageError: the exercise cannot be determined.
@@ -155,7 +155,7 @@ def _is_one(folder: Path) -> bool:
 
 
 def _student(entry: Path) -> str | None:
-    """Return the name of the student of an entry, or None for other entries, such as hidden files and lists."""
+    """Return the name of the student to whom an entry belongs, or None for entries such as hidden files and lists."""
     if entry.name.startswith(".") or entry.name == "__MACOSX":
         return None
     try:

@@ -64,7 +64,7 @@ def grade_class(request: Request, say: Callable[[str], None], tell: Callable[[st
 def grade_found(
     request: Request, found: tuple[Found, ...], say: Callable[[str], None], tell: Callable[[str], None]
 ) -> list[Result]:
-    """Grade submissions that were found already. Raises the same exceptions as `grade_class`."""
+    """Grade submissions that have already been found. Raises the same exceptions as `grade_class`."""
     local = _engine_is_known(request)
     roster = read_owners(request.roster) if request.roster else {}
     beside = passed_over(request.submissions, request.out)

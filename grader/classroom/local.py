@@ -23,7 +23,7 @@ MEMORY_A_TASK = 1536 * 1024 * 1024
 WAITING_A_JOB = 2
 """The number of additional tasks per job that may start while other tasks wait for wall time."""
 TASK_S = 1800.0
-"""The time (s) after which a busy worker is considered to hang. The limits of one grading add up to less."""
+"""The time (s) after which a busy worker is considered to hang. The time limits for one submission add up to less."""
 
 
 def default_jobs() -> int:

@@ -1,4 +1,4 @@
-"""The order of a run of `grader grade`: the submissions to grade, and the results of earlier runs that are valid."""
+"""The order of a run of `grader grade`: the submissions to grade, and the valid results of earlier runs."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ class Todo:
     key: Key
     why: str
     errors: int = 0
-    """The number of gradings in a row that have ended with an `error`."""
+    """How many times in a row grading the submission has ended with an `error`."""
 
 
 def sort_out(order: Order, results: Results) -> tuple[list[Result], list[Todo]]:

@@ -2,7 +2,7 @@
 
     index.html            the page of the class, for the instructor
     summary.csv           for a spreadsheet or gradebook, for the instructor
-    junit.xml             for the list of tests in a CI system
+    junit.xml             for a CI system's list of tests
     gradescope/NAME.json  Gradescope's results.json of each submission
     github-summary.md, github-annotations.txt   for a GitHub Actions step
 

@@ -48,7 +48,7 @@ class Result:
     key: Mapping[str, Any]
     page: str
     errors: int = 0
-    """The number of gradings in a row that ended with an `error`, including this one."""
+    """How many times in a row grading the submission has ended with an `error`, including this time."""
 
 
 def file_name(student: str, exercise: str) -> str:

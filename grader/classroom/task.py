@@ -36,8 +36,9 @@ Pace = Literal["waits", "works"]
 class Task:
     """A submission, its exercise, and how to grade it.
 
-    `content` is the files of the submission, or the reason why they are missing. `package` is the name of the package's
-    folder. `grader` is the key of the grader that created the task. Only a worker with the same key may grade it.
+    `content` contains the files of the submission, or the reason why they are missing. `package` is the name of the
+    package's folder. `grader` is the key of the grader that created the task. Only a worker with the same key may grade
+    it.
     """
 
     student: str
@@ -74,7 +75,7 @@ class Done:
 def perform(
     task: Task, tell: Callable[[str], None] = lambda _: None, now: Callable[[Pace], None] = lambda _: None
 ) -> Done:
-    """Grade a task. `now` is called when a trial starts and stops waiting for wall time.
+    """Grade a task. `now` is called whenever a trial starts or stops waiting for wall time.
 
     Other submissions can use the processors while the trial waits.
 
@@ -95,7 +96,7 @@ def perform(
         return _with_page(_refused(task, exercise, task.content))
 
     class Waiting(Trial):
-        """A trial that reports the times in which it waits for wall time."""
+        """A trial that reports when it starts and stops waiting for wall time."""
 
         def run(self, package: str, executable: str, tree: bytes) -> Recording:
             if self._plan.clock != "wall":
@@ -106,7 +107,7 @@ def perform(
             finally:
                 now("works")
 
-    # Other submissions use the processors, and the memory is calculated per submission.
+    # Run one trial at a time: other submissions use the processors, and memory is calculated per submission.
     options = Options(in_cell=in_cell, clock=task.clock, seed=task.seed, explain=task.explain, trials_at_once=1)
     try:
         return _with_page(grade(exercise, _submission(task), options, tell, trial=Waiting))

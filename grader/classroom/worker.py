@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from grader.classroom.task import Done, Pace, Task
 
 Message = tuple[Literal["tells"], str] | tuple[Literal["now"], "Pace"] | tuple[Literal["done"], "Done"]
-"""The kinds of messages from a worker, and ("fails", text) for a MachineError that no submission caused."""
+"""The messages from a worker. It also sends ("fails", text) for a MachineError that no submission caused."""
 
 _LAST_WORDS = 1000
 
@@ -116,7 +116,7 @@ def _import_all() -> None:
 
 
 def _end_with_owner(descriptor: int) -> None:
-    """Exit as soon as the owner has exited. Cells and rooms end with their parent process."""
+    """Exit as soon as the owner has exited. Cells and rooms exit together with their parent process."""
     poll = select.poll()
     poll.register(descriptor, 0)  # POLLHUP is always reported
     while True:

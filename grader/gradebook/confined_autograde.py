@@ -56,7 +56,7 @@ class ConfinedKernelManager(AsyncKernelManager):
 
     @property
     def kernel_spec(self) -> KernelSpec:
-        """The course's kernel, whatever kernel the notebook names."""
+        """The course's kernel, even if the notebook names another one."""
         argv = interpreter("-m", "grader.gradebook.relay", "{relay_folder}").argv
         return KernelSpec(argv=argv, display_name="", language="python", interrupt_mode="message")
 
@@ -75,7 +75,7 @@ class ConfinedKernelManager(AsyncKernelManager):
         _order(Path(self.submission), folder, self.connection_file, trusted=self.trusted).write(folder)
         argv = [word.replace("{relay_folder}", str(folder)) for word in kernel_cmd]
         kw.pop("cwd", None)
-        # The relay exits when this pipe is closed, which happens in every case when this process exits.
+        # The relay exits when this pipe is closed, which always happens when this process exits.
         ends, self._life = os.pipe()
         try:
             kw |= {"env": interpreter("-c", "").env, "cwd": "/", "stdin": ends, "stdout": subprocess.DEVNULL}

@@ -68,7 +68,7 @@ def unconfirmed(
     steps: Collection[str] = (),
     unread: Collection[Name] = (),
 ) -> list[Unconfirmed]:
-    """Return the cells that no result of the grader confirms, by exercise and student, except manual grades.
+    """Return the cells that no grader result confirms, by exercise and student, except those graded manually.
 
     `steps` selects the exercises; if it is empty, all are used. `unread` are submissions that could not be read this
     time, so their stored results do not count.

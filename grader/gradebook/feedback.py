@@ -66,7 +66,7 @@ def _points(cell: NotebookNode) -> str:
 
 
 class GraderReasons(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
-    """After a sync, replaces the kernel's output below the cells of checks with the grader's reasons."""
+    """After a sync, replaces the kernel's output below cells with checks with the grader's reasons."""
 
     def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:
         """Replace the outputs if the submission was synced."""

@@ -27,7 +27,7 @@ MOST_BYTES = tree.MAX_FILE_BYTES
 MOST_VALUES = 500_000
 """The maximum number of values (objects, lists, strings and numbers) in the JSON of a notebook."""
 MOST_DEPTH = 50
-"""The maximum nesting depth of the objects and lists of a notebook."""
+"""The maximum nesting depth of the objects and lists in a notebook."""
 MOST_CELLS = 1000
 
 

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 ORDER_FILE, WHY_FILE = "order.json", "why"
 MOST_MEMORY = 1024 * MIB
-"""The limit for the address space of the relay (bytes)."""
+"""The limit on the relay's address space (bytes)."""
 MOST_WAITING = MIB
 """While this number of bytes is waiting for the kernel, the relay does not read from nbgrader."""
 LINGER_MS = 1000

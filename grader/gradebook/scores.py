@@ -1,4 +1,4 @@
-"""`grader gradebook sync` and `compare`: the scores that count, and differing scores from kernels.
+"""`grader gradebook sync` and `compare`: the scores that count, and kernel scores that differ from them.
 
 Scores from a kernel are provisional. These functions grade the submitted package in the sandbox and write the scores
 to nbgrader's gradebook through its API. A check that the grader cannot judge is worth 0 points and needs a
@@ -50,7 +50,7 @@ class Synced:
     """The number of manual grades, which stay unchanged."""
     unjudged: tuple[str, ...]
     elsewhere: tuple[str, ...]
-    """The checks with a result but without a cell in the notebook, which are not in the gradebook."""
+    """The checks that have a result but no cell in the notebook, and are therefore not in the gradebook."""
     unconfirmed: tuple[Unconfirmed, ...]
     """The cells that are worth 0 points until a person grades them."""
 
@@ -245,7 +245,7 @@ def _late(folders: ClassFolders, student: str, step: str) -> None:
 
 
 def _kernel_scores(notebook: Path) -> dict[str, float | None] | None:
-    """Return the points of each graded cell in its output, or None if no autograded notebook exists."""
+    """Return the points in the output of each graded cell, or None if no autograded notebook exists."""
     try:
         return read(_scores_in, notebook)
     except UnreadableError:

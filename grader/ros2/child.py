@@ -1,4 +1,4 @@
-"""Run a program for `ros2 run`. The program uses the same terminal and ends if the command exits."""
+"""Run a program for `ros2 run`. The program uses the same terminal, and is terminated if the command exits."""
 
 from __future__ import annotations
 

@@ -87,8 +87,8 @@ def packages(**_: Any) -> list[str]:  # noqa: ANN401
 def prototype(type_argument: str, kind: str, part: str = "") -> Callable[..., list[str]]:
     """Return a completer that offers all fields with their default values, as in "{linear: {x: 0.0, ...}, ...}".
 
-    `type_argument` is the name of the argument with the type. `part` is the part of the type to fill in, such as
-    "Request" or "Goal".
+    `type_argument` is the name of the argument that specifies the type. `part` is the part of the type to fill in, such
+    as "Request" or "Goal".
     """
 
     def offered(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401

@@ -1,4 +1,4 @@
-"""The groups and verbs of `ros2` with one line of help each. The modules of the verbs are not imported."""
+"""The groups and verbs of `ros2`, each with a one-line help text. The modules of the verbs are not imported."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ _MOST = 2000
 
 
 def where_it_is(package: str) -> str:
-    """Return a hint with the place of the package and what to type, or "" if no workspace contains the package."""
+    """Return a hint that says where the package is and what to type, or "" if no workspace contains it."""
     for workspace in _workspaces():
         for built in (workspace / "install" / package, workspace / "install"):
             if (built / "share" / package / "package.xml").is_file():

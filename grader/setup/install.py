@@ -109,7 +109,7 @@ def _uv(*arguments: str) -> float | None:
     """
     command = uv("pip", "install", "--python", sys.executable, *arguments)
     if not _may_write(setup_errors.cache()):
-        command.append("--no-cache")  # needed without a writable home folder
+        command.append("--no-cache")  # needed if the cache folder is not writable
     done = _run(command, clean(os.environ))
     if done.code == 0:
         return seconds_of(next((line for line in done.shown if line.startswith("Prepared ")), ""))

@@ -138,7 +138,7 @@ def is_offline(env: Mapping[str, str], root: Path = Path("/")) -> bool:
 
 
 def closed_folder(path: str) -> Optional[Path]:
-    """Return the topmost parent folder of `path` that other users cannot enter, and so run no programs in, or None."""
+    """Return the topmost parent of `path` that other users cannot enter to run programs in it, or None."""
     folders = Path(path).resolve().parents
     return next((folder for folder in reversed(list(folders)) if not folder.stat().st_mode & stat.S_IXOTH), None)
 

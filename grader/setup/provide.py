@@ -12,7 +12,7 @@ from typing import Callable, List, Mapping, Optional, Sequence
 from grader.common import package_managers
 
 TOLD_LINES = 3
-"""The number of lines of a failed package manager's output that are shown."""
+"""The number of lines to show from a failed package manager's output."""
 _ERROR = re.compile(r"(E:|W:|Err:|error|problem|fatal|no package|nothing provides|sudo:)", re.IGNORECASE)
 
 

@@ -17,7 +17,7 @@ from grader.common.system_errors import refusal, sentence
 
 MACHINE_BROKEN = 3
 NEEDED_MB = 700
-"""The space of a learner's .venv (MB), including a reserve."""
+"""The disk space for a learner's .venv (MB), including a reserve."""
 AGAIN = "the same command continues from here, and the downloads are kept"
 NO_NETWORK = (
     "This machine cannot reach the Python packages ({}). Is it online? A proxy is read from HTTPS_PROXY, a mirror "
@@ -88,7 +88,7 @@ def offline(said: str) -> Optional[str]:
 
 
 def cache() -> Path:
-    """Return the folder of uv's downloads."""
+    """Return uv's download cache folder."""
     named = os.environ.get("UV_CACHE_DIR") or "{}/uv".format(os.environ.get("XDG_CACHE_HOME") or "~/.cache")
     return Path(named).expanduser()
 

@@ -41,7 +41,7 @@ class Address:
 
 @dataclass(frozen=True)
 class Place:
-    """An address and its listening socket. `before` is whether an earlier view used it, so a tab may still be open."""
+    """An address and its listening socket. `before` is True if an earlier view used it, so a tab may still be open."""
 
     address: Address
     listening: socket.socket
@@ -83,7 +83,8 @@ def _free(preferred: int) -> socket.socket:
 def _socket(port: int) -> socket.socket:
     with contextlib.ExitStack() as stack:
         made = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_STREAM))
-        # Allow a port on which connections of the last view are closing. A port on which another process listens fails.
+        # Allow a port on which the last view's connections are still closing. A port on which another process is
+        # listening fails.
         made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         made.bind((HOST, port))
         made.listen(128)

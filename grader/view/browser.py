@@ -27,7 +27,7 @@ def over_ssh() -> bool:
 
 
 def from_elsewhere(port: int) -> str:
-    """Return a message about opening a page of this machine from another machine."""
+    """Return instructions for opening this machine's page on another machine."""
     if over_ssh():
         user = os.environ.get("USER") or "USER"
         server = os.environ["SSH_CONNECTION"].split()[2:3] or ["THIS_MACHINE"]

@@ -95,7 +95,7 @@ class Hands:
             self.turn(turtle, typed[0])
 
     def turn(self, turtle: str, key: Key) -> None:
-        """Handle a key that has an effect only when it is pressed."""
+        """Handle a key that acts once per press, however long it is held."""
         topic = self._full(turtle)
         if topic is not None and isinstance(key, Turn | Cancel):
             self._ears.drive(topic, key)

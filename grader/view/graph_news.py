@@ -1,4 +1,4 @@
-"""The news about the ROS graph for pages: the layout of the graph, and the table of topics with their rates."""
+"""Updates about the ROS graph for pages: the layout of the graph, and the table of topics with their rates."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ NAMES = ("127.0.0.1", "localhost")
 def refusal(headers: Mapping[str, str], *, live: bool) -> str | None:
     """Return the reason for rejecting a request, or None if the request is allowed.
 
-    `live` is whether the request opens the connection that reads and drives.
+    `live` is True if the request opens the connection for reading the state and driving the turtles.
     """
     host = headers.get("host", "")
     if host.rpartition(":")[0] not in NAMES and host not in NAMES:

@@ -1,4 +1,4 @@
-"""News for all pages. Each item is serialized once. A page that was hidden gets the whole state."""
+"""Send updates to all pages. Each update is serialized once. A page that was hidden gets the whole state."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ KEPT = 16
 
 
 class Hub:
-    """News items in order, each with a number. `whole` returns the whole state for a new page."""
+    """The updates in order, each with a number. `whole` returns the whole state for a new page."""
 
     def __init__(self, whole: Callable[[], dict[str, object]]) -> None:
         self._whole = whole
         self._news: deque[str] = deque(maxlen=KEPT)
         self._number = 0
-        """The number of the next item."""
+        """The number of the next update."""
         self._written: tuple[int, str] = (-1, "")
         self._pages: set[asyncio.Event] = set()
         self.wholes = 0
@@ -29,11 +29,11 @@ class Hub:
 
     @property
     def pages(self) -> int:
-        """The number of visible pages that follow the news."""
+        """The number of visible pages that receive updates."""
         return len(self._pages)
 
     def tell(self, kind: str, news: dict[str, object]) -> None:
-        """Send an item to all visible pages."""
+        """Send an update to all visible pages."""
         self._number += 1
         if self._pages:
             self._news.append(_text(kind, news))
@@ -43,7 +43,7 @@ class Hub:
             page.set()
 
     async def follow(self, send: Callable[[str], Awaitable[None]]) -> None:
-        """Send the whole state and then all news to a page until cancelled. `send` waits for a slow page."""
+        """Send the whole state and then all updates to a page until cancelled. `send` waits for a slow page."""
         woken = asyncio.Event()
         self._pages.add(woken)
         try:
@@ -51,7 +51,7 @@ class Hub:
             while True:
                 woken.clear()
                 if next_ < self._number - len(self._news):
-                    # Read the number before sending, so that items that arrive in the meantime count as new.
+                    # Read the number before sending, so that updates that arrive in the meantime count as new.
                     next_, text = self._number, self._all()
                     self.wholes += 1
                     await send(text)

@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 Kind = Literal["page", "terminal"]
 _SERVED_WITH = ("starlette", "uvicorn", "websockets")
 _WITHOUT_COLOURS = ("", "dumb", "unknown")
-"""The values of TERM of terminals without colours."""
+"""The values of TERM for terminals without colours."""
 _ENDS_S = 5.0
-"""The time that a view has to exit after its simulator (s) before it is killed."""
+"""The time that a view has to exit after its simulator has exited (s). Then it is killed."""
 
 
 class View:
-    """A running view. `paused` is whether the user has paused the simulator, and `open` whether the view is running."""
+    """A running view. `paused` is True while the simulator is paused, and `open` is True while the view is running."""
 
     def __init__(self, kind: Kind, feed: Feed) -> None:
         self.kind = kind
@@ -88,7 +88,7 @@ def view(kind: Kind, port: int | None = None) -> Iterator[View]:
             try:
                 yield View(kind, Feed(ours))
             finally:
-                # The view exits when this socket is closed, at the latest when the simulator exits.
+                # The view exits when this socket is closed, which happens at the latest when the simulator exits.
                 ours.close()
                 try:
                     process.wait(_ENDS_S)

@@ -1,4 +1,4 @@
-"""The server of the page. It serves a few files and has a connection to each page for news and input."""
+"""The server of the page. It serves a few files and has a connection to each page for updates and input."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class Guard:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Handle a request of ASGI."""
+        """Handle an ASGI request."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return

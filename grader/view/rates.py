@@ -6,7 +6,7 @@ from collections import deque
 from dataclasses import dataclass, field
 
 WINDOW_S = 5.0
-"""The time over which a rate is computed (s), or the last two arrivals if the interval between them is longer."""
+"""The time over which a rate is computed (s), unless the interval between the last two arrivals is longer."""
 _LONGEST_S = 30.0
 _GAPS = 2.5
 """The number of average intervals without an arrival after which the messages are considered to have stopped."""

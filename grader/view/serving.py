@@ -39,7 +39,7 @@ _SETTINGS: dict[str, Any] = {
 
 
 def ended_by_signals() -> asyncio.Event:
-    """Return an event that SIGINT, SIGTERM and SIGHUP set."""
+    """Return an event that is set by SIGINT, SIGTERM and SIGHUP."""
     ended = asyncio.Event()
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         asyncio.get_running_loop().add_signal_handler(number, ended.set)

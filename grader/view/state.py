@@ -52,7 +52,7 @@ class State:
     """The arrivals on the simulator's topics. No subscription is needed to measure these rates."""
 
     def take(self, message: dict[str, Any]) -> dict[str, object]:
-        """Apply a message from the simulator. Return the news for pages that have the previous state."""
+        """Apply a message from the simulator. Return the update for pages that have the previous state."""
         self.now_s = float(message["t"])
         self.paused = bool(message["paused"])
         self.namespace = str(message["namespace"])

@@ -37,7 +37,7 @@ MOST_HZ = 500.0
 """The maximum rate that is measured (Hz). Counting more messages would be too expensive."""
 _SPARED_S = 10.0
 _LAST_WORD_S = 1.0
-"""The time that the driving node waits until its last command has arrived (s)."""
+"""The maximum time that the driving node waits for its last command to arrive (s)."""
 DRIVER = "view_keys"
 """The name of the driving node in the graph."""
 
@@ -139,7 +139,7 @@ class Ears:
 
     async def _drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:
         if self._driver is None or self._driver[0] != turtle:
-            # Import this here, since it needs turtlesim, which may be missing in a view of only the graph.
+            # Import this here, since it needs turtlesim, which may be missing in a view that shows only the graph.
             from grader.turtlesim.programs.turtle_teleop_key import Teleop
 
             self._leave()

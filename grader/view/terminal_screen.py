@@ -1,4 +1,4 @@
-"""The content of the terminal: the canvas, the turtle, the command and the topics beside it, and the output below."""
+"""The content of the terminal: the canvas, the last command and the topics next to it, and the output below."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from grader.view.system import System
 
 BESIDE = 38
-"""The number of columns beside the canvas."""
+"""The number of columns next to the canvas."""
 _BELOW = 6
 """The number of rows for the title, the simulator's output and the keys."""
 _LEAST = 8

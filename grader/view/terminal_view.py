@@ -1,4 +1,4 @@
-"""The view in a terminal: the turtle as half blocks, the topics beside it, and keys that drive.
+"""The view in a terminal: the turtle as half blocks, the topics next to it, and keys that drive.
 
 A terminal does not report when a key is released. A held key repeats, so a key counts as released when it stops
 repeating.
@@ -53,7 +53,7 @@ class Held:
         self.key, self.until_s = key, now + (HOLD_S if again else FIRST_HOLD_S)
 
     def over(self, now: float) -> bool:
-        """Return whether the key does not count as held any more."""
+        """Return whether the key no longer counts as held."""
         return bool(self.key) and now >= self.until_s
 
 

@@ -99,7 +99,7 @@ class Trail:
             self._points += len(stroke.points) - before
             self._open[x1, y1, pen] = stroke
         if len(self._open) > 4 * len(new) + 256:
-            # Remove old ends that have not been continued.
+            # Remove old stroke ends that have not been continued.
             self._open = dict(list(self._open.items())[-256:])
         if self._points > MOST_POINTS:
             self._flatten()
@@ -144,7 +144,7 @@ def place(x: float, y: float) -> Point:
 
 
 def paint(picture: Image.Image, strokes: Sequence[Stroke], scale: float, least: int = 1) -> None:
-    """Paint strokes with a width of at least `least` into an image with `scale` pixels per pixel of the canvas."""
+    """Paint strokes, each at least `least` pixels wide, into an image with `scale` pixels per canvas pixel."""
     draw = ImageDraw.Draw(picture)
     for stroke in strokes:
         ink = (*stroke.pen[:3], 255)

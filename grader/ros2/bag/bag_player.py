@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosbags.rosbag2 import Reader
 
 _ACKNOWLEDGED_S = 2.0
-"""The time that the node waits at the end until the last messages have arrived (s)."""
+"""The maximum time to wait at the end for the last messages to arrive (s)."""
 _STEP_S = 0.1
 
 

@@ -42,7 +42,7 @@ def open_bag(path: Path) -> Iterator[Reader]:
 def messages(
     reader: Reader, path: Path, topics: set[str], start: int | None = None
 ) -> Iterator[tuple[str, int, bytes]]:
-    """Yield topic, stamp (ns since the epoch) and data of each message on `topics` in order, starting at `start`.
+    """Yield the topic, stamp (ns since the epoch) and data of each message on `topics` in order from `start`.
 
     Raises:
         Ros2Error: the bag is damaged.

@@ -142,7 +142,7 @@ class Recorder:
             self._full = error
 
     def _drain(self) -> None:
-        """Write the messages that arrived before the end but were not handled.
+        """Write the messages that arrived before recording ended but have not been handled.
 
         They are read directly from the subscriptions, since an executor handles ready callbacks in any order. The
         depth of the queue limits the number of waiting messages.

@@ -96,7 +96,7 @@ def _unreadable(file: Any) -> Ros2Error:  # noqa: ANN401
 
 
 def _typed(found: Iterator[tuple[str, int, bytes]], kinds: dict[str, str]) -> Iterator[tuple[int, str, str, bytes]]:
-    """Yield stamp, topic, type and data of each message."""
+    """Yield the stamp, topic, type and data of each message."""
     for topic, stamp, data in found:
         yield stamp, topic, kinds[topic], data
 

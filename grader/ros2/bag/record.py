@@ -189,7 +189,7 @@ def _writer(folder: Path, args: argparse.Namespace, compression: str) -> BagWrit
 
 
 def wanted(args: argparse.Namespace) -> Callable[[str, str], bool]:
-    """Return a function that returns whether the options select a topic with a given type.
+    """Return a function that takes a topic and its type, and returns whether the options select the topic.
 
     Raises:
         Ros2Error: a regular expression is invalid.

@@ -92,7 +92,7 @@ class SplitWriter:
         return part
 
     def _end(self) -> None:
-        """Complete the file. Move the file and its metadata to the earlier files."""
+        """Complete the file, and move it and its metadata to the folder with the earlier files."""
         self._part.__exit__(None, None, None)
         part = self._part.folder
         try:
@@ -113,7 +113,7 @@ class SplitWriter:
 
 
 def joined(earlier: dict[str, Any], later: dict[str, Any]) -> dict[str, Any]:
-    """Return the metadata of a bag that contains the files of both. `earlier` may be empty."""
+    """Return the metadata of a bag that combines the files of two others. `earlier` may be empty."""
     if not earlier:
         return later
     both = [one for one in (earlier, later) if one["message_count"]] or [later]

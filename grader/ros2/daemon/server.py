@@ -62,7 +62,7 @@ def _serve(folder: Path, name: str, debug: IO[str] | None) -> None:
 
     file = folder / f"{name}.socket"
     with cli_node(f"_ros2cli_daemon_{socket_path.domain()}_{uuid.uuid4().hex}", patient=True) as node:
-        # This process has the lock, so the process that created the file has exited.
+        # This process holds the lock, so the process that created the file has exited.
         file.unlink(missing_ok=True)
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as listening:
             before = os.umask(0o077)

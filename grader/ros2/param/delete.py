@@ -1,4 +1,4 @@
-"""The verb `param delete`: delete a parameter if the node allows this."""
+"""The verb `param delete`: delete a parameter if the node allows it."""
 
 from __future__ import annotations
 

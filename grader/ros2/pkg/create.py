@@ -69,7 +69,7 @@ def run(args: argparse.Namespace) -> int:
         package_files.write(wanted)
         licensed = licenses.write(wanted.license, wanted.folder / "LICENSE", wanted.maintainer)
     except BrokenPipeError:
-        raise  # the reader of the output has exited, so this is not an error of the folder
+        raise  # the reader of the output has exited, so the folder is not the cause
     except OSError as error:
         message = f"\nAborted!\n{error.filename or wanted.folder} could not be written: {error.strerror}"
         raise Ros2Error(message) from error

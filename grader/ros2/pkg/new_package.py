@@ -16,7 +16,7 @@ class NewPackage:
     name: str
     folder: Path
     shown: str
-    """The folder in messages, for example "./my_package"."""
+    """The folder as shown in messages, for example "./my_package"."""
     build_type: str
     package_format: int
     description: str

@@ -74,7 +74,7 @@ def run(args: argparse.Namespace) -> int:
 def _say_why(node: Node, name: str, requested: str) -> None:
     """Print a hint if the service does not exist with this type, because the type or the name may be wrong."""
     found: dict[str, Any] = {name: types for name, types in node.get_service_names_and_types() if not hidden(name)}
-    # Our client also announces a type.
+    # Our client announces the service with the requested type, too.
     others = [kind for kind in found.pop(name, []) if kind != requested]
     hint = f"The service {name} has the type {', '.join(others)}." if others else did_you_mean(name, found)
     if hint:

@@ -1,4 +1,4 @@
-"""The verb `topic delay`: print the delay between the time stamp in the header of messages and their arrival."""
+"""The verb `topic delay`: print the delay between the time stamps in message headers and the messages' arrival."""
 
 from __future__ import annotations
 

@@ -101,7 +101,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the rate every second in which messages arrived, until Ctrl-C."""
+    """Print the rate once per second until Ctrl-C, except when no messages arrive."""
     import rclpy
     from rclpy.clock import Clock
     from rclpy.clock_type import ClockType

@@ -42,7 +42,7 @@ def find(node: Node, topic: str, args: argparse.Namespace) -> None:
 
 
 def type_of(node: Node, topic: str, requested: str) -> Any | None:  # noqa: ANN401
-    """Return the class of a topic's messages, or None if the topic does not exist. `requested` is its typed name.
+    """Return the class of a topic's messages, or None if the topic does not exist. `requested` is the name as typed.
 
     Raises:
         Ros2Error: nodes disagree about the type of the topic, or the type is not installed.

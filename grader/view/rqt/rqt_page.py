@@ -52,7 +52,7 @@ class RqtPage:
         self._services: list[Service] = []
 
     async def serve(self, place: Place, *, stays: bool) -> bool:
-        """Serve until Ctrl-C. Return whether the page could be opened in a browser, or `stays`."""
+        """Serve until Ctrl-C. Return whether the page could be opened in a browser or `stays` is true."""
         ended, loop = ended_by_signals(), asyncio.get_running_loop()
 
         def tell(call: Callable[..., object]) -> Callable[..., None]:
