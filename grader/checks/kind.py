@@ -53,7 +53,7 @@ class Kind(Generic[P]):
     drives: bool = False
     """Whether a node must send velocity commands to the turtle to pass."""
     requested: Callable[[Evidence, P], Requested | None] | None = None
-    """Return the requirements of the check for a drawing, or None if the submission does not determine them."""
+    """Return the requirements of the check to draw, or None if the submission does not determine them."""
     radius_m: Callable[[P], float] | None = None
     """Return the radius (m) of a circle that must fit on either side of a randomly drawn start position."""
 

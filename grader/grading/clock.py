@@ -9,11 +9,11 @@ The rules, in the order in which they are applied:
 3. A trial in simulated time stops at the first sign that the node follows wall time after all: a thread sleeps,
    commands arrive while the clock is held, or the node never becomes idle (grader.trial.simulated). Wall time decides
    then. But if several threads kept the node from becoming idle, this may have happened by chance, so the trial in
-   simulated time is repeated once before.
+   simulated time is first repeated once.
 4. Wall time also decides if a measured value is near the edge of its tolerance, or if the node did not stop.
-5. If a trial in wall time fails while other programs use the processors, it is repeated without any other grading at
-   the same time. A busy machine can make a correct node look wrong, but it cannot make a wrong node look correct. So
-   the first trial that passes counts. If none of WALL_TRIALS passes, the one with the least disturbance counts.
+5. If a trial in wall time fails while other programs use the processors, it is repeated while nothing else is graded.
+   A busy machine can make a correct node look wrong, but it cannot make a wrong node look correct. So the first trial
+   that passes counts. If none of WALL_TRIALS passes, the one with the least disturbance counts.
 """
 
 from __future__ import annotations
@@ -95,12 +95,12 @@ def stops_at_doubt(choice: ClockChoice) -> bool:
 
 
 def repeats(doubt: WallTimeNeeded) -> bool:
-    """Return whether the first trial that stopped at this doubt is repeated in simulated time (rule 3)."""
+    """Return whether a trial that this doubt stopped for the first time is repeated in simulated time (rule 3)."""
     return doubt.by_chance
 
 
 def after_doubt(doubt: WallTimeNeeded) -> Clock:
-    """Return the clock for repeating a trial that stopped at a doubt (rule 3)."""
+    """Return the clock for repeating a trial that a doubt stopped (rule 3)."""
     return Clock("wall", str(doubt))
 
 

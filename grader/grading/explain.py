@@ -1,4 +1,4 @@
-"""Prove causes: change a copy of the submission at the place that a failed check names, and run it again.
+"""Prove causes: change a copy of the submission at the place named by a failed check, and run it again.
 
 A fixed cause stays fixed while the next one is tried. This also reveals mistakes that were hidden by other mistakes.
 The copy is built and run in the cell, like the submission itself, and in simulated time.
@@ -52,7 +52,7 @@ def explain(
 
 
 def part_of(exercise: Exercise, check: str) -> Exercise:
-    """Return the exercise with only the checks of this check's trial, everything they need, and their trials."""
+    """Return the exercise with only the checks of this check's trial, all checks that they need, and their trials."""
     specs = {spec.id: spec for spec in exercise.checks}
     trial = specs[check].trial
     wanted: dict[str, CheckSpec] = {}

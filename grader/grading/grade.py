@@ -63,7 +63,7 @@ def grade(
     """Grade a submission.
 
     `tell` is called with a short message about each step. `early` is called with the outcomes that are certain to fail,
-    before anything is built. A fault of the machine is reported as outcomes with the status `error`, and never as an
+    before anything is built. A machine fault is reported as outcomes with the status `error`, and never as an
     exception. `build` and `trial` can be replaced. For example, `grader watch` passes builds and trials that it started
     in advance.
     """
@@ -75,7 +75,7 @@ def grade(
 
 
 def can_be_explained(graded: Graded) -> bool:
-    """Return whether a failed check has a cause that can be tried: one with a fix, in simulated time."""
+    """Return whether a failed check in simulated time has a cause with a fix that can be tried."""
     report = graded.report
     return report.clock != "wall" and any(outcome.finding.fix for outcome in report.with_status(Status.FAILED))
 
@@ -89,9 +89,9 @@ def explained(
     trial: Callable[..., Trial] = Trial,
     give_up: Callable[[], bool] = lambda: False,
 ) -> Graded:
-    """Return the grading, with its causes proved by trying to fix them if that is possible.
+    """Return the graded submission, with its causes proved, if possible, by trying to fix them.
 
-    `give_up` is called before each try. No more changes are tried once it returns true. `build` has the last build.
+    `give_up` is called before each try. No more changes are tried once it returns true. `build` holds the last build.
     """
     report, evidence = graded.report, graded.evidence
     if not can_be_explained(graded):
@@ -102,7 +102,7 @@ def explained(
         tell("Trying to fix the cause")
         return grade(exercise, submission, again, build=build, trial=in_simulated_time).report.outcomes
 
-    def in_simulated_time(plan: Plan, *rest: Any, **more: Any) -> Trial:  # noqa: ANN401 - whatever a Trial gets
+    def in_simulated_time(plan: Plan, *rest: Any, **more: Any) -> Trial:  # noqa: ANN401 - the arguments of Trial
         """Create a trial in simulated time. If the fixed node may follow wall time, the try is inconclusive."""
         if plan.clock == "wall":
             raise MachineError("A try is made in simulated time only.")  # noqa: EM101
@@ -211,7 +211,7 @@ class _Grading:
 
 
 def _longest_first(evidence: Evidence) -> list[Evidence]:
-    """Return a view of the evidence per trial of a node, the longest first, so that no processor is idle at the end."""
+    """Return a view of the evidence per trial of a node, longest first, so that no processor is idle at the end."""
     specs = evidence.exercise.trials
     views = [evidence.from_trial(spec.id) for spec in specs if spec.tests is None and not spec.beside]
     return sorted(views, key=lambda view: -view.trial.scenario.duration_s)

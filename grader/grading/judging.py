@@ -1,4 +1,4 @@
-"""Judging: judge one submission while it is graded, first the files, then the build, then each trial.
+"""Judging: judge a submission while it is being graded: first the files, then the build, then each trial.
 
 All of this reads files that a student wrote, so it runs in a child process (submission/reader.py). If that process
 exceeds its limits, the submission is at fault: every check becomes `unreadable`, and nothing more is read.
@@ -68,7 +68,7 @@ class Judging:
         return self._clocks.get(evidence.trial.id, UNREAD)
 
     def known(self, evidence: Evidence) -> Evidence:
-        """Return the evidence. If the submission could not be read, its fault says so."""
+        """Return the evidence. If the submission could not be read, the `fault` of the evidence says so."""
         return evidence if self.fault is None else dataclasses.replace(evidence, fault=self.fault)
 
     def _give_up(self, error: UnreadableError) -> None:

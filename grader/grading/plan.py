@@ -1,4 +1,4 @@
-"""The plan of a trial: its clock, its start and inputs (drawn from the seed), and the topics that the checks need."""
+"""The plan of a trial: its clock, start and inputs (drawn from the seed), and the topics that the checks need."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Stopwatch:
-    """Measures the stages of a grading. `seconds` maps each stage to its wall time (s), in order of measurement."""
+    """Measures the stages of grading. `seconds` maps each stage to its wall time (s), in order of measurement."""
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = {}

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Tests:
-    """Runs the student's tests, as a context manager. Leaving it ends all runs of the tests."""
+    """Runs the student's tests, as a context manager. On exit, it stops all test runs."""
 
     __test__ = False  # keeps pytest from collecting this class
 

@@ -1,4 +1,4 @@
-"""The trials of one grading: start them during the build, run them, and repeat them if the clock policy requires it."""
+"""The trials of a submission: start them during the build, run them, and repeat them if the clock rules require it."""
 
 from __future__ import annotations
 
@@ -134,7 +134,7 @@ class Trials:
         return policy.that_counts(attempts)
 
     def _run_simulated(self, evidence: Evidence, trial: Runs, clock: Clock, settled: Mapping[str, Finding]) -> Attempt:
-        """Run the trial in simulated time, and once more if it stopped at a doubt by chance.
+        """Run the trial in simulated time, and once more if a doubt that arose by chance stopped it.
 
         Raises:
             WallTimeNeeded: wall time must decide.

@@ -1,8 +1,8 @@
-"""Turns: gradings share the machine, but a trial that is repeated in wall time has the machine to itself.
+"""Turns: graders share the machine, but a trial that is repeated in wall time has the machine to itself.
 
-This applies only to the gradings of one user. The locks use flock(2), so the kernel releases them when a process is
-killed. A grading that needs the machine to itself holds a second lock, the turnstile, while it waits. Later gradings
-stop there, so it does not wait forever.
+This applies only to the grader processes of one user. The locks use flock(2), so the kernel releases them when a
+process is killed. A grader that needs the machine to itself holds a second lock, the turnstile, while it waits. Later
+graders stop there, so it does not wait forever.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 WAIT_S = 120.0
-"""After this time (s), a grading continues even if the machine is not free."""
+"""After this time (s), a grader continues even if the machine is not free."""
 _POLL_S = 0.02
 
 
 class Turns:
-    """The turn of one grading. All gradings use the lock files in `folder`. Without these files, no grading waits."""
+    """The turn of one grader. All graders use the lock files in `folder`. Without these files, no grader waits."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._locks: tuple[IO[bytes], IO[bytes]] | None = None
-        """The lock files of the turnstile and the machine, while this grading shares the machine; otherwise None."""
+        """The lock files of the turnstile and the machine, while this grader shares the machine; otherwise None."""
 
     @contextmanager
     def shared(self) -> Iterator[None]:
-        """Share the machine with other gradings."""
+        """Share the machine with other graders."""
         with ExitStack() as stack:
             try:
                 self._folder.mkdir(parents=True, exist_ok=True)
@@ -59,7 +59,7 @@ class Turns:
             yield
             return
         turnstile, machine = self._locks
-        # Release the shared lock first. Otherwise, two gradings that want the machine to themselves would wait for each
+        # Release the shared lock first. Otherwise, two graders that want the machine to themselves would wait for each
         # other.
         fcntl.flock(machine, fcntl.LOCK_UN)
         _lock(turnstile, fcntl.LOCK_EX)
@@ -82,7 +82,7 @@ def _locked(file: IO[bytes], how: int) -> bool:
         fcntl.flock(file, how | fcntl.LOCK_NB)
     except BlockingIOError:
         return False
-    except OSError:  # the file system does not support locks, so no grading waits
+    except OSError:  # the file system does not support locks, so no grader waits
         pass
     return True
 

@@ -1,1 +1,1 @@
-"""A trial: one run of the simulator and the student's node under one clock."""
+"""A trial: one run of the simulator and the student's node on one clock."""

@@ -1,8 +1,8 @@
 """The trials of one submission. They start during the build, and those in simulated time run in parallel.
 
-They start one after the other. This leaves most of a processor to the build, which all of them wait for. Simulated time
-does not depend on the speed of the machine, so parallel trials do not affect each other. A trial in wall time needs the
-processors for itself, so the caller first waits for the other trials (`settle`).
+They start one after the other, so that most of a processor is left for the build, which all of them wait for. Simulated
+time does not depend on the speed of the machine, so parallel trials do not affect each other. A trial in wall time
+needs the processors to itself, so the caller first waits for the other trials (`settle`).
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class _Started:
 
 
 class Ahead:
-    """The trials of a submission, as a context manager. Leaving it stops every trial that it started.
+    """The trials of a submission, as a context manager. On exit, it stops every trial that it started.
 
     The name of a trial is its id. Up to `at_once` trials run in parallel.
     """
@@ -65,7 +65,7 @@ class Ahead:
         self._under_way: dict[str, Future[Recording]] = {}
 
     def __enter__(self) -> Ahead:  # noqa: PYI034 - typing.Self is Python 3.11's
-        self._pool.submit(load_numpy)  # reading a recording needs numpy, and there is time for the import now
+        self._pool.submit(load_numpy)  # reading a recording requires numpy, and there is time to import it now
         return self
 
     def __exit__(self, *_: object) -> None:

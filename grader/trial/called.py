@@ -22,9 +22,9 @@ TOO_LATE = "too late"
 class Called:
     """The result of the call with this id.
 
-    `ended` describes the end of the process: "exit 0", "signal 9", TOO_LATE, or an empty string if it is unknown.
-    `values` are the numbers that a function returned, if there are at most MOST_VALUES. `kind` is the type of its
-    result.
+    `ended` says how the process ended: "exit 0", "signal 9", TOO_LATE, or an empty string if this is unknown.
+    `values` are the numbers that a function returned, if there are at most MOST_VALUES. `kind` is the type of the
+    returned value.
     """
 
     id: str

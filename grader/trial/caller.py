@@ -23,7 +23,7 @@ FOUND_S = 0.5
 
 
 class Caller:
-    """Makes the calls when they are due. Its clients exist from the start, so that discovery is complete by then."""
+    """Makes each call when it is due. The clients exist from the start, so that discovery is complete by then."""
 
     def __init__(self, node: Node, calls: tuple[PlannedCall, ...], now: Callable[[], float]) -> None:
         self._node = node
@@ -54,7 +54,7 @@ class Caller:
     def _given_up(
         self, call: PlannedCall, client: Client, now_s: float, spin: Callable[[float], object] | None
     ) -> bool:
-        """Wait for the service. Return whether it is available now or the waiting time is over."""
+        """Wait for the service. Return whether it is available or the waiting time is over."""
         until = time.monotonic() + FOUND_S
         while spin is not None and id(call) not in self._first_s and time.monotonic() < until:
             spin(0.01)
@@ -70,7 +70,7 @@ class Caller:
         if not ready:
             return
 
-        def answered(future: Any) -> None:  # noqa: ANN401 - a future of rclpy
+        def answered(future: Any) -> None:  # noqa: ANN401 - an rclpy future
             response = future.result()
             if response is not None:
                 self._made[index] = self._made[index].answered(self._now(), plain(response))

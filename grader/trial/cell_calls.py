@@ -1,4 +1,4 @@
-"""Call a student's function or program in a cell, once per input, in a separate process each time.
+"""Call a student's function or program in a cell, once per input, in a new process each time.
 
 This file runs as a separate script. It reads one line of JSON (`calls`, `script`, `function`, `python_path`, `env`,
 `install`, `files`) and then the install tree, a tar stream, from standard input. It writes one line of JSON for
@@ -32,7 +32,7 @@ TOO_LATE = "too late"
 
 
 def main() -> None:
-    """Read the order and make the calls."""
+    """Read the order from standard input, and make the calls."""
     os.write(1, b"ready\n")
     order = json.loads(sys.stdin.buffer.readline())
     with tarfile.open(fileobj=sys.stdin.buffer, mode="r|") as tree:

@@ -1,7 +1,7 @@
-"""Find clues in the source that a node may follow wall time. Simulated time would misjudge such a node.
+"""Find clues in the source which suggest that a node follows wall time. Simulated time would misjudge such a node.
 
-Only the module of the executable and the modules of the package that it imports count. A sleep in another node of the
-package does not matter.
+Only the executable's module and the modules of the package that it imports are searched. A sleep in another node of
+the package does not matter.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _NAMES = {
     "SYSTEM_TIME",
     "timeout_sec",
     "throttle_duration_sec",
-    # A node that ignores the global arguments does not get use_sim_time either.
+    # A node that ignores the global arguments ignores use_sim_time too.
     "use_global_arguments",
 }
 _CLOCKS = {"Clock", "ROSClock"}
@@ -89,7 +89,7 @@ def _clues(path: str, tree: ast.Module) -> Iterator[Clue]:
 
 
 def _short(node: ast.Attribute) -> str:
-    """Return the source of the expression, or only its last name if it is long. Each part of a chain may be a clue."""
+    """Return the source of the expression, or only its last name if it is long. Each part of it may be a clue."""
     return ast.unparse(node) if len(list(islice(ast.walk(node), MOST_NODES + 1))) <= MOST_NODES else node.attr
 
 

@@ -1,10 +1,10 @@
 """Conduct one trial, in the process that contains the simulator, the recorder and the clock.
 
 The process runs in a room (grader.sandbox), and the student's node runs in a cell. The process exchanges JSON lines
-with the grader's own process over its standard streams. The first line of input describes the trial. The answer is
-{"ready": true} when the simulator and the launcher are ready. The second line of input says what to start, and the
-install tree follows it. The last line of output is {"recording": {...}}, {"doubt": "...", "by_chance": false} if the
-other clock must decide, {"overwhelmed": "..."} if the node made the simulator fail, or {"fault": "..."} if the
+with the grader's own process over its standard streams. The first line of input describes the trial. The process
+answers {"ready": true} when the simulator and the launcher are ready. The second line of input says what to start, and
+the install tree follows it. The last line of output is {"recording": {...}}, {"doubt": "...", "by_chance": false} if
+the other clock must decide, {"overwhelmed": "..."} if the node made the simulator fail, or {"fault": "..."} if the
 machine is at fault.
 """
 
@@ -55,7 +55,7 @@ STARTED_LEAST = 1.2
 ready to run for at least the fraction STARTED of the time of all processors, and for at least STARTED_LEAST times the
 length of the trial. A single process cannot reach this."""
 SIMULATORS = ("/pose", "/color_sensor")
-"""The simulator publishes on topics with these last parts, for each turtle and in each frame."""
+"""The endings of the topics on which the simulator publishes, for each turtle and in each frame."""
 
 
 class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grader
@@ -65,7 +65,7 @@ class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grad
 def main() -> None:
     """Conduct the trial that is described on standard input."""
     order = json.loads(sys.stdin.buffer.readline())
-    # The output of ROS 2 must not be mixed with our JSON lines.
+    # The output of ROS 2 must not be mixed with the JSON lines.
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
     try:
@@ -164,7 +164,7 @@ def _run(trial: SimulatedTrial | WallTrial, duration_s: float) -> float:
 
 
 def _own_doing(stall: tuple[float, float], node: NodeGroup, trial: SimulatedTrial | WallTrial) -> bool:
-    """Return whether the node caused the stall, by its own work or by the work that it gave the simulator."""
+    """Return whether the node caused the stall, through its own work or through work that it gave the simulator."""
     now_s = trial.now()
     offset = time.monotonic() - now_s
     begin, end = stall

@@ -1,4 +1,4 @@
-"""Measure whether the simulator and the node get the CPU time that a trial in wall time needs. The source is /proc."""
+"""Measure, from /proc, whether the simulator and the node get the CPU time that a trial in wall time needs."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ def is_crowded(waited_s: float, others_s: float, *, of_s: float) -> bool:
 
 
 def is_machines(stalled_s: float, others_s: float) -> bool:
-    """Return whether stalls of this total length (s) can be the machine's fault.
+    """Return whether the machine can be at fault for stalls of this total length (s).
 
     A thread waits for a processor only while something else uses it. If the other programs worked for a shorter time
-    than the stalls lasted, the node and its threads kept each other waiting, as a node that floods a topic does.
+    than the stalls lasted, the threads of the node kept each other waiting, as when a node floods a topic.
     """
     return others_s >= stalled_s
 
@@ -92,7 +92,7 @@ class Stalls:
 
 
 class Others:
-    """Measures the CPU time of all other programs on this machine since its creation."""
+    """Measures the CPU time of all other programs on this machine since the creation of this object."""
 
     def __init__(self) -> None:
         self._before = _machine_worked_s() - time.process_time()
@@ -131,5 +131,5 @@ def _machine_worked_s() -> float:
 
 
 def _machine_s() -> list[float]:
-    """Return the times of all processors together (s). These are the columns of /proc/stat; see proc(5)."""
+    """Return the total times of all processors (s). These are the columns of /proc/stat; see proc(5)."""
     return [int(column) * _TICK_S for column in Path("/proc/stat").read_text().split(maxsplit=9)[1:9]]

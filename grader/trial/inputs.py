@@ -1,4 +1,4 @@
-"""Inputs: the drives, service calls and settings of a trial, drawn from the exercise's scenario and a seed."""
+"""Inputs: the drives, service calls and settings of a trial, from the exercise's scenario and a seed."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def _settings(parameters: Mapping[str, Setting]) -> list[str]:
 
 
 def _params_file(parameters: Mapping[str, Setting]) -> str:
-    """Return the text of a file for `--params-file` (JSON is also YAML), or an empty string without parameters."""
+    """Return the text of a file for `--params-file` (JSON is also YAML), or an empty string if it is not needed."""
     return json.dumps({"/**": {"ros__parameters": dict(parameters)}}, indent=2) + "\n" if parameters else ""
 
 

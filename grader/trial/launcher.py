@@ -5,7 +5,7 @@ This file runs as a separate script, before the install tree exists. It reads on
 runs the installed script as __main__, as the interpreter in the script's first line would.
 
 `ros_arguments` select simulated time. rclpy gets them when it is initialized. They never appear in sys.argv, because a
-program that reads its own arguments must see the same ones as with `ros2 run PACKAGE EXECUTABLE`, which are none.
+program that reads its own arguments must see the same ones as with `ros2 run PACKAGE EXECUTABLE`, that is, none.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def _initialize_with(ours: list[str]) -> None:
 
 
 def _without_us(kind: type[BaseException], error: BaseException, trace: types.TracebackType | None) -> None:
-    """Print the traceback of the program without the launcher's own frames."""
+    """Print the traceback of the program without the stack frames of the launcher."""
     for each in _chain(error):
         each.__traceback__ = _frames_of_others(each.__traceback__)
     sys.__excepthook__(kind, error, _frames_of_others(trace))
@@ -98,7 +98,7 @@ def main() -> None:
         file = Path(order["install"]).parent / "params.yaml"
         file.write_text(order["params_file"], encoding="utf-8")
         order["ros_arguments"] += ["--ros-args", "--params-file", str(file)]
-    # A node that reads from the keyboard gets end-of-file.
+    # A node that reads from the keyboard reaches the end of the file.
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.environ.update(order["env"])
     script = Path(order["script"])

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class NodeGroup:
-    """The nodes of a trial: first the trial's own node, then the nodes beside it."""
+    """The nodes of a trial: first the trial's own node, then the additional nodes."""
 
     def __init__(self, processes: Sequence[NodeProcess]) -> None:
         self.processes = tuple(processes)
@@ -43,7 +43,7 @@ class NodeGroup:
         return all(process.ended() for process in self.processes)
 
     def interrupt(self) -> None:
-        """Send SIGINT to each of them, as Ctrl-C does in a terminal."""
+        """Send SIGINT to each node, as Ctrl-C does in a terminal."""
         for process in self.processes:
             process.interrupt()
 
@@ -116,5 +116,5 @@ class GroupThreads:
         return {tid: ran_s for threads in self._each for tid, ran_s in threads.run_times_s().items()}
 
     def waits(self) -> list[Wait]:
-        """Return what each thread is waiting for now, except the threads of Fast DDS."""
+        """Return the current wait of each thread, except those of Fast DDS."""
         return [wait for threads in self._each for wait in threads.waits()]

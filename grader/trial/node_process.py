@@ -32,7 +32,7 @@ FULL = 0.25
 """A node that had to wait for a full pipe wrote more than this share of the pipe size. The kernel may fill each page
 only halfway."""
 STOP_S = 3.0
-"""The maximum time from SIGINT to the exit of the node (s). SIGTERM follows, and SIGKILL 1 s later."""
+"""The maximum time from SIGINT to the exit of the node (s). After it come SIGTERM and, 1 s later, SIGKILL."""
 
 
 class LaunchError(Exception):
@@ -62,7 +62,7 @@ class Stream:
     dropped: int = 0
 
     def read(self, now_s: float) -> int:
-        """Read all that is available, and return the number of bytes."""
+        """Read all available output, and return the number of bytes."""
         size = 0
         for _ in range(64):
             try:
@@ -86,7 +86,7 @@ class Stream:
 
 
 class NodeProcess:
-    """The process of a node with its pipes, as a context manager. Leaving it kills all processes of the node."""
+    """The process of a node with its pipes, as a context manager. On exit, it kills all processes of the node."""
 
     def __init__(self, command: Callable[[int, int | None], Sequence[str]], limits: Limits, *, in_cell: bool) -> None:
         """Start the launcher.
@@ -151,7 +151,7 @@ class NodeProcess:
     def start(self, order: dict[str, object], tree: bytes) -> None:
         """Send the order and the install tree to the launcher."""
         assert self._process.stdin is not None
-        # Not earlier, because a launcher may wait for minutes, and watching it costs 1 % of a core.
+        # Do not start this earlier, because a launcher may wait for minutes, and watching it takes 1 % of a core.
         self._guard = Guard(self._process.pid, self._limits, self._over)
         try:
             self._process.stdin.write(json.dumps(order).encode() + b"\n" + tree)
@@ -210,7 +210,7 @@ class NodeProcess:
         """Return how the process ended. Call this only after `ended` has returned True."""
         code = self._process.returncode
         stopped = None if self._interrupted is None else time.monotonic() - self._interrupted
-        # bwrap reports a signal in the same way as a shell: 128 + the signal number.
+        # Like a shell, bwrap reports a signal as 128 + the signal number.
         exit_code = 128 - code if code > 128 else code
         return ProcessEnd(self._by, exit_code, now_s, stopped, self._out_of)  # type: ignore[arg-type]
 

@@ -1,4 +1,4 @@
-"""The contents of a recording other than messages: service calls, goals of actions, pens, and the other turtles."""
+"""The contents of a recording other than messages: service calls, action goals, pens, and the other turtles."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Goal:
     """A goal that a node sent to an action of the simulator, which accepted it at the time `t_s` of the trial's clock.
 
     The other times (s) are None if the event did not happen: a client requested the result (`result_asked_s`), a client
-    requested cancellation (`cancel_asked_s`), the goal ended with this `status` (`ended_s`).
+    requested cancellation (`cancel_asked_s`), or the goal ended with this `status` (`ended_s`).
     """
 
     t_s: float
@@ -61,7 +61,7 @@ class Goal:
 
 @dataclass(frozen=True)
 class PenChange:
-    """A turtle's pen from the time `t_s` on: its colour (red, green, blue), its width (px), whether it is down."""
+    """A turtle's pen from the time `t_s` on: its colour (red, green, blue), its width (px), and whether it is down."""
 
     t_s: float
     turtle: str
@@ -74,7 +74,7 @@ class PenChange:
 class Track:
     """The track of a turtle other than turtle1: rows of t_s (s), x and y (m) and theta (rad), one per change.
 
-    The first row is its first frame. `gone_s` is when it was killed (s), or None.
+    The first row is its first frame. `gone_s` is the time at which it was killed (s), or None.
     """
 
     turtle: str

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def own_domain(stack: ExitStack) -> int:
-    """Return a ROS domain that no other grading on this machine uses until the stack is closed.
+    """Return a ROS domain that no other grader process on this machine uses until the stack is closed.
 
     Raises:
         MachineError: all domains are in use.

@@ -1,4 +1,4 @@
-"""Time limits for a node in simulated time. CPU time counts, so the load of the machine makes no difference."""
+"""Time limits for a node in simulated time. They apply to CPU time, so the load of the machine has no effect."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 ASLEEP_S = 20.0
 """The maximum time that a node may sleep before it waits for its clock (s)."""
 WORKED_S = 20.0
-"""The maximum CPU time that it may use before it waits for its clock (s)."""
+"""The maximum CPU time that a node may use before it waits for its clock (s)."""
 HANDSHAKE_S = 100.0
 """The time limit for both on a crowded machine (s). The limit for the whole trial is slightly higher (trial.py)."""
 TICK_CPU_S = 1.0
@@ -20,11 +20,11 @@ TICK_S = 30.0
 SHARED = 0.1
 """If a second thread did at least this share of the work, several threads kept the node from becoming idle."""
 REQUEST_EVERY_S = 0.02
-"""The interval at which its CPU time is checked (s)."""
+"""The interval at which the CPU time of the node is checked (s)."""
 
 
 class HandshakePatience:
-    """The limit for the time until a node waits for its clock.
+    """The time limit for a node to reach the point at which it waits for its clock.
 
     Time during which the node works or waits for the grader does not count.
     """
@@ -62,7 +62,7 @@ class TickPatience:
         self._request_s = now_s + REQUEST_EVERY_S
 
     def ended(self, now_s: float) -> bool:
-        """Return whether the node has worked too long. The CPU time counts from the first call that reads it."""
+        """Return whether the node has worked too long. CPU time is counted from the first call that reads it."""
         if now_s < self._request_s:
             return False
         self._request_s = now_s + REQUEST_EVERY_S
@@ -74,8 +74,8 @@ class TickPatience:
     def several_worked(self) -> bool:
         """Return whether several threads of the program shared the work, rather than one loop without a pause.
 
-        The threads of rclpy's MultiThreadedExecutor do so by chance: until a thread begins a callback, the executor
-        submits the same callback again and again, and each time wakes a thread.
+        The threads of rclpy's MultiThreadedExecutor do so by chance: until a thread begins to run a callback, the
+        executor submits the same callback again and again, and wakes a thread each time.
         """
         worked_s = sorted(at_s - self._before_s.get(tid, 0.0) for tid, at_s in self._node.run_times_s().items())
         return len(worked_s) > 1 and worked_s[-2] >= SHARED * sum(worked_s)

@@ -1,4 +1,4 @@
-"""Recorder: record every topic of the ROS graph and the graph itself, in the process of the conductor."""
+"""Recorder: record every topic of the ROS graph and the graph itself, in the conductor's process."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 OWN_NAMESPACE = "/_grader"
 OWN_NODES = ("/turtlesim", f"{OWN_NAMESPACE}/recorder")
 NAMESAKE = " (not the simulator)"
-"""The suffix for a node of the student that has the same name as one of ours."""
+"""The suffix for a student's node that has the same name as one of the grader's nodes."""
 _TYPE = re.compile(r"([a-z][a-z0-9_]*)/msg/([A-Z][A-Za-z0-9]*)")
 _LEVELS = {10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
 
@@ -36,7 +36,7 @@ MOST_TYPES = 200
 MOST_NODES = 100
 MOST_SERVICES = 200
 OF_EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
-"""The beginnings of the types of the services that rclpy adds to every node, below the name of the node."""
+"""The prefixes of the types of the services that rclpy adds to every node, below the name of the node."""
 MOST_OBSERVED = 50_000
 """The maximum number of nodes and endpoints in all snapshots together."""
 MOST_MESSAGES = 20_000
@@ -120,7 +120,7 @@ class Recorder(Node):
 
     @property
     def offers(self) -> tuple[Offer, ...]:
-        """The services of other nodes that were found in snapshots, if `follows_services` is set."""
+        """The services of other nodes, as found in snapshots, if `follows_services` is set."""
         return tuple(sorted(self._offers, key=lambda offer: (offer.service, offer.type, offer.node)))
 
     def _follow_services(self) -> None:
@@ -188,7 +188,7 @@ class Recorder(Node):
         return result
 
     def _own_participant(self) -> bytes:
-        """Return our own participant. No other node can interfere, since the student's node does not exist yet."""
+        """Return the recorder's participant. No other node can interfere, since the student's does not exist yet."""
         topic = f"{OWN_NAMESPACE}/whoami"
         publisher = self.create_publisher(Log, topic, 1)
         found = self.get_publishers_info_by_topic(topic)
@@ -201,7 +201,7 @@ class Recorder(Node):
             return False
         if topic == "/turtle1/cmd_vel" and type_name == "geometry_msgs/msg/Twist":
             return False  # the simulator reports commands: checks judge the ones that moved the turtle
-        # The simulator reports what it sends. The subscription is for messages that other nodes send on its topics.
+        # The simulator reports its own messages. The subscription is for messages that other nodes send on its topics.
         return self._simulated.get(topic) != type_name or bool(self.count_publishers(topic) > 1)
 
     def _subscribe(self, topic: str, type_name: str) -> bool:
@@ -233,14 +233,14 @@ class Recorder(Node):
 
 
 def _each_type_first(endpoints: set[Endpoint]) -> list[Endpoint]:
-    """Return one endpoint of each type first, so that a hundred endpoints of one type cannot crowd out another type."""
+    """Return the endpoints with one of each type first, so that a hundred of one type cannot crowd out another type."""
     ordered = sorted(endpoints, key=str)
     first = list({end.type: end for end in reversed(ordered)}.values())
     return first + [end for end in ordered if end not in first]
 
 
 def _participant(info: TopicEndpointInfo) -> bytes:
-    # A GUID in DDS has 12 bytes for the participant (the process) and 4 bytes for the endpoint within it.
+    # A DDS GUID has 12 bytes for the participant (the process) and 4 bytes for the endpoint within it.
     return bytes(info.endpoint_gid[:12])
 
 

@@ -113,7 +113,7 @@ class Frames:
 
 @dataclass(frozen=True)
 class Output:
-    """The text of one output stream, decoded with replacement. `dropped` bytes were over the limit and not kept.
+    """The text of one output stream, decoded with replacement. `dropped` bytes exceeded the limit and were not kept.
 
     `times` are the arrival times of the lines of `text` on the trial's clock (s), one per line.
     """
@@ -127,10 +127,10 @@ class Output:
 class ProcessEnd:
     """How the node's process ended.
 
-    `by` is what stopped it: "itself" (before the scenario was over), or a signal. `out_of` is set if the grader stopped
-    it because it used more "memory", "processes" or "files" than a node may. `stop_s` is the time from SIGINT to its
-    exit (s of wall time), None if it exited on its own. `t_s` is the time of its exit on the trial's clock. `exit_code`
-    is negative for a signal, as in subprocess.
+    `by` says what stopped it: "itself" (before the scenario was over), or a signal. `out_of` is set if the grader
+    stopped it because it used more "memory", "processes" or "files" than a node may. `stop_s` is the time from SIGINT
+    to its exit (s of wall time), or None if it exited on its own. `t_s` is the time of its exit on the trial's clock.
+    `exit_code` is negative for a signal, as in subprocess.
     """
 
     by: Literal["itself", "SIGINT", "SIGTERM", "SIGKILL"]
@@ -142,7 +142,7 @@ class ProcessEnd:
 
 @dataclass(frozen=True)
 class Beside:
-    """What a recording holds of a process that ran beside the node of the trial."""
+    """The part of a recording about an additional node, which ran next to the node of the trial."""
 
     executable: str
     stdout: Output
@@ -208,7 +208,7 @@ class Recording:
     time)."""
 
     def seen_from(self, executable: str) -> Recording:
-        """Return the recording from the viewpoint of a node beside: its output and its end. Raises KeyError."""
+        """Return the recording from the viewpoint of an additional node, with its output and end. Raises KeyError."""
         other = {each.executable: each for each in self.beside}[executable]
         return replace(self, stdout=other.stdout, stderr=other.stderr, end=other.end)
 
@@ -220,7 +220,7 @@ class Recording:
     def stalled(self, t_s: float) -> bool:
         """Return whether this time was in a stall or right after one.
 
-        The time of such an arrival depends on the machine, not on the node.
+        The time of a message that arrived then depends on the machine, not on the node.
         """
         return any(begin <= t_s <= end + AFTER_STALL_S for begin, end in self.stalls)
 
@@ -233,7 +233,7 @@ def frames_of(rows: Iterable[tuple[float, float, float, float, float, float, boo
 
 
 def to_json(recording: Recording, *, messages: bool = True) -> dict[str, Any]:
-    """Convert a recording to plain data. Leave out the contents of the messages if a bag holds them."""
+    """Convert a recording to plain data. Without `messages`, leave out the message contents, which a bag holds."""
     plain = {**recording.__dict__, "frames": None, "messages": None}
     data: dict[str, Any] = asdict(Recording(**plain))
     frames = recording.frames

@@ -2,7 +2,7 @@
 
 Simulated time advances only while the node is idle: every thread sleeps, and none ran between two looks. If a thread
 ran between two looks, the count in its schedstat has changed. A thread that was woken but has not run yet is in state
-R. So two equal looks are enough if the kernel keeps these counts, and the first of them does not need the states.
+R. So two equal looks are enough if the kernel keeps these counts, and the first one need not include the states.
 Otherwise, more looks are needed.
 """
 
@@ -22,7 +22,7 @@ DDS = "dds."
 _DDS_TIMERS = "dds.ev"
 """The thread for the timers of Fast DDS. It sends data but does not receive any."""
 _SLEEPING = ord("S")
-# The system calls that only wait for a time to pass, by their numbers on x86-64.
+# The system calls that only wait for time to pass, by their numbers on x86-64.
 _SLEEPS = {35: "nanosleep", 230: "clock_nanosleep"}
 # For each system call that may have a timeout: its name, the word with the timeout (word 0 is the number of the call),
 # and the values of that word that mean "no timeout".
@@ -45,7 +45,7 @@ class GoneError(Exception):
 class DoubtError(Exception):
     """The process may follow wall time, so its idleness proves nothing. The message says why.
 
-    `by_chance` is true if another run of the same program may not raise it.
+    `by_chance` is true if this error may not occur in another run of the same program.
     """
 
     def __init__(self, why: str, *, by_chance: bool = False) -> None:
@@ -55,7 +55,7 @@ class DoubtError(Exception):
 
 @dataclass(frozen=True)
 class Look:
-    """One look at some threads: whether all of them sleep, and how often each of them has run."""
+    """One look at some threads: whether all of them sleep, and the number of times that each of them has run."""
 
     asleep: bool
     runs: tuple[bytes, ...]
@@ -68,7 +68,7 @@ class Look:
 
 @dataclass(frozen=True)
 class Wait:
-    """What a thread waits for: the name of a system call, "futex", "running" and so on.
+    """The reason why a thread waits: the name of a system call, "futex", "running" and so on.
 
     `timed` says whether the wait has a timeout.
     """
@@ -141,7 +141,7 @@ class Threads:
         raise GoneError
 
     def runs(self) -> tuple[bytes, ...]:
-        """Return the number of runs of each thread of the last look. This takes a third of the time of a look."""
+        """Return the number of runs of each thread of the last look. This takes a third as long as a look."""
         try:
             return tuple([os.pread(schedstat, 64, 0) for _, schedstat in self._files.values()])
         except ProcessLookupError:  # some or all threads have exited, so the result must differ from every look
@@ -173,7 +173,7 @@ class Threads:
         return found
 
     def waits(self) -> list[Wait]:
-        """Return what each thread is waiting for now, except the threads of Fast DDS.
+        """Return the current wait of each thread, except those of Fast DDS.
 
         A running thread waits for nothing.
         """

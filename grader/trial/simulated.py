@@ -1,8 +1,8 @@
 """A trial in simulated time: /clock advances only while the node is idle.
 
 The clock is held at 0 until both sides have discovered each other (the handshake). Then it advances in frames of 16 ms.
-The threads of a node show whether it follows wall time. Each sign of this is a doubt, and a doubt leads to a trial in
-wall time (grading/clock.py; docs/design.md, decision 3).
+The threads of a node show whether it follows wall time. Any sign that it does is called a doubt, and leads to a trial
+in wall time (grading/clock.py; docs/design.md, decision 3).
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ of an action."""
 WAITS_EVERY = 7
 """The number of frames between two checks of what the node's threads wait for."""
 ENDING_S = 0.5
-"""The time in which a sleeping node must exit, or else the sleep counts as a doubt (s of wall time)."""
+"""The time limit for a sleeping node to exit (s of wall time). If it does not, the sleep counts as a doubt."""
 _POLL_S = 0.00005
 
 
@@ -177,7 +177,7 @@ class SimulatedTrial(Simulation):
                 else:
                     self._doubt("the node is busy all the time: it has a loop without a pause")
                 return
-            # Our receiving threads have not run since the last time, so no new message has arrived.
+            # The simulator's receiving threads have not run since the last time, so no new message has arrived.
             if self._received == self._handled:
                 return
             self._handled = self._received
@@ -189,7 +189,7 @@ class SimulatedTrial(Simulation):
         if not self.may_request():
             self.hear()
             return False
-        # Messages and acknowledgements are not answered, so the node stays idle.
+        # Plain messages and acknowledgements get no answer, so the node stays idle.
         return not all(isinstance(source, Subscription) for source in self.spin())
 
     # --- handshake --------------------------------------------------------------------------------------------

@@ -46,8 +46,8 @@ counted."""
 class Simulation:
     """The ROS side of a trial. `frame` moves the turtle, and `spin` handles everything that has arrived.
 
-    An executor checks every service and every event each time, which takes longer than anything else in a frame.
-    `hear` only handles messages. It is sufficient while no other node `may_request` a service.
+    Each time it runs, an executor checks every service and every event, which takes longer than anything else in a
+    frame. `hear` handles only messages. It is sufficient while no other node `may_request` a service.
     """
 
     held = False
@@ -57,8 +57,8 @@ class Simulation:
         self, node: NodeGroup, start: Pose, prefixes: list[Path], inputs: Inputs, judged: Collection[str] = ()
     ) -> None:
         """Create the simulator and the recorder. `judged` are the topics that a check needs."""
-        # Our own log lines go to /rosout, for the recorder, and not to disk. Otherwise, a node that makes the simulator
-        # log a lot could fill the disk.
+        # The grader's log lines go to /rosout, for the recorder, and not to disk. Otherwise, a node that makes the
+        # simulator log a lot could fill the disk.
         rclpy.init(args=["--ros-args", "--disable-external-lib-logs", "--disable-stdout-logs"])
         self.node = node
         self.inputs = inputs
@@ -170,7 +170,7 @@ class Simulation:
         return handled
 
     def may_request(self) -> bool:
-        """Return whether any node has a client for one of our services or actions, or has not responded to us yet."""
+        """Return whether any node has a client for a service or action of ours, or has not responded to us yet."""
         if self.caller is not None and self.caller.pending:
             return True
         if not self._services:
@@ -206,7 +206,7 @@ class Simulation:
         return handled
 
     def students_nodes(self) -> list[str]:
-        """Return the names of the nodes in the graph that are not ours."""
+        """Return the names of the nodes in the graph that do not belong to the grader."""
         return list((Counter(self.recorder.nodes()) - Counter(self.own_nodes)).elements())
 
     @property
@@ -267,7 +267,7 @@ def _handle_messages(subscription: Subscription) -> None:
 
 
 def leave_out_events(node: Node) -> None:
-    """Stop waiting for events (other types, other QoS) on a node's topics, except those of the turtle.
+    """Stop waiting for events (other types, other QoS) on a node's topics, except the topics of the turtle.
 
     rclpy adds every source of events to every wait. Topics that the node adds later keep their events.
     """

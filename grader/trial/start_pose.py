@@ -1,4 +1,4 @@
-"""The start pose of the turtle: that of turtlesim, or one drawn from a seed."""
+"""The start pose of the turtle: turtlesim's usual one, or one drawn from a seed."""
 
 from __future__ import annotations
 

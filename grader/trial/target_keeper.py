@@ -46,7 +46,7 @@ class TargetKeeper(Node):
             turtlesim.add_turtle(target.name, Start(target.x, target.y, 0.0))
 
     def frame(self, now_s: float) -> None:
-        """Announce the remaining targets if it is time to (s)."""
+        """Announce the remaining targets if they are due at this time (s)."""
         if now_s >= self._next_s:
             self._next_s = now_s + ANNOUNCED_EVERY_S
             self._publisher.publish(String(data=" ".join(self._left)))

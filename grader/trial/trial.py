@@ -1,4 +1,4 @@
-"""Trial: one run of the simulator and the node under one clock, from the viewpoint of the grader's own process."""
+"""Trial: one run of the simulator and the node on one clock, from the viewpoint of the grader's own process."""
 
 from __future__ import annotations
 
@@ -56,11 +56,11 @@ class Plan:
     judged: tuple[str, ...] = ()
     """The topics that a check needs. They are recorded, however many other topics there are."""
     beside: tuple[str, ...] = ()
-    """The executables that run beside the node of the trial."""
+    """The additional executables that run next to the node of the trial."""
 
 
 def last_words(stderr: bytes) -> str:
-    """Return the last output of one of our programs, without the stack frames of a traceback."""
+    """Return the last output of one of the grader's programs, without the stack frames of a traceback."""
     output = stderr.decode("utf-8", "replace").strip()
     return output.splitlines()[-1] if "Traceback (most recent call last)" in output else output
 
@@ -149,7 +149,7 @@ class Trial:
 
         Raises:
             WallTimeNeeded: simulated time may misjudge this node.
-            OverwhelmedError: the trial could not be completed because of something that the node did.
+            OverwhelmedError: the node made it impossible to complete the trial.
             MachineError: the simulator or the sandbox failed.
         """
         arguments = ["--ros-args", "-p", "use_sim_time:=true"] if self._plan.clock == "simulated" else []
@@ -233,7 +233,7 @@ class Trial:
         self._stack.callback(self._timer.cancel)
 
     def _kill(self) -> None:
-        # Kill the whole process group. While bubblewrap starts, it has a child that does not yet die with it.
+        # Kill the whole process group, because a child of bubblewrap may outlive it while bubblewrap is starting.
         with suppress(ProcessLookupError):
             os.killpg(self._process.pid, signal.SIGKILL)
 
@@ -271,7 +271,7 @@ class Trial:
         self._kill()
         self._errors.seek(0)
         output = answer.get("fault") or last_words(self._errors.read()[-2000:])
-        # A complete sentence is one of our own messages, and says what to do.
+        # A complete sentence is one of the grader's messages, and says what to do.
         refused = output if output.endswith(".") else refusal_in(output)
         unknown = f"The simulator failed: {output or 'it output nothing'}. `grader doctor` says what is missing."
         message = f"The simulator failed. {refused}" if refused else unknown

@@ -46,7 +46,7 @@ class TurtleWatch:
 
     @property
     def pens(self) -> tuple[PenChange, ...]:
-        """The changes of pens, in order."""
+        """The changes to the pens, in order."""
         return tuple(self._changes)
 
     @property

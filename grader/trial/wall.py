@@ -13,7 +13,7 @@ GRAPH_EVERY = 31
 
 
 class WallTrial(Simulation):
-    """A simulation on CLOCK_MONOTONIC. Frames keep their schedule: a late frame runs at once and is never skipped."""
+    """A simulation on CLOCK_MONOTONIC. Frames keep their schedule: a late frame runs immediately; none is skipped."""
 
     _begun: float | None = None
     _crowded = False
@@ -58,13 +58,13 @@ class WallTrial(Simulation):
         return stopped_s
 
     def crowded(self) -> bool:
-        """Return whether other programs often kept the simulator and the node waiting for a processor."""
+        """Return whether other programs often made the simulator and the node wait for a processor."""
         return self._crowded
 
     def _discover(self) -> None:
         """Wait until the node is in the graph and its topics are recorded, or until it has exited.
 
-        The first command ends the wait at once, since the turtle moves from then on.
+        The first command ends the wait immediately, since the turtle moves from then on.
         """
         deadline = time.monotonic() + DISCOVERY_S
         found = False

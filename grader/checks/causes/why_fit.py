@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from grader.exercise.call_inputs import Arc
 
 ROUGH_M = 0.02
-"""How far a mean or an extreme of noisy points may be from that of exact points (m), in addition to the tolerance."""
+"""The error of a mean or extreme of noisy points that is allowed in addition to the tolerance (m)."""
 
 
 @dataclass(frozen=True)

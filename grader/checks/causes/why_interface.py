@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
 WRAPPED = {"_FeedbackMessage": "feedback", "_GetResult_Response": "result"}
-"""The ending of the type of a message from rclpy -> the field with the content."""
+"""The ending of the type name of an rclpy message -> the field with the content."""
 OF_A_RESULT = ("status", "result")
 NO_OBJECT = re.compile(r"^(Action|Service) classes can not be instantiated")
 OF_AN_ACTION = re.compile(r"service type provided is not valid \(<class '\w+\.action\.")
 PARTS = {"Action": "Goal", "Service": "Request"}
 """The kind of interface -> the part that a client creates."""
 OF_A_TYPE = "_TYPE_SUPPORT"
-"""rclpy needs this attribute of each type."""
+"""The attribute that rclpy requires of every type."""
 
 
 def why_interface(scene: CrashScene) -> Cause | None:

@@ -22,7 +22,7 @@ STILL_S = 3.0
 """A turtle that has not moved for this long stands still (s)."""
 STILL_M = 0.05
 NEAR_M = 1.0
-"""A turtle that stands still this near to a target has reached it (m)."""
+"""A turtle that stands still this close to a target has reached it (m)."""
 CATCH = "/catch"
 OWN_POSE = "/turtle1/pose"
 

@@ -146,7 +146,7 @@ def _only_waits(loop: ast.While) -> bool:
 
 
 WAITS = ("spin_until_future_complete", "send_goal", "cancel_goal", "get_result")
-"""Methods that wait for a response. Those of actions also exist with the ending _async."""
+"""Methods that wait for a response. Those for actions also exist with the ending _async."""
 
 
 def waits_inside(node: ast.AST) -> bool:

@@ -31,7 +31,7 @@ SHORT_M = 0.05
 """A shorter piece than this is not an arc."""
 FEW = 5
 MOST_ROOM_M = 2.5
-"""The radius of a circle that surely fits on either side of a random start (m)."""
+"""The radius of a circle that is certain to fit on either side of a random start (m)."""
 
 
 @dataclass(frozen=True, kw_only=True)

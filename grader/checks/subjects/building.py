@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 INSTALLED_MODULE = re.compile(r"(?:local/)?lib/python[\d.]+/(?:site|dist)-packages/(?P<path>.+\.py)")
 LAST_WORDS = re.compile(r"^(?:error|[\w.]*Error|[\w.]*Exception)\b.*", re.MULTILINE)
 SETUP_PY_FRAME = re.compile(r"(?P<before>, in run_setup\n.*\n(?:[ ^~]+\n)?\s+File )\"<string>\"")
-"""The form of setup.py in a traceback when colcon runs it to read the arguments of setup()."""
+"""The traceback entry for setup.py when colcon runs it to read the arguments of setup()."""
 UNREAD_SETUP = "return ast.literal_eval(output)"
-"""The line of colcon that reads the arguments of setup()."""
+"""The line in colcon's source that reads the arguments of setup()."""
 NO_FILE = re.compile(r"can't copy '?(?P<file>[^':]*)'?: doesn't exist")
 IGNORE_MARKERS = (IGNORE_MARKER, "AMENT_IGNORE", "CATKIN_IGNORE")
 """Files with these names make colcon ignore a ROS 2 package."""

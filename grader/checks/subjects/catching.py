@@ -31,7 +31,7 @@ decides."""
 SLACK_M = 0.1
 """The additional distance that is allowed because a pose is slightly old when the node decides (m)."""
 OFTEN = 3
-"""The number of calls for one target that are too many. A node may call twice if a response is late."""
+"""This many calls for one target are too many. A node may call twice if a response is late."""
 
 
 @dataclass(frozen=True, kw_only=True)

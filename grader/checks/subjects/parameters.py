@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 CLOSE = 1e-6
 SET = ("/set_parameters", "/set_parameters_atomically")
-"""The services of a node that set one parameter, and several at once."""
+"""The services of a node that set parameters one after the other, or all together."""
 DOUBLE = 3
-"""The number of a double in rcl_interfaces/msg/ParameterType."""
+"""The number that stands for a double in rcl_interfaces/msg/ParameterType."""
 
 
 @dataclass(frozen=True, kw_only=True)

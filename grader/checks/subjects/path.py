@@ -37,7 +37,7 @@ LIVES_S = 1.0
 AT_ONCE_S = 0.05
 """A command that another one follows within this time (s) has no effect."""
 LATE_S = 3.0
-"""If the first command arrives later than this (s), it explains a circle that is too short."""
+"""If the first command arrives later than this (s), the delay explains a circle that is too short."""
 POLYGON_SHARE = 0.6
 """If more than this fraction of the trajectory is straight, the message describes sides and corners."""
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Command
 
 EARLY_S = 0.1
-"""A call of the trial may be made this much before its planned time because of rounding (s)."""
+"""The trial may make a call this much earlier than planned because of rounding (s)."""
 BEFORE_S = 1.0
 """The turtle must move during this time before the pause (s)."""
 

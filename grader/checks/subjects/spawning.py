@@ -31,7 +31,7 @@ LATE_S = 1.05
 AT_ONCE_S = 0.1
 """The maximum time between the end of the announcements of a turtle and its removal (s)."""
 OFTEN = 3
-"""The maximum number of messages, as a multiple of the timer's messages. A node may also publish each change."""
+"""The maximum number of messages, as a multiple of the timer's messages. A node may also publish after each change."""
 ALIKE_M = 0.01
 """Places that differ by less than this are the same (m)."""
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 SIDES = 4
 ORDINALS = ("first", "second", "third", "fourth")
 STRAIGHT_RAD_M = 0.2
-"""A part that bends by at most this many radians per metre (a radius of 5 m) counts as straight, not as a curve."""
+"""A part that bends by at most this many radians per metre (a radius of 5 m) counts as straight."""
 CURVED_SHARE = 0.1
 """If more than this fraction of the trajectory is curved, it is not a square."""
 SHORT_M = 0.05
