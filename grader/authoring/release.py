@@ -3,9 +3,9 @@
     python -m grader.authoring.release [--check]
 
 First, source notebooks are updated from the files and checks of the solution. Then marked regions
-(grader/exercise/markers.py) are replaced with their starting point. Notebooks are converted in the same way as by
-nbgrader (grader/notebook/released.py). All other files are copied. A file that becomes empty is not written, because
-the student creates it.
+(grader/exercise/markers.py) are replaced with their starting point. Notebooks are converted as nbgrader does it
+(grader/notebook/released.py). All other files are copied. A file that becomes empty is not written, because the student
+creates it.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ else:
 
 
 RECORDED = (".mcap", "/metadata.yaml")
-"""The endings of the files of a bag, which each student records."""
+"""The file name extensions of a bag, which each student records."""
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,13 @@ tests/unusual that follow ROS time. A package that still passes is ignored. For 
 benchmark prints how often each of these is true:
 
 - first: the first failed check names the cause, at a line that must change;
-- at all: any failed check names the cause like this;
+- at all: any failed check names the cause in this way;
 - false: a failed check names a wrong cause. A diagnosis that only repeats what was observed does not count.
 
-Each is counted twice: by the diagnoses that the operators expect, and by facts without diagnoses (the difference
-between the two packages, the source and the recording; grader/tests/operators/facts.py). The benchmark also lists what
-the reports missed, with the difference. `--keep` stores recordings, and `--again` judges stored recordings again
-without running anything.
+Each is counted twice: according to the diagnoses that the operators expect, and according to facts without diagnoses
+(the difference between the two packages, the source and the recording; grader/tests/operators/facts.py). The benchmark
+also lists what the reports missed, with the difference. `--keep` stores recordings, and `--again` judges stored
+recordings again without running anything.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ OBSERVATIONS = frozenset(
         "build-failed", "wrong-position", "wrong-distance",
     }
 )  # fmt: skip
-"""The diagnoses that repeat only what was observed, without naming a cause."""
+"""The diagnoses that only repeat what was observed, without naming a cause."""
 
 
 @dataclass(frozen=True)

@@ -51,7 +51,7 @@ class CpuGroup:
 
 @contextmanager
 def cpu_group() -> Iterator[CpuGroup]:
-    """Yield a new group, which is removed afterwards if all its processes have ended."""
+    """Yield a new group, which is removed afterwards if all its processes have exited."""
     folder = TREE / "cpuacct" / f"grader-benchmark-{os.getpid()}-{next(_numbers)}"
     try:
         folder.mkdir()

@@ -2,7 +2,8 @@
 
     python -m grader.benchmarks.open_page [--times 5] [--idle 30]
 
-Both grade the same saves in the same home alternately. The page runs in a real browser, whose CPU time is not counted.
+Both grade the same saves alternately in the same home folder. The page runs in a real browser, whose CPU time is not
+counted.
 """
 
 from __future__ import annotations

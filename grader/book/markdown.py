@@ -30,7 +30,7 @@ _NEIGHBOURS = re.compile(r"(Before|Next): ")
 
 @dataclass(frozen=True)
 class Section:
-    """A heading with its level (2 or 3) and its anchor, and the plain text below it for the search."""
+    """A heading with its level (2 or 3) and its anchor, and the plain text below it for the search index."""
 
     level: int
     title: str

@@ -23,7 +23,7 @@ POLICY = (
 
 
 def lesson_page(lesson: Lesson, among: Sequence[Lesson], repository: str = "", policy: str = POLICY) -> str:
-    """Return the page of a lesson. `among` are all lessons in order, and `repository` is the URL of the sources."""
+    """Return a lesson's page. `among` contains all lessons in order, and `repository` is the URL of the sources."""
     at = [each.id for each in among].index(lesson.id)
     return fill("lesson.html", lesson_values(lesson, among, at, repository, policy), ASSETS)
 

@@ -1,4 +1,4 @@
-"""The index for the search of the pages: one entry for each section of each lesson."""
+"""The search index for the pages: one entry for each section of each lesson."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Run the node of a step beside a turtlesim with its view. Ctrl-C ends both."""
+"""Run the node of a step together with a turtlesim and its view. Ctrl-C stops both."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 READY_S = 30.0
 """The maximum time for starting turtlesim (s)."""
 ENDS_S = 5.0
-"""The time that a program has to end after Ctrl-C (s) before it is killed."""
+"""The time that a program has to exit after Ctrl-C (s) before it is killed."""
 
 
 @dataclass(frozen=True)
@@ -65,10 +65,10 @@ def executables(exercise: Exercise) -> list[str]:
 
 
 def run(program: Program, *, view: bool) -> int:
-    """Build the package, and run the program beside a turtlesim until Ctrl-C. Return the exit code for the user.
+    """Build the package, and run the program with a turtlesim until Ctrl-C. Return the exit code for the user.
 
-    `view` shows the turtle on a page. If a turtlesim is running already, the program drives its turtle. The exit code
-    is 0 after Ctrl-C, and 1 if the build failed or the node ended with an error. Their output is on the terminal.
+    `view` shows the turtle on a page. If a turtlesim is already running, the program drives its turtle. The exit code
+    is 0 after Ctrl-C, and 1 if the build failed or the node exited with an error. Their output is on the terminal.
     """
     from grader.ros import shell
 
@@ -141,7 +141,7 @@ def _with_overlay(env: Mapping[str, str], overlay: Path, folder: Path) -> dict[s
 
 
 def turtle_is_there(env: Mapping[str, str]) -> bool:
-    """Return whether a turtlesim runs already, for example `grader sim --view` in another terminal."""
+    """Return whether a turtlesim is already running, for example `grader sim --view` in another terminal."""
     start = interpreter("-m", "grader.ros2.main", "node", "list", env=env, searches=True)
     listed = subprocess.run(start.argv, env=start.env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
     return b"/turtlesim" in listed.stdout.split()
@@ -156,7 +156,7 @@ def _beside_another(env: Mapping[str, str]) -> bool:
 
 @contextmanager
 def _turtlesim(env: Mapping[str, str], *, view: bool) -> Iterator[None]:
-    """Run turtlesim, and end it at the end of the block.
+    """Run turtlesim, and stop it at the end of the `with` block.
 
     Raises:
         MachineError: it did not start; it has printed the reason.

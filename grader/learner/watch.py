@@ -34,9 +34,9 @@ DEBOUNCE_MS = 50
 """The time within which events count as one (ms), because an editor that saves by renaming causes several events."""
 
 _STEP_MS = 25
-"""The interval of polling for new events (ms). At 10 ms, an idle watch uses 0.7 % of a core."""
+"""The polling interval for new events (ms). At 10 ms, an idle watch uses 0.7 % of a core."""
 _LOOK_MS = 500
-"""The interval of checking whether the path still leads to the watched folder (ms)."""
+"""The interval between checks that the path still leads to the watched folder (ms)."""
 
 
 @dataclass(frozen=True)

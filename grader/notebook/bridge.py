@@ -25,7 +25,7 @@ from grader.notebook.frames import CHANNELS, CHUNK, ORDER, Unpacker, packed
 IDENTITY = b"bridge"
 """The identity on all channels. The kernel sends an input request to the identity that sent the code."""
 RETRY_MS = 10
-"""The interval of trying to connect to a kernel that is starting (ms)."""
+"""The interval between attempts to connect to a kernel that is starting (ms)."""
 LAST_MS = 100
 """The maximum time to wait for the last messages of a kernel that has exited (ms)."""
 _IOPUB = CHANNELS.index("iopub")

@@ -89,7 +89,7 @@ def ended(text: str) -> str:
 
 
 def counts(file: str | None, start: str | None) -> Literal["cell", "file"]:
-    """Return which text counts: that of the file if the student has changed the file, or else that of the cell.
+    """Return the text that counts: the file's if the student has changed the file, or else the cell's.
 
     `file` is the text of the file, and `start` is its text in the starting point. Both are None for a missing file.
     """

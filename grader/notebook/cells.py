@@ -45,7 +45,7 @@ class Cells:
                 print(f"Added next to this notebook: {a_list(written)}.")
 
     def lesson(self, line: str) -> None:
-        """`%lesson`: show the lesson of this notebook's step. `%lesson 03-circle-publisher`: of another step."""
+        """`%lesson`: show the lesson of this notebook's step. `%lesson 03-circle-publisher`: of that step."""
         exercise = find_exercise(line.strip()) if line.strip() else self.current()
         if not grading():
             lesson.show(exercise.folder / "lesson.md")

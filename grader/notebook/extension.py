@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 def load(shell: InteractiveShell) -> None:
     """Add the magics and functions to this shell."""
-    # A sandbox needs no guardian, because its processes end together with it.
+    # A sandbox needs no guardian, because its processes are killed together with it.
     if not confined():
         _guard()
     cells = Cells()

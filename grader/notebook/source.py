@@ -27,8 +27,7 @@ def refreshed(data: bytes, exercise: Exercise, files: Mapping[str, bytes], name:
 
     Raises:
         UsageError: the data is not a notebook, or a cell writes a file that is not in the solution. The message
-        contains
-            `name` and the cell.
+            contains `name` and the number of the cell.
     """
     try:
         notebook: dict[str, Any] = json.loads(data)

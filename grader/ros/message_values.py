@@ -76,8 +76,7 @@ def fill(message: Any, values: Any, stamps: list[Stamper] | None = None) -> Any:
     """Set the fields of a message that are in `values`, and return the message. Other fields keep their values.
 
     If `stamps` is given, a header may be "auto" and a time may be "now". The functions that set these fields are
-    appended to the
-    list.
+    appended to this list.
 
     Raises:
         MisfitError: the message has no such field, or the value does not match the type of the field.

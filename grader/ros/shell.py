@@ -39,7 +39,7 @@ def users_environment(
 def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sourced: bool = False) -> str:
     """Return code for bash, zsh and sh that turns `env` into `wanted` and sets up completion for our commands.
 
-    `sourced` is whether the ROS 2 installation is a sourced one, which may have its own rqt_graph.
+    `sourced` is True if the ROS 2 installation is a sourced one, which may have its own rqt_graph.
     """
     lines = [f"# For `source <(grader env)`: ROS 2 Jazzy, in domain {wanted['ROS_DOMAIN_ID']}."]
     lines += [f"export {name}={shlex.quote(value)}" for name, value in wanted.items() if env.get(name) != value]

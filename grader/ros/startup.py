@@ -1,4 +1,4 @@
-"""The start of our commands: replace them with the real ones where possible, and add ROS 2 to the environment."""
+"""The start-up of our commands: replace them with the real ones where possible, and add ROS 2 to the environment."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _STARTED_AGAIN = "_GRADER_ROS2_STARTED_AGAIN"
 
 
 def hand_over(command: str, package: str) -> None:
-    """Replace this process with the real command if a sourced ROS 2 has the package, whatever the order in PATH."""
+    """Replace this process with the real command if a sourced ROS 2 has the package, regardless of the PATH order."""
     ours = Path(sys.argv[0])
     for prefix in filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
         theirs = Path(prefix, "bin", command)
@@ -27,7 +27,7 @@ def hand_over(command: str, package: str) -> None:
 
 
 def see_to_environment(needed: Collection[str]) -> None:
-    """Restart this command with ROS 2 in the environment, unless all needed packages are found already.
+    """Restart this command with ROS 2 in the environment, unless all needed packages can already be found.
 
     Raises:
         MachineError: ROS 2 was not found.

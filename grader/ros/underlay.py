@@ -154,7 +154,7 @@ def _one_at_a_time(tell: Callable[[str], None]) -> Iterator[None]:
 
 
 def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> None:
-    # These folders are left over from builds that were killed, since only the process with the lock builds.
+    # These folders are left over from builds that were killed, since only the process that holds the lock builds.
     for leftover in prefix.parent.glob(f"{_TEMPORARY}*"):
         shutil.rmtree(leftover, ignore_errors=True)
     tell("Building the turtlesim interfaces, once; this takes about ten seconds.")
@@ -228,7 +228,7 @@ def _percent(line: str) -> int | None:
 
 
 def _make_readable(folder: Path) -> None:
-    """Let every user read the files (a+rX) whatever the umask is, because a trial may run as another user."""
+    """Let every user read the files (a+rX) regardless of the umask, because a trial may run as another user."""
     for path in [folder, *folder.rglob("*")]:
         if not path.is_symlink():
             mode = path.stat().st_mode

@@ -6,10 +6,10 @@ bubblewrap creates two kinds of containers:
   with separate pid and network namespaces, and only the loopback interface. They receive a student node's messages,
   with libraries that may have security holes;
 - a **cell** contains a student's process. It has its own user, pid, ipc, uts, cgroup and mount namespaces, no network
-  but the room's, no files of the disk except those in `View`, a filter of system calls (system_calls.py), and
+  but the room's, no files from the disk except those in `View`, a system call filter (system_calls.py), and
   limits on memory, processes, files, CPU and disk. usage.py watches totals that the kernel does not limit.
 
-These functions only return command lines. The caller starts and ends the process. Input and output use pipes.
+These functions only return command lines. The caller starts and stops the process. Input and output use pipes.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ ROOM_DISK = 256 * MIB
 
 @dataclass(frozen=True)
 class View:
-    """The paths of the disk that are visible in a room or cell, unchanged. `hidden` folders are empty there."""
+    """The paths on the disk that are visible in a room or cell, unchanged. `hidden` folders are empty there."""
 
     read_only: tuple[Path, ...]
     hidden: tuple[Path, ...] = ()
@@ -76,7 +76,7 @@ def room(
     command += ["--die-with-parent", "--size", str(ROOM_DISK), "--tmpfs", "/tmp", "--perms", "0777", "--dir", str(HOME)]
     command += [*_disk(view), *(["--proc", "/proc"] if user is None else ["--dir", "/proc"])]
     # rclpy loads LTTng, which keeps a file here. If it cannot, its threads wait for any child of the process and may
-    # collect the exit code of a node that ends at this moment.
+    # collect the exit code of a node that exits at this moment.
     command += ["--size", str(ROOM_DISK), "--perms", "1777", "--tmpfs", "/dev/shm"]
     command = [*_ordinary(command, user), *_environment(env), "--chdir", str(cwd or HOME), "--"]
     return [*command, *_stay_ordinary(user), *argv]
@@ -95,7 +95,7 @@ def cell(
 ) -> list[str]:
     """Return the command that runs `argv` in a cell. With `network`, the cell uses the caller's network (a room's).
 
-    `filter_fd` is the filter of system calls from system_calls.call_filter(). The process must inherit it. A root
+    `filter_fd` is the system call filter from system_calls.call_filter(). The process must inherit it. A root
     caller must put the cell into a room, in which it is an ordinary user, because the limit on processes does not apply
     to root. bubblewrap writes JSON with the pid of the cell's first process to `info_fd`.
     """

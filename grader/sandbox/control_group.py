@@ -1,4 +1,4 @@
-"""Control groups: the kernel limits the total use of the processes of a cell, if the grader may create groups.
+"""Control groups: the kernel limits the total resource use of a cell, if the grader may create groups.
 
 Root may create them nearly everywhere. An ordinary user may if systemd has delegated a part of the tree and the
 grader runs in it. The limit of the group is `ABOVE` higher than that of usage.py, so that usage.py stops a cell first
@@ -131,7 +131,7 @@ def _own() -> Iterator[tuple[str, str]]:
 
 
 def _remove(folder: Path) -> None:
-    """Remove a group. The kernel refuses this until all processes of the group have ended."""
+    """Remove a group. The kernel refuses this until all processes in the group have exited."""
     until = time.monotonic() + GONE_S
     while folder.is_dir() and time.monotonic() < until:
         with suppress(OSError):

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 MIB = 1024 * 1024
 MOST_SIGNALS = 1000
-"""The number of signals and POSIX timers of a cell that may be pending. The kernel also counts them per user."""
+"""The maximum number of pending signals and POSIX timers of a cell. The kernel also counts them per user."""
 NO_CORE_DUMP = 1
 """The limit on core dumps (bytes). With 0, the kernel would still pass them to another program: core(5)."""
 MOST_OTHERS = 4096
@@ -23,7 +23,7 @@ MOST_OTHERS = 4096
 
 @dataclass(frozen=True)
 class Limits:
-    """The limits of a cell. `memory` limits the address space of each process, `disk` each writable tmpfs (bytes)."""
+    """The limits of a cell. `memory` limits each process's address space, and `disk` each writable tmpfs (bytes)."""
 
     memory: int = 4096 * MIB
     total_memory: int = 2048 * MIB

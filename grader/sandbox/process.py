@@ -1,4 +1,4 @@
-"""Run a child process until it ends, with input, limited output and a deadline."""
+"""Run a child process until it exits, with input, limited output and a deadline."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _CHUNK = 1024 * 1024
 class Finished:
     """The result of a child process.
 
-    `too_much` is whether it was stopped because it wrote too much standard output. `out_of` is the limit of `watch`
+    `too_much` is True if it was stopped because it wrote too much standard output. `out_of` is the limit of `watch`
     that it exceeded.
     """
 
@@ -131,7 +131,7 @@ def run(
     pass_fds: Sequence[int] = (),
     watch: Limits | None = None,
 ) -> Finished:
-    """Run `argv` in a new session, until it ends. The beginning and the end of standard error are kept.
+    """Run `argv` in a new session until it exits. The beginning and the end of standard error are kept.
 
     With `watch`, the child is killed when its processes exceed these limits together.
 

@@ -3,7 +3,7 @@
 The filter forbids calls that no node needs and that attackers have used to escape from sandboxes. A list of allowed
 calls would break with a new Python or Fast DDS. Namespaces, limits and mounts are the first defence; this is the
 second. It also forbids memory that counts neither for a tmpfs nor for a process (memfd, System V shared memory), and
-calls that use up resources of a user or of the machine, because other cells may have the same user.
+calls that use up a user's or the machine's resources, because other cells may have the same user.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ DENIED = {
         "io_uring_register": 427, "modify_ldt": 154, "fanotify_init": 300, "vmsplice": 278, "lookup_dcookie": 212,
         "uselib": 134, "_sysctl": 156, "nfsservctl": 180,
     },
-    # A user may have 128 instances of inotify. All users together may have 65,536 asynchronous requests.
+    # A user may have 128 inotify instances. All users together may have 65,536 asynchronous requests.
     "resources that one cell could use up for others": {
         "inotify_init": 253, "inotify_init1": 294, "inotify_add_watch": 254, "inotify_rm_watch": 255,
         "io_setup": 206, "io_destroy": 207, "io_getevents": 208, "io_submit": 209, "io_cancel": 210,

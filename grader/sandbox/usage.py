@@ -1,4 +1,4 @@
-"""Watch the total use of a cell: the memory and number of its processes, its disks, and the files on them.
+"""Watch the total resource use of a cell: the memory and number of its processes, its disks, and the files on them.
 
 Resource limits apply to each process separately, and bubblewrap limits the bytes of a tmpfs but not its files. Control
 groups limit totals, but the grader may not be allowed to create them. Checking ten times per second works everywhere.
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 EVERY_S = 0.1
 LAUNCHERS = 16
-"""The processes beyond the limit that are not the student's: bubblewrap and other processes that start a cell.
+"""The number of processes above the limit that are not the student's: bubblewrap and other processes that start a cell.
 
 In a cell, the kernel counts processes too and refuses new ones before this number is reached.
 """
@@ -63,13 +63,13 @@ class Guard:
         self._thread.join()
 
     def worked_s(self, begin: float, end: float) -> float:
-        """Return the least CPU time (s) that the cell's processes used between two times of CLOCK_MONOTONIC."""
+        """Return the minimum CPU time (s) that the cell's processes used between two times of CLOCK_MONOTONIC."""
         first = self._worked[0][1]
         before = max((cpu for at, cpu in self._worked if at <= begin), default=first)
         return max((cpu for at, cpu in self._worked if at <= end + EVERY_S), default=first) - before
 
     def ready_s(self, *, but: int) -> float:
-        """Return how long all processes of the cell except `but` ran or waited for a processor so far (s).
+        """Return how long all processes of the cell except `but` have run or waited for a processor (s).
 
         A process that is ready to run uses less CPU time on a crowded machine, but it is ready for as long as on an
         idle one. Only the first thread of each process is counted.
@@ -121,7 +121,7 @@ def _threads(pid: int) -> int:
 
 
 def _cpu_s(pid: int) -> float:
-    """Return the CPU time of the process and of its ended children (s)."""
+    """Return the CPU time of the process and of its exited children (s)."""
     try:
         fields = _read(f"/proc/{pid}/stat").rpartition(")")[2].split()
     except OSError:

@@ -1,9 +1,9 @@
 """Choose a different user for each room or cell when root grades.
 
-The kernel limits some resources per user: pages of pipes, instances of inotify, pending signals and timers, and sockets
-in transit. A cell could use them up for other cells of its user. So each room or cell gets a user id from a range
-that nothing else uses, and keeps it until it ends. To reserve an id, the grader locks the byte with this number in a
-file. All graders of a machine respect the lock, which ends with the grader.
+The kernel limits some resources per user: pipe pages, inotify instances, pending signals and timers, and sockets
+in transit. A cell could use them up for other cells of its user. Therefore, each room or cell gets a user id from a
+range that nothing else uses, and keeps it until it ends. To reserve an id, the grader locks the byte with this number
+in a file. All graders on a machine respect the lock, which is released when the grader exits.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ TRIES = 10_000
 
 @contextmanager
 def cell_user() -> Iterator[int | None]:
-    """Yield a user id that no other room or cell of this machine uses, or None if the caller is not root.
+    """Yield a user id that no other room or cell on this machine uses, or None if the caller is not root.
 
-    Leave the context after the last process of the room or cell has ended.
+    Leave the context after the last process in the room or cell has exited.
 
     Raises:
         MachineError: all ids are in use, or the file cannot be opened.

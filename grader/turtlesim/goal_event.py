@@ -13,7 +13,7 @@ What = Literal["accepted", "cancel requested", "result requested", "succeeded", 
 class GoalEvent:
     """An event of the goal with this id. turtlesim accepts every goal.
 
-    `content` is the Goal if the goal was accepted, the Result if the goal has ended, or else None.
+    `content` is the Goal if the goal was accepted, the Result if the goal has ended, and None otherwise.
     """
 
     action: str

@@ -31,7 +31,7 @@ Rgb = tuple[int, int, int]
 
 
 def normalize(angle: float) -> float:
-    """Return an equal direction as an angle in [-pi, pi), or nan for nan and infinity."""
+    """Return the same direction as an angle in [-pi, pi), or nan for nan and infinity."""
     if -math.pi <= angle < math.pi:
         return angle
     if not math.isfinite(angle):
@@ -60,7 +60,7 @@ class Pen:
 
 
 class State(NamedTuple):
-    """The state of a turtle after a frame, in m, m, rad, m/s (never negative) and rad/s. `wall`: a wall stopped it."""
+    """The state of a turtle after a frame, in m, m, rad, m/s (never negative) and rad/s. `wall`: it hit a wall."""
 
     x: float
     y: float
@@ -184,7 +184,7 @@ class Turtle:
         for request in self._teleports:
             x, y = self.x, self.y
             if isinstance(request, _Absolute):
-                # turtlesim clamps the position at the upper edge here, but at the other sides only later.
+                # turtlesim clamps the position at the upper edge here, but at the other edges only later.
                 self.x, self.y = request.x, min(request.y, SIDE_M)
                 self.theta = normalize(request.theta)
             else:
@@ -206,7 +206,7 @@ class Turtle:
             return
         self._vx = self._vy = 0.0
         self._spin = -ROTATE_SPEED if rotation.remaining < 0.0 else ROTATE_SPEED
-        # A rotation may last longer than the time-out of commands.
+        # A rotation may last longer than the command time-out.
         self.last_command_s = now_s
 
     def _end_rotation(self, rotation: Rotation, end: Literal["succeeded", "canceled"]) -> None:
