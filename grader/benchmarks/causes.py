@@ -183,7 +183,7 @@ def tell(all_: Iterable[Judged], *, everything: bool = False) -> None:
 
 
 def _explain(judged: Judged) -> None:
-    """Print what was changed and what the report contains."""
+    """Print the changes to the package and the failed checks in the report."""
     encoded = [
         {path: text.encode() for path, text in files.items()} for files in (judged.made.right, judged.made.files)
     ]

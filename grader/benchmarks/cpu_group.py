@@ -43,7 +43,7 @@ class CpuGroup:
             time.sleep(0.01)
 
     def cpu_s(self) -> float | None:
-        """Return the CPU time that the group has used so far (s), or None without a group."""
+        """Return the CPU time that the group has used (s), or None without a group."""
         if self.folder is None:
             return None
         return int((self.folder / "cpuacct.usage").read_text()) / 1e9

@@ -29,7 +29,7 @@ MOST_DEEP = 4
 class Refused:
     """The submission cannot be graded. `reason` is a text for the student.
 
-    `of_the_machine` is whether the machine failed while reading the submission. Other submissions are still graded.
+    `of_the_machine` is True if the machine failed while reading the submission. Other submissions are still graded.
     """
 
     reason: str

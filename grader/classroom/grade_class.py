@@ -113,7 +113,7 @@ def _engine_is_known(request: Request) -> bool:
 
 
 def exit_code(graded: Sequence[Result], fail_under: float | None) -> int:
-    """Return 3 if the machine failed, 1 if a submission got less than `fail_under` percent, or else 0."""
+    """Return 3 if the machine failed, 1 if a submission got less than `fail_under` percent, and 0 otherwise."""
     if any(result.report.with_status(Status.ERROR) for result in graded):
         return 3
     shares = [result.report.points / result.report.max if result.report.max else 0.0 for result in graded]

@@ -67,7 +67,7 @@ class Worker:
         return answer
 
     def last_words(self) -> str:
-        """Return how the process exited and the end of its output, as text for the instructor."""
+        """Return an explanation for the instructor: how the process exited, and the end of its output."""
         code = self.process.wait()
         self._errors.seek(0)
         answer = self._errors.read()[-_LAST_WORDS:].decode("utf-8", "replace").strip()

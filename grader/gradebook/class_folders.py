@@ -79,7 +79,7 @@ def remember(folder: Path) -> None:
 
 
 def _is_known(course: Path) -> bool:
-    """Return whether the folder is the grader's own course, or was created by `grader class new`."""
+    """Return whether the folder is this copy of the course, or was created by `grader class new`."""
     try:
         made = _made().read_text("utf-8").splitlines()
     except (OSError, UnicodeDecodeError):

@@ -2,8 +2,8 @@
 
     python -m grader.gradebook.relay FOLDER
 
-FOLDER contains `order.json` (what to start) and nbgrader's connection file. The relay creates its sockets there. Only
-the caller has access to this folder. It is not visible in the cell. Messages from the kernel arrive through a pipe
+FOLDER contains `order.json` (the command to start) and nbgrader's connection file. The relay creates its sockets there.
+Only the caller has access to this folder. It is not visible in the cell. Messages from the kernel arrive through a pipe
 (grader.notebook.bridge). If a budget or a limit is exceeded, the relay stops the cell, writes the reason to `why`, and
 exits. It also exits when its standard input is closed, which happens when nbgrader exits.
 """

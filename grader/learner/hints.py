@@ -93,7 +93,7 @@ def _next(exercise: Exercise, wanted: list[int], known: StepProgress) -> int | N
     unread = [index for index in in_order if index not in known.read]
     if unread:
         return unread[0]
-    # All hints were read. Repeat the last one for a failed check, or else the last hint.
+    # All hints were read. Repeat the last one for a failed check, or the last hint if no check failed.
     return max(failed or open_, default=None)
 
 

@@ -68,7 +68,7 @@ def program() -> str | None:
 def room(
     argv: Sequence[str], view: View, *, env: Mapping[str, str], user: int | None, cwd: Path | None = None
 ) -> list[str]:
-    """Return the command that runs `argv` as an ordinary user in a separate network; for our own processes.
+    """Return the command that runs `argv` as an ordinary user in a separate network. It is for our processes.
 
     `user` comes from user.cell_user(): the user id to switch to if the caller is root, or None.
     """
@@ -156,7 +156,7 @@ def require(*, trusted: bool = False) -> bool:
 
 
 def why_unavailable() -> str | None:
-    """Try a cell. Return None if it works, or else the reason and what to do."""
+    """Try a cell. Return None if it works, and otherwise the reason and a remedy."""
     if program() is None:
         return _not_installed()
     view = View(read_only=())

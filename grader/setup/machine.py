@@ -239,7 +239,7 @@ def missing_of_python(
     newer: str = "",
     refused: Sequence[Python] = (),
 ) -> List[Need]:
-    """Return what the chosen Python lacks, or everything if no Python was chosen.
+    """Return the missing parts of the chosen Python, or all parts if no Python was chosen.
 
     `newer` is the package of a newer Python for a system whose default Python is too old. `refused` contains the
     Pythons of the `wanted` version that cannot import what the sourced ROS 2 needs.
@@ -269,7 +269,7 @@ def missing_of_python(
 def lack_message(
     needs: Sequence[Need], manager: Optional[package_managers.Manager], *, root: bool, why: str = ""
 ) -> str:
-    """Return a message with what the system lacks, the command that installs it, and `why` it was not installed."""
+    """Return a message that states what the system lacks, which command installs it, and `why` it was not installed."""
     whats = [f"  - {what}" for what in dict.fromkeys(need.what for need in needs)]
     lines = ["The course needs the following, which this system does not have:", *whats]
     lines += [f"They were not installed: {why}."] if why else []

@@ -1,4 +1,4 @@
-"""Messages about why a set-up stopped and what to do, from an error or from an installer's output.
+"""Messages that explain why a set-up stopped and what to do, from an error or an installer's output.
 
 Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """

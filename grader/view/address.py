@@ -49,7 +49,7 @@ class Place:
 
 
 def listen(kind: str, port: int | None = None) -> Place:
-    """Listen on `port`, or else on the last port of this kind of view, or else on a free port.
+    """Listen on `port` if given, or on the last port of this kind of view if it is free, or on any free port.
 
     Raises:
         UsageError: the port is not available.
