@@ -27,9 +27,9 @@ def end_s(recording: Recording) -> float:
 def ended_at_start(recording: Recording) -> bool:
     """Return whether the node exited on its own before it ran.
 
-    A node ran if it raised an exception inside rclpy's spin, no matter how soon. This depends neither on the clock nor
-    on when the node was first observed. Without such an exception, a node that exits within the first moment did not
-    run.
+    A node that raised an exception inside rclpy's spin did run, no matter how soon it exited. This depends neither on
+    the clock nor on when the node was first observed. Without such an exception, a node that exits in the first moment
+    did not run.
     """
     end = recording.end
     return end.by == "itself" and end.t_s <= START_S and not spun(recording)
@@ -44,7 +44,7 @@ def commands(recording: Recording) -> tuple[Command, ...]:
     """Return the commands that arrived before SIGINT, in the order of arrival.
 
     If all of them arrived at the very start, return an empty tuple. Commands that are published before discovery is
-    over are usually lost. Whether they arrive depends on the machine, and a report must not depend on that.
+    over are usually lost. Their arrival depends on the machine, and a report must not depend on that.
     """
     until = end_s(recording)
     found = tuple(command for command in recording.commands if command.t_s < until)

@@ -1,4 +1,4 @@
-"""Arrivals of repeated messages: the intervals between them, except those that a stall of the machine changed."""
+"""Arrivals of repeated messages: the intervals between them, except those changed by a stall of the machine."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 class Measured:
     """Arrival times (s), the intervals between them, their mean, and the times before the first and after the last one.
 
-    `intervals` and `mean_s` leave out the intervals that a stall of the machine changed, and those that begin in the
-    first moment (`activity.START_S`). `begins` are the times at which the intervals begin. `trusted` is the share of
-    intervals that no stall changed.
+    `intervals` and `mean_s` leave out the intervals that were changed by a stall of the machine, and those that begin
+    in the first moment (`activity.START_S`). `begins` contains the start times of the intervals. `trusted` is the share
+    of intervals that were not changed by a stall.
     """
 
     arrivals: tuple[float, ...]
@@ -39,7 +39,7 @@ def measure_arrivals(recording: Recording, times_s: Iterable[float]) -> Measured
     if not arrivals:
         return Measured((), (), (), 1.0, 0.0, until, until)
     every = list(pairwise(arrivals))
-    # Messages that are sent before the clock starts arrive when discovery is over, and not when they are sent.
+    # Messages that are sent before the clock starts arrive when discovery is over, not when they are sent.
     pairs = [pair for pair in every if pair[0] > activity.START_S] or every
     trusted = [pair for pair in pairs if not any(recording.stalled(t_s) for t_s in pair)]
     intervals = tuple(later - earlier for earlier, later in trusted)

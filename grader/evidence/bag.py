@@ -21,7 +21,7 @@ _VERSION: Literal[9] = 9
 
 
 def write_bag(folder: Path, messages: Sequence[Message], prefixes: Iterable[Path]) -> None:
-    """Write the messages in order to a new folder. `prefixes` have the .msg files of types that rosbags does not have.
+    """Write the messages in order to a new folder. `prefixes` contain the .msg files of types unknown to rosbags.
 
     The timestamp is the arrival time on the trial's clock (ns), or 0 for messages from before the scenario. Messages
     that arrived at the same instant are a nanosecond apart, because readers sort by timestamp.

@@ -49,7 +49,7 @@ class Run:
 
     recording: Recording | None = None
     overwhelmed: str | None = None
-    """How the node made the simulator fail in two attempts. There is no recording in that case."""
+    """The way in which the node made the simulator fail twice. There is no recording in that case."""
     called: tuple[Called, ...] | None = None
     """The results of the calls in a trial without a simulator. There is no recording in that case."""
     bench: BenchResult | None = None
@@ -63,7 +63,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Evidence:
-    """A submission and what was observed about it. `build` is None if the submission was not built.
+    """A submission with everything that was observed. `build` is None if the submission was not built.
 
     A check sees the evidence from the viewpoint of one of the exercise's trials. `trial` is that trial, and `recording`
     is its recording. The source files are parsed on first use, from `submission.files`.
@@ -104,7 +104,7 @@ class Evidence:
         return tuple(self.from_trial(id_) for id_ in ids if id_ in self.runs or id_ == ids[0])
 
     def with_run(self, run: Run) -> Evidence:
-        """Return the evidence with the result of this trial, also from the viewpoints of the nodes beside."""
+        """Return the evidence with the result of this trial, including the viewpoints of additional nodes."""
         specs = (self.trial, *self.exercise.beside(self.trial.id))
         return replace(self, runs={**self.runs, **{spec.id: _seen_by(spec, run, specs) for spec in specs}})
 
@@ -228,7 +228,7 @@ class Evidence:
 
 
 def _seen_by(spec: TrialSpec, run: Run, specs: tuple[TrialSpec, ...]) -> Run:
-    """Return the result of a trial from the viewpoint of one of its nodes. The other nodes are not its own."""
+    """Return the result of a trial from the viewpoint of one of its nodes. The other nodes count as the grader's."""
     recording = run.recording
     if recording is None:
         return run

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Floats, Recording
 
 MOVING = frozenset({"reset", "teleport_absolute", "teleport_relative", "rotate_absolute"})
-"""Calls that may move a turtle. They do not if the turtle is already where they send it."""
+"""Calls that may move a turtle. They have no effect if the turtle is already at the destination."""
 ALWAYS = frozenset({"kill", "set_parameters"})
 """Calls that remove a turtle or change how it obeys commands."""
 FRAME_S = 0.016
@@ -68,7 +68,7 @@ def _moved(recording: Recording, first: int) -> bool:
 
 
 def _unasked(recording: Recording, now: slice) -> Floats:
-    """Return for each of these frames whether no recent command set its turning speed."""
+    """Return an array that says which of these frames have a turning speed that no recent command set."""
     frames = recording.frames
     times = np.array([command.t_s for command in recording.commands])
     speeds = np.array([command.angular[2] for command in recording.commands])

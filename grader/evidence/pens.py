@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PenSpan:
-    """A turtle had this pen from `from_s` until `until_s` (s)."""
+    """A period, from `from_s` until `until_s` (s), in which a turtle had this pen."""
 
     from_s: float
     until_s: float

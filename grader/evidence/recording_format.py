@@ -1,10 +1,10 @@
 """Archive: a graded submission as a folder that contains everything needed to judge it again, without running it.
 
-    trials/ID/       one folder per trial: bag/ with the messages (rosbag2, MCAP), trial.json with the rest;
-                     or calls.json, if functions or programs were called without a simulator; or tests.json, if
-                     the student's tests were run
+    trials/ID/       one folder per trial: bag/ with the messages (rosbag2, MCAP) and trial.json with the rest;
+                     calls.json instead, if functions or programs were called without a simulator; or tests.json
+                     instead, if the student's tests were run
     build.json       the result of the build
-    tries.json       the fixes that were tried, with their results; for instructors, since it gives solutions away
+    tries.json       the fixes that were tried, with their results; for instructors only, since it gives solutions away
     submission.json  name, digest and paths
     source/          the files of the submission
     exercise/        the exercise at that time: exercise.toml
@@ -56,7 +56,7 @@ class Archived:
 
 
 def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -> None:
-    """Write the evidence to a folder, which must be new or empty. `prefixes` have the .msg files of the message types.
+    """Write the evidence to a folder, which must be new or empty. `prefixes` contain the .msg files.
 
     Raises:
         UsageError: the folder is not empty.
@@ -122,7 +122,7 @@ def _load_tests(file: Path) -> BenchResult | None:
 
 
 def check_free(folder: Path) -> None:
-    """Check that a recording can be written to this folder, before a trial is run.
+    """Check, before a trial is run, that a recording can be written to this folder.
 
     Raises:
         UsageError: the path is a file, or a folder that is not empty.
@@ -208,7 +208,7 @@ def _tries(data: dict[str, Any]) -> Tries:
 
 
 def _write(file: Path, data: dict[str, Any]) -> None:
-    # A name that is not valid UTF-8 is escaped, so that every program can read the JSON.
+    # Escape names that are not valid UTF-8, so that every program can read the JSON.
     file.write_text(json.dumps(data, indent=1, ensure_ascii=True) + "\n", encoding="ascii")
 
 

@@ -1,4 +1,4 @@
-"""Log lines that the student's node wrote, and the format that the lesson asks for."""
+"""Log lines that the student's node wrote, and the format that the lesson requires."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The targets in a recording, which are the turtles other than turtle1: their places and the announced names."""
+"""The targets in a recording (the turtles other than turtle1): their places and the announced names."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 STRING = "std_msgs/msg/String"
 HEADER = 8
-"""The number of bytes before the characters of a String: those of CDR, and the length (uint32)."""
+"""The number of bytes before the characters of a String: the CDR header and the length (uint32)."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Announcement:
 
 
 def announcements(recording: Recording, topic: str) -> list[Announcement]:
-    """Return the messages of the type String on the topic before SIGINT, in order."""
+    """Return the String messages on the topic before SIGINT, in order."""
     until = activity.end_s(recording)
     return [
         Announcement(message.t_s, _text(message.data))

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Floats, Recording
 
 RESTS_M = 1e-9
-"""The turtle is at rest in a frame in which it moves at most this far (m)."""
+"""In a frame in which it moves at most this far, the turtle is at rest (m)."""
 STRAIGHT_RAD = 1e-9
 """A step that turns by at most this angle counts as straight (rad)."""
 
@@ -103,7 +103,7 @@ class Trajectory:
 
 
 def driven_from(recording: Recording) -> Pose:
-    """Return the pose of the turtle before the first command. Only a call of the submission can have moved it there."""
+    """Return the pose of the turtle before the first command. Only a call by the submission can have changed it."""
     before, frames = _before_driving(recording), recording.frames
     if not before:
         return recording.start

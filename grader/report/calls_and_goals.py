@@ -19,7 +19,7 @@ MOST_TEXT = 120
 
 
 def call_rows(recording: Recording) -> list[tuple[str, ...]]:
-    """Return each service call as strings: time, who calls, the service, the request, the response."""
+    """Return each service call as strings: the time, the caller, the service, the request and the response."""
     return [
         (f"{call.t_s:.2f}", _caller(call), call.service, _fields(call.request), _fields(call.response))
         for call in recording.calls[:MOST_ROWS]
@@ -27,7 +27,7 @@ def call_rows(recording: Recording) -> list[tuple[str, ...]]:
 
 
 def goal_rows(recording: Recording) -> list[tuple[str, ...]]:
-    """Return each goal as strings: when it was sent, the goal, how and when it ended, the result, the action."""
+    """Return each goal as strings: the time it was sent, the goal, its outcome and end, the result and the action."""
     return [
         (
             f"{goal.t_s:.2f}",
@@ -42,7 +42,7 @@ def goal_rows(recording: Recording) -> list[tuple[str, ...]]:
 
 
 def moments(recording: Recording) -> list[tuple[float, str]]:
-    """Return the events of a replay as (time in s, text): each call, goal, cancel request and end of a goal."""
+    """Return the events of a replay as (time in s, text): calls, goals, cancel requests and ends of goals."""
     found = [(call.t_s, f"{_caller(call)} calls {shorten(call.service)}") for call in recording.calls[:MOST_ROWS]]
     for goal in recording.goals[:MOST_ROWS]:
         found += _moments_of(goal)

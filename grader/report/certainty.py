@@ -26,7 +26,7 @@ OF_EXCEPTIONS = frozenset(
         "init-twice",
     }
 )
-"""Diagnoses that follow from the exception alone, besides those in `OF_FILES`."""
+"""Diagnoses that follow from the exception alone, in addition to those in `OF_FILES`."""
 FACTS = OF_EXCEPTIONS.union(*OF_FILES.values())
 
 

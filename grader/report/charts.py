@@ -66,7 +66,7 @@ class Area:
         return self.top + HEIGHT * (1.0 - (min(max(value, self.low), self.high) - self.low) / (self.high - self.low))
 
     def frame(self, label: str) -> str:
-        """Draw the axes with their numbers. `label` says what the values are."""
+        """Draw the axes with their numbers. `label` describes the values."""
         bottom = self.top + HEIGHT
         parts = [words(label, LEFT, self.top - 8, font_weight="bold")]
         for value in ticks(self.low, self.high):
@@ -97,7 +97,7 @@ def ticks(low: float, high: float, most: int = 5) -> list[float]:
 def thin(series: Series, end_s: float, bins: int = BINS) -> Series:
     """Return the series, or the lowest and highest value of each bin if the series is long.
 
-    Values that are not finite are left out.
+    Values that are not finite are omitted.
     """
     finite = tuple((t, min(max(value, -HUGE), HUGE)) for t, value in series if math.isfinite(value))
     if len(finite) <= 2 * bins:

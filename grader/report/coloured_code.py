@@ -1,4 +1,4 @@
-"""Source code in coloured pieces, with the few classes that the style sheet of the pages (page.css) has."""
+"""Source code in coloured pieces, with the few classes that the pages' style sheet (page.css) defines."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def coloured(text: str, language: str = "python") -> list[list[Piece]]:
 
 
 def _class(token: str) -> str:
-    """Return the style sheet's class for a token type of pygments."""
+    """Return the style sheet's class for a pygments token type."""
     for name, kinds in (
         ("c", ("Token.Comment",)),
         ("s", ("Token.Literal.String",)),

@@ -2,17 +2,17 @@
 
     submission  the name of the folder or archive
     exercise    the id of the exercise
-    points      the points that the submission got
+    points      the points that the submission earned
     max         the points of the whole exercise, including checks that could not be judged
     percent     points as a percentage of max
     status      passed, failed, or error; a submission with an error is graded again by the next run
     failed      ids of the failed checks in the order of the exercise, separated by spaces
     diagnoses   the stable ids of their causes
-    first       what the first failed check observed, in words
+    first       the observation of the first failed check, in words
     clock, seed
     graded_by   the version of the grader and the first digits of the sha256 of its sources
     report      the file with the full report
-    attention   why an instructor should look at it: "suspicious" if the grader repeatedly failed to judge it
+    attention   the reason for an instructor to look at it: "suspicious" if the grader repeatedly failed to judge it
 
 No cell is ever a formula, regardless of what a student wrote.
 """
@@ -93,7 +93,7 @@ def _safe(text: str) -> str:
 
     A spreadsheet may split cells at a separator other than the comma. A new cell could then begin after any separator
     in SEPARATORS, so the text after each of them is checked too. Full-width and small variants are treated like the
-    characters themselves, because some spreadsheets normalize them on import.
+    standard characters, because some spreadsheets normalize them on import.
     """
     begins, line = True, ""
     for char in printable(text):

@@ -25,7 +25,7 @@ def fill(template: str, values: Mapping[str, object], *folders: Path) -> str:
 def compiled(template: str, *folders: Path) -> Template:
     """Return the compiled template. Compile it before forking a child process, because compiling is slow.
 
-    Templates are searched in `folders`, and then in the assets of the reports.
+    Templates are looked up in `folders`, and then in the assets of the reports.
     """
     environment = Environment(
         loader=FileSystemLoader([*folders, ASSETS]),

@@ -1,4 +1,4 @@
-"""What the checks of a trial require, as shapes on the canvas and limits in the charts.
+"""The requirements of a trial's checks, as shapes on the canvas and limits in the charts.
 
 Each kind of check describes its own requirements.
 """
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def requested(evidence: Evidence) -> Iterator[Requested]:
-    """Yield what each check of this trial requires, except for hidden checks, in the order of the exercise."""
+    """Yield the requirements of each check of this trial, except hidden checks, in the order of the exercise."""
     for spec in evidence.exercise.checks:
         if spec.trial == evidence.trial.id and not spec.hidden:
             found = KINDS[spec.kind].request(evidence, spec.params)
@@ -48,5 +48,5 @@ def shapes_of(path: Requested) -> tuple[Line | Ring, ...]:
 
 
 def must_drive(evidence: Evidence) -> bool:
-    """Return whether any check of this trial requires commands to the turtle."""
+    """Return whether any check of this trial requires the turtle to receive commands."""
     return any(KINDS[spec.kind].drives and spec.trial == evidence.trial.id for spec in evidence.exercise.checks)

@@ -114,7 +114,7 @@ def _command(kind: str, student: str, outcome: Outcome, folder: str) -> str:
 
 def _data(text: str) -> str:
     escaped = text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
-    # GitHub recognizes an older form of commands anywhere in a line.
+    # GitHub recognizes an older form of command anywhere in a line.
     return escaped.replace("##[", "# #[")
 
 

@@ -1,7 +1,7 @@
-"""The page of one submission: verdict, checks with the code that they point to, replay, graph and logs.
+"""The page of one submission: the verdict, the checks with the code that they point to, the replay, graph and logs.
 
-The page leaves out what differs from run to run (wall times and paths of recordings), so generating it again from a
-recording gives an identical page.
+The page omits everything that differs from run to run (wall times and paths of recordings), so generating it again from
+a recording gives an identical page.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def save_html(evidence: Evidence, report: Report, file: Path) -> None:
 def html_page(evidence: Evidence, report: Report) -> str:
     """Return the page as a string.
 
-    If the output of a submission cannot be drawn, the page still has the verdict, but no drawings.
+    If the output of a submission cannot be drawn, the page contains the verdict but no drawings.
     """
     compiled(TEMPLATE)
     try:
@@ -102,7 +102,7 @@ def _page(evidence: Evidence, report: Report) -> str:
     runs = runs_of(evidences)
     shown = shown_checks(evidence, report)
     fault = evidence.fault.message if evidence.fault and not evidence.fault.unreadable else ""
-    # A fault of the machine is shown only once, instead of with every check that could not be judged because of it.
+    # Show a machine fault only once, instead of with every check that could not be judged because of it.
     unmade = [check for check in shown if check.kind == "error" and check.outcome.finding.observed == fault]
     values = {
         "report": report,

@@ -1,4 +1,4 @@
-"""The page of a class, made from its reports: points, the most frequently failed checks and why, and machine errors.
+"""The page of a class, made from its reports: points, the most common failures with their causes, machine errors.
 
 The reports are the JSON files below a folder. If there is a page with the same name next to a report, it is linked.
 """
@@ -50,7 +50,7 @@ class Entry:
 
     @property
     def share(self) -> float:
-        """The fraction of all points that the submission got, 0 to 1."""
+        """The fraction of all points that the submission earned, from 0 to 1."""
         return self.report.points / self.report.max if self.report.max else 0.0
 
     @property
@@ -155,7 +155,7 @@ def _natural(name: str) -> list[tuple[int, str]]:
 
 
 def _short(names: Sequence[str]) -> list[str]:
-    """Return the names without the leading and trailing folders that all of them have in common."""
+    """Return the names without the leading and trailing folders that they all share."""
     parts = [name.rstrip("/").split("/") for name in names]
     if len(parts) < 2:
         return list(names)
@@ -165,7 +165,7 @@ def _short(names: Sequence[str]) -> list[str]:
 
 
 def _alike(paths: Sequence[Sequence[str]]) -> int:
-    """Return the number of leading folders that all paths have in common, not counting the last part of a path."""
+    """Return the number of leading folders that all paths share, not counting the last part of a path."""
     same = 0
     for level in zip(*(path[:-1] for path in paths), strict=False):
         if len(set(level)) > 1:

@@ -1,6 +1,6 @@
 """The verdict as HTML for the output of a notebook cell: a table with reasons, and then the charts of each run.
 
-The HTML has no script, and its style sheet affects nothing outside of it. Every id begins with a key for this verdict,
+The HTML has no script, and its style sheet affects nothing outside it. Every id begins with a key for this verdict,
 because one notebook may show many verdicts.
 """
 

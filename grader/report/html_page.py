@@ -49,6 +49,6 @@ def _hash(text: str) -> str:
 
 
 def script_json(data: object) -> Markup:
-    """Return JSON in which no HTML parser can find the end of the script element."""
+    """Return JSON in which no HTML parser can find an end tag of the script element."""
     text = json.dumps(data, separators=(",", ":"), allow_nan=False)
     return Markup(text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"))

@@ -1,4 +1,4 @@
-"""The content of a page for each trial: the canvas with its player, the charts, the graph, the table of commands."""
+"""The content of a page for each trial: the canvas with its player, the charts, the graph and the command table."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def _run(evidence: Evidence, key: str, several: bool, among: int) -> Run:
 
 
 def _left_out(recording: Recording) -> list[str]:
-    """Describe what was left out because the recording was full."""
+    """Describe the data that was left out because the recording was full."""
     amounts = (
         (recording.dropped, "message", ""),
         (recording.interventions_dropped, "call", " of the simulator's services"),

@@ -101,7 +101,7 @@ def errors_in(text: str, room: int = ERROR_BYTES) -> list[tuple[int, str]]:
             if room < 0 or len(found) >= MOST_ERRORS:
                 break
             found.append((number, shown))
-        # The first line without indentation ends a traceback.
+        # A traceback ends at the first line without indentation.
         if inside and BEGINS not in head and not line.startswith((" ", "\t")):
             inside = False
     return found

@@ -1,4 +1,4 @@
-"""A run as a PNG: the turtle's canvas with axes, verdict, legend and numbers. Several trials are shown side by side."""
+"""A run as a PNG: the turtle's canvas with axes, verdict, legend and numbers. Multiple trials appear side by side."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Make text from a student safe and short enough for a page.
 
-The template escapes all HTML. This module handles what escaping does not: control characters, invisible characters,
+The template escapes all HTML. This module handles the remaining dangers: control characters, invisible characters,
 characters that change the direction of text, and very long text.
 """
 

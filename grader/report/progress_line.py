@@ -36,7 +36,7 @@ class Progress:
 
 @contextmanager
 def progress() -> Iterator[Progress]:
-    """Yield a Progress: live lines on a terminal, which disappear at the end, and plain lines elsewhere."""
+    """Yield a Progress: on a terminal, live lines that disappear at the end; elsewhere, plain lines."""
     if not sys.stderr.isatty():
 
         def line(text: str) -> None:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Report:
-    """All outcomes of one submission, and what is needed to grade it again."""
+    """All outcomes of one submission, and the data needed to grade it again."""
 
     exercise: str
     exercise_title: str
@@ -40,14 +40,14 @@ class Report:
 
     @property
     def points(self) -> float:
-        """The points of all checks together."""
+        """The points earned in all checks together."""
         return sum(outcome.points for outcome in self.outcomes)
 
     @property
     def max(self) -> float:
-        """The points of all checks together, including those that the machine could not judge.
+        """The maximum points of all checks together, including those that the machine could not judge.
 
-        If they were left out, a submission could get full marks by breaking the grading of the checks that it fails.
+        If these were left out, a submission could get full marks by keeping the checks that it fails from being judged.
         """
         return sum(outcome.max for outcome in self.outcomes)
 

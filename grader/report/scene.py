@@ -1,6 +1,6 @@
-"""Scene: what to draw for a run on the turtle's canvas, as pure data in metres. picture.py and svg.py paint it.
+"""Scene: the drawing of a run on the turtle's canvas, as pure data in metres. picture.py and svg.py paint it.
 
-The PNG, the page and the notebooks use the same scene, so they always show the same thing.
+The PNG, the page and the notebooks use the same scene, so they always show the same drawing.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ TICK_M = 0.11
 
 @dataclass(frozen=True)
 class Scene:
-    """What to draw: `shapes` from bottom to top, the meaning of each role, and facts with numbers.
+    """The content of a drawing: `shapes` from bottom to top, the meaning of each role, and facts with numbers.
 
     `notice` says why there is no trajectory to draw; it is empty if there is one.
     """
@@ -107,7 +107,7 @@ def _without_recording(evidence: Evidence) -> Scene:
 
 
 def _bag_scene(evidence: Evidence) -> Scene | None:
-    """Return the scene of a step in which students record a bag: the path in the bag. None for other steps."""
+    """Return the scene of a step in which students record a bag: the path in the bag. Return None for other steps."""
     folder = next((str(spec.params["bag"]) for spec in evidence.exercise.checks if "bag" in spec.params), None)
     if folder is None:
         return None
@@ -121,14 +121,14 @@ def _bag_scene(evidence: Evidence) -> Scene | None:
 
 
 def _goals(recording: Recording) -> list[str]:
-    """Return a line such as "3 goals: 2 succeeded, 1 canceled", or an empty list without goals."""
+    """Return a line such as "3 goals: 2 succeeded, 1 canceled", or an empty list if there are no goals."""
     ends = Counter(goal.status for goal in recording.goals)
     amounts = ", ".join(f"{amount} {status}" for status, amount in ends.items())
     return [f"{count(len(recording.goals), 'goal')}: {amounts}"] if amounts else []
 
 
 def _drawn(evidence: Evidence, points: list[Point]) -> list[Line]:
-    """Return the trajectory as one line per pen. Parts with the pen up look like the path of another turtle."""
+    """Return the trajectory as one line per pen. Parts with the pen up have the look of another turtle's path."""
     trajectory, spans = evidence.trajectory, pen_spans(evidence.recording)
     if len(spans) == 1 or not trajectory.finite:
         return [Line("trajectory", tuple(points))]

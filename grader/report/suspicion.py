@@ -24,7 +24,7 @@ UNREADABLE = "unreadable"
 
 
 def suspicions(graded: Sequence[tuple[Report, int]]) -> list[str]:
-    """Return, for each (report, number of consecutive errors), the reason to look at the submission; usually empty."""
+    """Return the reason to look at each submission (usually empty), given (report, number of consecutive errors)."""
     judged = sum(not report.with_status(Status.ERROR) for report, _ in graded)
     return [_suspicion(report, errors, judged) for report, errors in graded]
 

@@ -1,7 +1,7 @@
-"""Draw a scene as SVG. This module also has the SVG helpers that the charts use.
+"""Draw a scene as SVG. This module also contains the SVG helpers for the charts.
 
 Colours and sizes are attributes, never styles, because the Content-Security-Policy of a page may forbid styles, and a
-picture must also look right outside of a page (in a notebook). `currentColor` is the text colour, so the picture
+picture must also look right outside a page (in a notebook). `currentColor` is the text colour, so the picture
 adapts to light and dark mode.
 """
 

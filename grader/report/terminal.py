@@ -1,6 +1,6 @@
 """Print a report to the terminal: one line per check with details below it, and the verdict at the end.
 
-A terminal gets colours and a hanging indent. A pipe gets the same words, each entry on one line. All text from a
+A terminal gets colours and a hanging indent. A pipe gets the same words, with each entry on one line. All text from a
 student is printed as plain text, without markup or control characters.
 """
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 RESULTS = {"passes": "then it passes", "further": "the node gets further", "refuted": "it still fails"}
 HIDDEN = "A hidden check shows no details."
 NARROW = 50
-"""A width in columns. On a narrower terminal, text is not indented under its label."""
+"""On a terminal with fewer columns than this, text is not indented under its label."""
 
 SIGNS = {"passed": "✓", "failed": "✗", "skipped": "-", "error": "!", "advice": "i"}
 ASCII_SIGNS = {"passed": "ok", "failed": "FAIL", "skipped": "skip", "error": "ERROR", "advice": "note"}
@@ -63,7 +63,7 @@ def render_changes(before: Report, after: Report, console: Console) -> None:
 
 
 def early(outcomes: Sequence[Outcome]) -> list[str]:
-    """Return lines about mistakes that the files already show, to read while the package is being built and run."""
+    """Return lines about mistakes that the files already reveal, to be read while the package is built and run."""
     shown = [(outcome, outcome.finding) for outcome in outcomes if not outcome.hidden]
     lines = [
         f"{outcome.title}: {finding.observed}" + (f" ({finding.where})" if finding.where else "")
@@ -73,7 +73,7 @@ def early(outcomes: Sequence[Outcome]) -> list[str]:
 
 
 def changes(tries: Tries, console: Console) -> None:
-    """Print what was changed in copies of the submission to test the supposed causes. This reveals solutions."""
+    """Print the changes that were made in copies of the submission to test supposed causes. They reveal solutions."""
     if tries.made or tries.stopped:
         console.print()
     for each in tries.made:
