@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 READY_S = 30.0
 """The maximum time for starting turtlesim (s)."""
 ENDS_S = 5.0
-"""The time that a program has to exit after Ctrl-C (s) before it is killed."""
+"""The maximum time for a program to exit after Ctrl-C (s) before it is killed."""
 
 
 @dataclass(frozen=True)

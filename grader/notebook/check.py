@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from grader.notebook.cells import Cells
 
 GRACE_S = 5.0
-"""The time that a worker has to exit after the cell was interrupted (s)."""
+"""The maximum time for a worker to exit after the cell was interrupted (s)."""
 
 
 @dataclass(frozen=True)

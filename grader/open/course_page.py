@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from grader.view.address import Place
 
 _ENDS_S = 15.0
-"""The time that the server has to exit (s) before it is killed."""
+"""The maximum time for the server to exit (s) before it is killed."""
 
 
 def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
@@ -37,7 +37,7 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
 
     Raises:
         UsageError: the port is not available.
-        MachineError: a library that the page needs is not installed, or the server has ended.
+        MachineError: a library that the page needs is not installed, or the server has exited.
     """
     see_that_it_can_be_served("`grader watch` works without it")
     for number in (signal.SIGTERM, signal.SIGHUP):
@@ -67,7 +67,7 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
 
 @contextmanager
 def _page(place: Place, workspace: Path | None, *, opens: bool) -> Iterator[socket.socket]:
-    """Start the process that serves the page, and yield the connection to it. Closing the connection ends it."""
+    """Start the process that serves the page, and yield the connection to it. Closing the connection stops it."""
     ours, theirs = socket.socketpair()
     with ours, theirs:
         given = {

@@ -1,4 +1,4 @@
-"""The data that the page shows beside the lesson: the steps, the checks of the current step, the verdict, the hints."""
+"""The data that the page shows next to the lesson: the steps, the current step's checks, the verdict and the hints."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The server of the page: lessons, verdict, news and actions, protected by the guard of the view.
+"""The server of the page: lessons, verdict, updates and actions, protected by the view's guard.
 
 Lessons are public. The learner's data needs the token: in a header, which no other site can send, or in
-the address of the connection for news, whose Origin the guard checks.
+the address of the connection for updates, whose Origin the guard checks.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ TOKEN = "x-course-token"
 LARGEST = 4096
 """The maximum size of the body of a request (bytes)."""
 PATIENCE_S = 5.0
-"""The time that a page has to send the body of a request (s)."""
+"""The maximum time for a page to send the body of a request (s)."""
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ async def _wanted(request: Request) -> dict[str, Any]:
 
 
 async def _follow(socket: WebSocket, hub: Hub) -> None:
-    """Send news to a page until it is closed. A hidden page gets no news."""
+    """Send updates to a page until it is closed. A hidden page gets no updates."""
     following: asyncio.Task[None] | None = asyncio.create_task(hub.follow(socket.send_text))
     try:
         while True:

@@ -62,7 +62,8 @@ def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
     desk.tell("Reading")
     try:
         graded = watched.grade(desk.tell, desk.early)
-        # Before the verdict, which shows the button for the next step: that needs the progress, also on a slow disk.
+        # Store the progress before the verdict is shown, even on a slow disk: the verdict's button for the next step
+        # needs it.
         steps.note(watched.exercise, watched.folder, graded.report, workspace)
         desk.judged(graded.report)
         desk.detailed(verdict_html(graded.evidence, graded.report, watched.folder))

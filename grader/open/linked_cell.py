@@ -54,7 +54,7 @@ class LinkedCell:
     """The limit that the node has exceeded, if it was stopped for this reason."""
 
     def interrupt(self) -> None:
-        """Send SIGINT to the process group of the node, as Ctrl-C does. Before the node has started, end the cell."""
+        """Send SIGINT to the process group of the node, as Ctrl-C does. Before the node has started, kill the cell."""
         with suppress(ProcessLookupError):
             if os.getpgid(self.first) == self.first:
                 os.killpg(self.first, signal.SIGINT)
@@ -62,7 +62,7 @@ class LinkedCell:
                 self.kill()
 
     def kill(self) -> None:
-        """End the cell and all its processes."""
+        """Kill the cell and all its processes."""
         # Kill the whole group, because a child of bubblewrap that is starting does not yet die with it.
         with suppress(ProcessLookupError):
             os.killpg(self.process.pid, signal.SIGKILL)
@@ -86,7 +86,7 @@ class LinkedCell:
         self.first = list(family(self.process.pid))[-1]
 
     def over(self, what: str) -> None:
-        """End the cell because its node has exceeded a limit."""
+        """Kill the cell because its node has exceeded a limit."""
         self.out_of = what
         self.kill()
 
@@ -106,7 +106,7 @@ def environment(ros: Ros, domain: int, overlays: Sequence[Path] = ()) -> dict[st
 
 @contextmanager
 def linked_cell(ros: Ros, domain: int) -> Iterator[LinkedCell]:
-    """Start the launcher of trials in a cell, with a relay to this ROS domain. The cell ends with the context.
+    """Start the launcher of trials in a cell, with a relay to this ROS domain. The context stops the cell.
 
     Raises:
         MachineError: the cell could not be started, or all ports are in use.

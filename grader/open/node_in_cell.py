@@ -1,7 +1,7 @@
 """`python -m grader.open.node_in_cell SETTINGS`: build a package and run one of its programs, both in a cell.
 
-The program can reach the turtlesim of this machine (linked_cell.py). It ends with Ctrl-C, or with the process that has
-started this one, which has the other end of standard input.
+The program can reach the turtlesim of this machine (linked_cell.py). It is stopped by Ctrl-C, or when standard input
+closes because the process that started this one has exited.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from grader.ros.installation import Ros
 
 STOP_S = 4.0
-"""The time that the program has to end after Ctrl-C (s) before it is killed."""
+"""The maximum time for the program to exit after Ctrl-C (s) before it is killed."""
 _LOOK_S = 0.2
 _CHUNK = 65536
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 LONGEST = 1 << 26
 """The maximum size of a line (bytes). The HTML of a verdict is much smaller."""
 _LOOK_S = 1.0
-"""The interval of checking whether another command has changed the learner's progress (s)."""
+"""The interval between checks of whether another command has changed the learner's progress (s)."""
 
 
 class PageProcess:
@@ -85,7 +85,7 @@ class PageProcess:
             ended.set()
 
     async def _look(self, tell: Callable[[str], None]) -> None:
-        """Detect changes of the progress by a page or by another command such as `grader start`."""
+        """Detect changes to the progress made by a page or by another command such as `grader start`."""
         before = _stamp()
         while True:
             await asyncio.sleep(_LOOK_S)

@@ -26,13 +26,13 @@ KEPT = 200
 LONGEST = 500
 """The maximum length of these lines in characters."""
 ENDS_S = 8.0
-"""The time that a program has to end after Ctrl-C (s) before it is killed."""
+"""The maximum time for a program to exit after Ctrl-C (s) before it is killed."""
 READY_S = 30.0
 """The maximum time for starting turtlesim (s)."""
 NO_CELL = "There is no sandbox here, so the program runs under your account, as in a terminal."
 _LOOK_S = 0.05
 _NO_DAEMON = {"GRADER_ROS2_DAEMON": "0"}
-"""A daemon of ros2 would stay."""
+"""A ros2 daemon would continue to run."""
 _ADDRESS = re.compile(r"See it move: http://127\.0\.0\.1:(\d+)/#(\S+)")
 _SCREENS = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
 
@@ -57,7 +57,7 @@ class Program:
         return self._process is not None
 
     async def start(self, *arguments: str, says: str = "", held: bool = False) -> None:
-        """Start `python ARGUMENTS` unless the program is running already. `says` is a line before its output.
+        """Start `python ARGUMENTS` unless the program is already running. `says` is a line that precedes its output.
 
         If the program is `held`, its standard input is a pipe that closes when this process ends for any reason.
         """
@@ -65,7 +65,7 @@ class Program:
             return
         # The page shows the turtle, so no other page is opened.
         env = {name: value for name, value in os.environ.items() if name not in _SCREENS}
-        # Do not start the daemon of ros2, which would continue to run.
+        # Do not start the ros2 daemon, which would continue to run.
         own = {"PYTHONUNBUFFERED": "1", "GRADER_ROS2_DAEMON": "0"}
         start = interpreter(*arguments, env={**env, **own}, searches=True)
         self.lines.clear()
@@ -121,7 +121,7 @@ class Programs:
         self._workspace = workspace
 
     def address(self) -> Address | None:
-        """Return the address of the view of turtlesim, which was started here or in a terminal."""
+        """Return the address of turtlesim's view, whether it was started here or in a terminal."""
         for line in self.turtlesim.lines:
             found = _ADDRESS.search(line)
             if found:
@@ -129,7 +129,7 @@ class Programs:
         return remembered("turtlesim")
 
     async def beside_another(self) -> bool:
-        """Return whether a turtlesim runs that was not started here. A second one would get the same commands."""
+        """Return whether a turtlesim is running that was not started here. A second one would get the same commands."""
         return not self.turtlesim.running and await asyncio.to_thread(_turtle_is_there)
 
     async def start_turtlesim(self) -> None:
@@ -142,7 +142,7 @@ class Programs:
             await asyncio.sleep(_LOOK_S)
 
     async def start_node(self, step: str, executable: str) -> None:
-        """Start this executable of the step beside turtlesim: in a cell if possible, or else like `grader run`."""
+        """Start this executable of the step with turtlesim: in a cell if possible, or else like `grader run`."""
         if not await self.beside_another():
             await self.start_turtlesim()
         workspace = str(self._workspace) if self._workspace else None

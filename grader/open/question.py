@@ -38,7 +38,7 @@ PATIENCE_S = 15.0
 
 @dataclass(frozen=True)
 class Answer:
-    """The output of the command, and whether the command was stopped because it did not end."""
+    """The output of the command, and whether the command was stopped because it did not exit."""
 
     output: str
     stopped: bool

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from grader.view.address import Address
 
 LARGEST = 1 << 24
-"""The maximum size of a message of the view (bytes). The first message contains the whole trail."""
+"""The maximum size of a message from the view (bytes). The first message contains the whole trail."""
 
 
 async def relay(page: WebSocket, address: Address) -> None:

@@ -2,7 +2,7 @@
 
 bubblewrap creates two kinds of containers:
 
-- a **room** contains our processes of one trial (the simulator). They run as an ordinary user,
+- a **room** contains our processes for one trial (the simulator). They run as an ordinary user,
   with separate pid and network namespaces, and only the loopback interface. They receive a student node's messages,
   with libraries that may have security holes;
 - a **cell** contains a student's process. It has its own user, pid, ipc, uts, cgroup and mount namespaces, no network

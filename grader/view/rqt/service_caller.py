@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 TIMEOUT_S = 5.0
-"""The time that a service has to respond (s)."""
+"""The maximum time for a service to respond (s)."""
 MOST_WAITING = 20
 """The maximum number of calls that may wait for their responses."""
 _EVERY_NODES = "rcl_interfaces/srv/"
