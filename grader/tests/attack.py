@@ -1,7 +1,7 @@
 """Attacks: submissions that try to harm or cheat the grader, and the expected result of their grading.
 
 grader/tests/hostile/NNN-name/
-  files/           added to the solution of step 03, or replacing its files; for a few lines, there is `edit`
+  files/           added to the solution of step 03, or replacing its files; for a few lines, use `edit`
   make.py          make(package): creates files that git cannot store
   expected.toml    the keys are the fields of `Attack`, below
 """
@@ -65,7 +65,7 @@ class Attack:
     never_html: tuple[str, ...] = ()
     """Text that the page must not contain."""
     edit: tuple[Mapping[str, str], ...] = ()
-    """The edits of the solution: `old` in `file` is replaced by `new` everywhere."""
+    """The edits of the solution: `old` in `file` is replaced with `new` everywhere."""
     sample: bool = False
     clock: str = "auto"
 

@@ -48,7 +48,7 @@ class Case:
     exercise: str = ""
     """The exercise that grades the case. If empty, and the base is a solution, the exercise of the base."""
     edit: tuple[Mapping[str, str], ...] = ()
-    """The edits of the base: `old` in `file` is replaced by `new` everywhere."""
+    """The edits of the base: `old` in `file` is replaced with `new` everywhere."""
     remove: tuple[str, ...] = ()
     """The paths of the base that are removed."""
     give: str = "."
@@ -56,7 +56,7 @@ class Case:
     sample: bool = False
     """Whether the case belongs to the sample that `make test` runs."""
     clock: str = ""
-    """The clock that must judge with `--clock auto`; empty for any clock."""
+    """The clock that `--clock auto` must choose; empty for any clock."""
     wall_varies: str = ""
     """The reason why two runs in wall time can differ. If set, the clocks are not compared. Usually empty."""
     points: float | None = None
@@ -131,7 +131,7 @@ def make_submission(case: Case, to: Path) -> Path:
 
 
 def apply_edits(edits: Iterable[Mapping[str, str]], package: Path, name: str) -> None:
-    """In each `file` of a package, replace `old` by `new` everywhere. Raises AssertionError if `old` is not found."""
+    """In each `file` of a package, replace `old` with `new` everywhere. Raises AssertionError if `old` is not found."""
     for edit in edits:
         file = package / edit["file"]
         text = file.read_text("utf-8")

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 EXERCISE = "03-circle-publisher"
 GRADER = Path(sys.executable).with_name("grader")
 AT_ONCE = max(1, (os.cpu_count() or 1) // int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1")))
-"""How many gradings run in parallel. Together with the other test processes, they use every processor."""
+"""The number of cases that are graded in parallel. Together with the other test processes, they use every processor."""
 HANG_S = 300.0
 """Longer than any time limit of the grader: a command that takes longer hangs."""
 
@@ -79,7 +79,7 @@ def grade(case: Case, clock: str, folder: Path) -> Graded:
 
 
 def gradings_of(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Gradings]:
-    """Yield the fixture `gradings`: the gradings of all cases that the module's tests mark with `clocks`."""
+    """Yield the fixture `gradings`: the results of all cases that the module's tests mark with `clocks`."""
     wanted: dict[tuple[Path, str], tuple[Case, str]] = {}
     for item in request.session.items:
         if item.path != request.path:
@@ -105,7 +105,7 @@ def each(cases: Sequence[Case], *, always: bool = False) -> pytest.MarkDecorator
 
 
 def check_report(case: Case, graded: Graded) -> None:
-    """Check that the report is as the case expects, and contains no traceback of the grader."""
+    """Check that the report matches the case, and contains no traceback of the grader."""
     assert not [line for line in graded.stderr.splitlines() if line.startswith(("Traceback", '  File "'))], (
         graded.stderr
     )

@@ -1,4 +1,4 @@
-"""Gradings without ROS 2, for tests with invented builds and trials."""
+"""Grade without ROS 2, in tests with invented builds and trials."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def hide_ros(cache: Path) -> None:
 
 
 def without_ros(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Do not search for a ROS 2, and do not wait for other gradings on this machine."""
+    """Do not search for a ROS 2, and do not wait for other graders on this machine."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(cache))
     monkeypatch.setattr(grade, "find_ros", lambda: NO_ROS)
     monkeypatch.setattr(underlay, "ensure", lambda *_: None)

@@ -116,7 +116,7 @@ class Host:
         if ordinary:
             command += ["--unshare-user"]
         elif not defended:
-            # Nothing runs without a sandbox as root, not even in this host.
+            # As root, nothing runs without a sandbox, not even in this host.
             command += ["--unshare-user", "--uid", str(USER), "--gid", str(USER)]
         command += ["--dev-bind", "/", "/", "--remount-ro", "/", "--tmpfs", "/home", "--tmpfs", "/run"]
         for inside, outside in {

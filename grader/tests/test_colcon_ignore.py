@@ -45,7 +45,7 @@ def colcon_list(folder: Path) -> list[str]:
 
 
 def marker_maker(folder: Path) -> Path:
-    """Create a submission in `folder` whose setup.py creates a file. Return it and the path of this file."""
+    """Create a submission in `folder` whose setup.py creates a file. Return the path of that file."""
     shutil.copytree(PACKAGE, folder / "my_robot_controller", dirs_exist_ok=True)
     trace = folder / "setup.py was run"
     setup = folder / "my_robot_controller/setup.py"

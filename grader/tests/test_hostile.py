@@ -42,7 +42,7 @@ pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="the sandbox is 
 
 @dataclass(frozen=True)
 class Graded:
-    """The grading of an attack: its effects on the host, and a folder with report.json, report.html and recording/."""
+    """The result of an attack: its effects on the host, and a folder with report.json, report.html and recording/."""
 
     left: Left
     work: Path
@@ -72,7 +72,7 @@ class Graded:
 
 
 class Runs:
-    """Run the attacks that this session needs, one per processor at the same time."""
+    """Run the attacks that this session needs, as many in parallel as there are processors."""
 
     def __init__(self, wanted: list[tuple[Attack, str]], folder: Path, pool: ThreadPoolExecutor) -> None:
         self._futures: dict[tuple[str, str], Future[Graded]] = {

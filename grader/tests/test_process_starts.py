@@ -101,7 +101,7 @@ def in_functions(tree: ast.AST, function: str = "") -> Iterator[tuple[str, ast.A
 
 
 def process_starts(tree: ast.Module) -> Iterator[tuple[str, ast.Call]]:
-    """Yield the calls that start a process, also if their module was imported under another name."""
+    """Yield the calls that start a process, even if their module was imported under another name."""
     names: dict[str, str] = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):

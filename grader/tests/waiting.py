@@ -23,7 +23,7 @@ def until(there: Callable[[], bool]) -> None:
 
 
 def until_gone(pid: int) -> None:
-    """Wait until a process has ended that is not a child of this process."""
+    """Wait until a process that is not a child of this process has ended."""
     try:
         descriptor = os.pidfd_open(pid)
     except ProcessLookupError:

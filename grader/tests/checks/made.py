@@ -1,4 +1,4 @@
-"""Made-up evidence: recordings with the simulator's own motion, and submissions of a few lines."""
+"""Made-up evidence: recordings with the simulator's motion, and submissions of a few lines."""
 
 from __future__ import annotations
 

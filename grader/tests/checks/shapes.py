@@ -39,7 +39,7 @@ def fields(linear: tuple[float, float, float], angular: tuple[float, float, floa
 
 
 def polygon(sides_s: float, turns_s: float, angle: float, speed: float) -> list[Timed]:
-    """Return commands at 2 Hz: in turns, some that drive straight on and some that turn on the spot."""
+    """Return commands at 2 Hz that alternate between driving straight on and turning on the spot."""
     pattern = [(speed, 0.0)] * round(sides_s / 0.5) + [(0.0, angle / turns_s)] * round(turns_s / 0.5)
     return [(t_s, *pattern[index % len(pattern)]) for index, (t_s, _, _) in enumerate(every(0.5, 0.0, 0.0))]
 

@@ -11,7 +11,7 @@ def test_a_drawn_start_leaves_room_for_the_circle_of_the_check() -> None:
     requested = {
         spec.id: KINDS[spec.kind].radius(evidence(), spec.params) for spec in find_exercise("07-challenges").checks
     }
-    # The radius of the own circle depends on the student's id. It is at most the room that each start leaves.
+    # The radius of a student's circle depends on the student's id. There is room for it at every start.
     assert {id_: radius for id_, radius in requested.items() if radius is not None} == {"eight": 1.0}
     circle = next(spec for spec in find_exercise("03").checks if spec.id == "circle")
     assert KINDS[circle.kind].radius(evidence(), {**circle.params, "radius_m": 3.25}) == 3.25

@@ -1,4 +1,4 @@
-"""A small class to grade: right, wrong and hostile submissions, as folders and archives, some without a package."""
+"""A small class to grade: correct, wrong and hostile submissions, as folders and archives, some without a package."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def reports(out: Path) -> dict[str, dict[str, Any]]:
 
 
 def judged(out: Path) -> dict[str, list[tuple[Any, ...]]]:
-    """Return the values that must be equal in two gradings: status, points, diagnosis and cause of every check."""
+    """Return the values that must be equal in two runs: status, points, diagnosis and cause of every check."""
     return {
         student: [tuple(outcome[key] for key in COMPARED) for outcome in report["outcomes"]]
         for student, report in reports(out).items()

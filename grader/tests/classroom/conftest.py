@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Run:
-    """A class, and the results of an uninterrupted grading of it."""
+    """A class, and the results of grading it without interruption."""
 
     submitted: Path
     out: Path

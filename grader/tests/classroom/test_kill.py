@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 Blow = Literal["grader", "worker", "disk"]
 LONGEST_S = 600.0
 NO_ROOM = 4096
-"""A limit on the size of a file (bytes). Every report is larger."""
+"""A limit on the file size (bytes) that every report exceeds."""
 
 
 class Killer:

@@ -32,7 +32,7 @@ ELSEWHERE = {
     # Options of our `ros2 bag`.
     *("--max-bag-duration", "--max-bag-size", "--storage-preset-profile"),
 }
-"""Options of other programs than `grader`."""
+"""Options of programs other than `grader`."""
 
 
 @pytest.fixture

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 CENTRES = st.floats(-20.0, 20.0)
 RADII = st.floats(0.05, 20.0)
 ARCS = st.floats(0.5, 12.0)
-"""How long the arc with the points is (rad)."""
+"""The angle of the arc on which the points lie (rad)."""
 
 
 def arc(

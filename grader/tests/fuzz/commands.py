@@ -1,4 +1,4 @@
-"""The commands of the grader with a submission whose code does not run. Builds and trials are invented."""
+"""The commands of the grader with a submission whose code is never run. Builds and trials are invented."""
 
 from __future__ import annotations
 

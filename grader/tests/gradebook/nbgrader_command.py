@@ -36,7 +36,7 @@ def nbgrader(*command: str, cwd: Path, **env: str) -> tuple[int, str]:
 
 @functools.cache
 def _server() -> subprocess.Popen[str]:
-    """Return a server, which ends together with this process when its standard input is closed."""
+    """Return a server. When this process ends, the server's standard input is closed, and the server exits."""
     pipe = subprocess.PIPE
     argv = [sys.executable, "-W", "ignore", "-m", "grader.tests.gradebook.nbgrader_command"]
     return subprocess.Popen(argv, stdin=pipe, stdout=pipe, text=True)

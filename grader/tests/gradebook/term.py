@@ -64,7 +64,7 @@ class Term:
         self.run("release_assignment", STEP)
 
     def hand_in(self, student: str, change: Callable[[Path], None], at: str = FIRST) -> None:
-        """Put a submission, the released folder after `change`, into the exchange as `nbgrader submit` does."""
+        """Apply `change` to a copy of the released folder, and put it into the exchange as `nbgrader submit` does."""
         folder = self.exchange / "ros2-topics" / "inbound" / f"{student}+{STEP}+{at}"
         shutil.copytree(self.root / "exercises" / STEP, folder)
         change(folder)

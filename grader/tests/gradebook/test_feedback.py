@@ -1,4 +1,4 @@
-"""Hidden tests do not appear in the feedback, wherever a kernel that ran them prints them."""
+"""Hidden tests do not appear in the feedback, no matter where the kernel that ran them prints them."""
 
 from __future__ import annotations
 

@@ -136,7 +136,7 @@ class Hostile:
 
 @pytest.fixture(scope="module")
 def hostile(tmp_path_factory: pytest.TempPathFactory) -> Hostile:
-    """Grade a class with a short assignment, submissions in the exchange that attack, and an honest one."""
+    """Grade a class with a short assignment. The exchange contains attacks and an honest submission."""
     if not bubblewrap.usable():
         pytest.skip("autograde runs submissions only in a sandbox")
     folder = tmp_path_factory.mktemp("term")
@@ -177,7 +177,7 @@ def hand_in(term: Term, student: str, change: Callable[[Path, Path], object], se
 
 
 TITLE = "\x1b]0;a title of a student\x07"
-"""A name that changes the title of a terminal that prints it."""
+"""A name that changes the title of any terminal in which it is printed."""
 MARKDOWN = "<script>steal()</script> [a](javascript:steal()) <div onclick=steal()>x</div> <style>*{color:red}</style>"
 
 
@@ -206,14 +206,14 @@ SUBMISSIONS: dict[str, Callable[[Path, Path], object]] = {
     "links": with_links,
     "when": lambda folder, _: (folder / readable.TIMESTAMP).write_text("yesterday evening"),
 }
-"""Student -> the fault of the student's folder in the exchange."""
+"""Student -> what is wrong with the student's folder in the exchange."""
 BESIDE: dict[str, Callable[[Path, Path], object]] = {
     "beside": beside,
     "never": lambda folder, _: (folder / readable.TIMESTAMP).write_text("yesterday evening"),
     "deep": lambda folder, _: (folder / f"{HOMEWORK}.ipynb").write_text("[" * 100_000),
     "blocks": lambda folder, _: pipe(folder / f"{HOMEWORK}.ipynb"),
 }
-"""Student -> the fault of the student's folder in submitted/."""
+"""Student -> what is wrong with the student's folder in submitted/."""
 
 
 def scores(term: Term) -> dict[str, float]:

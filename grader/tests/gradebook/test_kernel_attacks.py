@@ -1,4 +1,4 @@
-"""Kernels that attack nbgrader are stopped with a reason. nbgrader stays small, and the notebook can be written."""
+"""Kernels that attack nbgrader are stopped with a reason. nbgrader needs little memory and can save the notebook."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ MANY_CHANGED = (
     + "for _ in range(300):\n    send('display_data', {'data': {'text/plain': ''}, **about})\n"
     + "send('update_display_data', {'data': {'text/plain': 'x' * 3_000_000}, **about})"
 )
-"""The source of a message that changes outputs to a total of a gigabyte."""
+"""The source of messages that change outputs to a total size of about a gigabyte."""
 
 
 class Application(Configurable):

@@ -1,4 +1,4 @@
-"""A trial in simulated time that stopped at a doubt by chance is repeated once; then wall time decides."""
+"""If a trial in simulated time had to stop only by chance, it is repeated once; after that, wall time decides."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SLEEPS = WallTimeNeeded("the node sleeps in wall time")
 
 @dataclass
 class Trials:
-    """A replacement for the class `Trial`. Each trial in simulated time stops at the next doubt, if there is one."""
+    """A replacement for the class `Trial`. Each trial in simulated time raises the next doubt, if any."""
 
     doubts: list[WallTimeNeeded]
     clocks: list[str] = field(default_factory=list)

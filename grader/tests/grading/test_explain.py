@@ -47,7 +47,7 @@ def right(id_: str) -> Outcome:
 def tries(
     source: str, judged: Callable[[str], Sequence[Outcome]], build_s: float = LONG_S
 ) -> tuple[Tries, dict[str, Outcome]]:
-    """Return the tries for a source, and the reported outcomes. `judged` makes up the outcomes of a source."""
+    """Return the tries for a source, and the reported outcomes. `judged` invents the outcomes for a source."""
     evidence = Evidence(exercise(), submission({NODE_FILE: source}))
     outcomes = tuple(judged(source))
 

@@ -1,4 +1,4 @@
-"""Gradings of the solution with the real command: again from a recording, on a broken machine, and many at once."""
+"""Grade the solution with the real command: again from a recording, on a broken machine, and many in parallel."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ LONGEST = {"own_circle", "go_to_goal"}
 
 @dataclass
 class Trials:
-    """A replacement for the class `Trial`. `begun` are the nodes that ran and `ended` the clocks, in order."""
+    """A replacement for the class `Trial`. `begun` lists the nodes that ran, and `ended` the clocks, in order."""
 
     open: int = 0
     begun: list[str] = field(default_factory=list)
@@ -84,7 +84,7 @@ def nobody_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def graded(trials: Trials, at_once: int, build: Any, more: bytes = b"") -> Graded:  # noqa: ANN401
-    """Return the graded solution of step 07, with `more` at the end of the file of its eight."""
+    """Return the graded solution of step 07, with `more` at the end of the file that drives the figure eight."""
     given = open_submission(ROOT / "solutions" / STEP)
     eight = f"{PACKAGE}/figure_eight.py"
     given = replace(given, files={**given.files, eight: given.files[eight] + more})

@@ -1,4 +1,4 @@
-"""A trial in wall time that fails on a crowded machine is repeated alone; on an idle machine, it is final."""
+"""A trial in wall time that fails on a crowded machine is repeated alone; on an idle machine, its result is final."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Trials:
 
     recordings: list[Recording]
     alone: list[bool] = field(default_factory=list)
-    """For each trial that was made: whether no other grading could run at the same time."""
+    """For each trial: whether it had the machine to itself, so that no other grader could run a trial."""
 
     def __call__(self, *_: object, in_cell: bool) -> Any:  # noqa: ANN401 - a Trial to whoever makes it
         assert not in_cell

@@ -1,4 +1,4 @@
-"""Gradings share the machine. A grading that needs it alone waits for the others, and later ones wait for that one."""
+"""Graders share the machine. One that needs it alone waits for the others, and later ones wait for that one."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ print("done", flush=True)
 
 
 def other(folder: Path, *how: str) -> subprocess.Popen[str]:
-    """Start a process that holds the lock, like another grading."""
+    """Start a process that holds the lock, like another grader."""
     return subprocess.Popen(
         [sys.executable, "-c", _OTHER, str(folder), *how], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     )

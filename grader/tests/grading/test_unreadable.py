@@ -1,4 +1,4 @@
-"""A submission that makes the grader fail while it is read has failed. Only the machine's own faults are errors."""
+"""If reading a submission makes the grader fail, the submission fails. Only the machine's own faults are errors."""
 
 from __future__ import annotations
 

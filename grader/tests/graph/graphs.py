@@ -37,7 +37,7 @@ def tutorial() -> Graph:
 
 
 def ten_nodes() -> Graph:
-    """Return a graph with a loop, two nodes of one name, a node without connections, long names, and a topic named like
+    """Return a graph with a loop, two nodes with the same name, an unconnected node, long names, and a topic named like
     a node.
     """
     return Graph(

@@ -63,7 +63,7 @@ class Learner:
         mine = work_folder(exercise, self.home / "ros2_ws")
         for file in sorted((solution / exercise.package).rglob("*") if exercise.package else solution.rglob("*")):
             place = mine / file.relative_to(solution / exercise.package)
-            # The learner's individual numbers of this step stay.
+            # Keep the learner's individual numbers for this step.
             own = exercise.numbers
             if file.is_file() and not (own is not None and place.name == own.file):
                 place.parent.mkdir(parents=True, exist_ok=True)
@@ -86,7 +86,7 @@ BAG = "circle_bag"
 
 
 def record_own_bag(package: Path, own: OwnNumbers) -> None:
-    """Replace the bag of the solution and the answers about it by those of a student with these numbers."""
+    """Replace the bag of the solution and the answers about it with those of a student with these numbers."""
     radius_m, speed = float(own.values["radius_m"]), float(own.values["speed_m_s"])
     poses = made_bag.poses(radius_m, speed=speed, drive_s=1.1 * 2.0 * math.pi * radius_m / speed)
     made_bag.record(package / BAG, poses)

@@ -256,7 +256,7 @@ def test_a_package_that_was_missing_for_a_while_is_graded_again(package: Path, m
 
 
 def test_the_first_of_several_trials_is_prepared_early(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The next grading starts with the latest save."""
+    """The next run grades the latest save."""
     first, second = (Plan("simulated", Pose(1.0, 1.0, 0.0), None, duration_s) for duration_s in (12.0, 9.0))
     begun: list[Plan] = []
 

@@ -102,7 +102,7 @@ def test_the_canvas_moves_below_the_cell_and_the_simulator_ends_with_the_kernel(
     assert marked_processes(mark) == set()  # the simulator ended with the `with` statement
     notebook.run("sim = simulator(); sim.__enter__(); sim.start('draw_circle')")
     notebook.run("import subprocess; subprocess.Popen(['setsid', 'sleep', '1000'])")
-    until(lambda: len(marked_processes(mark)) >= 3)  # a process that is just being executed shows no environment
+    until(lambda: len(marked_processes(mark)) >= 3)  # a process has no environment while exec is in progress
     os.kill(notebook.pid, signal.SIGKILL)
     deadline = time.monotonic() + DEADLINE_S
     while marked_processes(mark) and time.monotonic() < deadline:

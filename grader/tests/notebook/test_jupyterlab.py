@@ -42,7 +42,7 @@ def test_a_student_solves_the_released_notebook(tmp_path: Path, monkeypatch: pyt
         type_cell(page, "%%node draw_circle.py", f"%%node draw_circle.py\n{solution}")
         run_all(page)
 
-        # The canvas moves while the node runs, so one picture follows another.
+        # The turtle moves while the node runs, so new pictures replace old ones.
         canvas = page.locator(".jp-OutputArea img").last
         canvas.wait_for()
         before = canvas.get_attribute("src")

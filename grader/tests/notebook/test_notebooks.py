@@ -54,7 +54,7 @@ def test_every_file_with_a_solution_has_a_cell(step: str) -> None:
 
 
 def with_a_solution(step: str) -> list[str]:
-    """Return the names of the files to solve in this step. Later steps contain the tasks of step 07 unchanged."""
+    """Return the names of the files to complete in this step. Later steps contain the tasks of step 07 unchanged."""
     before = [ROOT / "solutions" / name for name in STEPS[: STEPS.index(step)]]
     return [
         path.name

@@ -1,4 +1,4 @@
-"""`grader open`, started as by a learner, with a separate home folder."""
+"""`grader open`, started as a learner would start it, with a separate home folder."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ def children(pid: int) -> list[int]:
 
 @contextmanager
 def asleep(pid: int) -> Iterator[None]:
-    """Stop a process and all processes below it for a while, as a laptop that sleeps does."""
+    """Suspend a process and all its descendants for a while, as happens when a laptop sleeps."""
     stopped = [pid]
     for each in stopped:
         os.kill(each, signal.SIGSTOP)

@@ -42,7 +42,7 @@ def of_home(home: Path) -> list[int]:
 
 
 def reset(page: Page) -> bool:
-    """Press Reset. Return whether the turtle stays at its start, because a last key command may still move it."""
+    """Press Reset. Return whether the turtle stays at its start, because one last key command may still move it."""
     page.get_by_role("button", name="Reset").click()
     with suppress(NotInTime):
         page.get_by_text(AT_START).wait_for(timeout=AGAIN_MS)

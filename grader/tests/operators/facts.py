@@ -162,7 +162,7 @@ class Facts:
 
 
 def _is_right_word(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
-    """Return whether a suggested name replaced a changed one in the correct package, or is an existing file."""
+    """Return whether a suggested name is one that the mistake removed, or the name of an existing file."""
     parts = re.findall(r"\w+", match["word"])
     there = any(path.endswith(f"{match['word'].replace('.', '/')}.py") for path in facts.wrong)
     return there or any(part in facts.words[0] for part in parts)

@@ -45,7 +45,7 @@ def _misspells(name: str, pattern: str, *says: Diagnosis) -> Operator:
 
 
 def _attribute_without_self(package: Package, draw: Random) -> Change | None:
-    """Yield the places where an attribute is used, but not set."""
+    """Remove `self.` where an attribute is used, but not where it is set."""
     text = package.files[package.source]
     stored = set(re.findall(r"^\s+self\.(\w+)(?:: [^=]*)? = ", text, re.MULTILINE))
     uses = [m for m in re.finditer(r"self\.(\w+)(?! *(?:: [^=\n]*)?[-+]?=[^=])", text) if m[1] in stored]
@@ -57,7 +57,7 @@ def _attribute_without_self(package: Package, draw: Random) -> Change | None:
 
 
 def _stored_without_self(package: Package, draw: Random) -> Change | None:
-    """Yield the places where an attribute is set that a method uses."""
+    """Remove `self.` where an attribute is set. It is set only once, and used elsewhere."""
     text = package.files[package.source]
     stores = [
         m
@@ -72,7 +72,7 @@ def _stored_without_self(package: Package, draw: Random) -> Change | None:
 
 
 def _misspelt_attribute(package: Package, draw: Random) -> Change | None:
-    """Yield the places where an attribute is used or set; the report may name either place."""
+    """Misspell an attribute where it is used. A report may name this line, or the line that sets it."""
     text = package.files[package.source]
     stores = {m[1]: m for m in re.finditer(r"^\s+self\.(\w+) = ", text, re.MULTILINE)}
     uses = [m for m in re.finditer(r"self\.(\w+)(?! = )", text) if m[1] in stores and len(m[1]) > 3]

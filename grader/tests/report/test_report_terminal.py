@@ -24,7 +24,7 @@ ESCAPE = "\x1b"
 
 
 class Latin1(io.StringIO):
-    """A stream that can encode few characters, as on an old terminal."""
+    """A stream that can encode only a few characters, as on an old terminal."""
 
     encoding = "latin-1"
 

@@ -1,4 +1,4 @@
-"""`ros2 bag`: a bag contains all messages and can be played again, however its recorder ended."""
+"""`ros2 bag`: a bag contains all messages and can be played again, however its recorder was stopped."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def quiet(tmp_path: Path) -> Iterator[World]:
 
 
 def record(here: World, options: str = "/count", count: int = 300) -> Running:
-    """Start to record this number of messages. Return the recorder when it has received all of them."""
+    """Start recording this number of messages. Return the recorder when it has received all of them."""
     recorder = here.start(f"ros2 bag record -o bag {options}", "Recording...")
     here.start(f"python3 talker.py {count}", "sent")
     return recorder

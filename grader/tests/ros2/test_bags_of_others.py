@@ -1,4 +1,4 @@
-"""Bags of rosbag2 that the course's recorder does not create: with types that are not installed, and without chunks."""
+"""rosbag2 bags that the course's recorder does not create: with types that are not installed, and without chunks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Commands without recordings: their start, their options, the signals that they forward, and their end."""
+"""Commands without recordings: their start, their options, the signals that they forward, and how they exit."""
 
 from __future__ import annotations
 

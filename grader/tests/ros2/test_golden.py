@@ -162,7 +162,7 @@ def test_with_turtlesim_and_draw_circle(name: str, driving: World) -> None:
 
 
 def test_interfaces_of_a_package_come_in_another_order(empty: World) -> None:
-    # The real command keeps the order of the directory. Our command sorts.
+    # The real command prints the order of the directory. Our command sorts.
     same("interface_package_turtlesim", empty, lambda text: "\n".join(sorted(text.splitlines())))
 
 

@@ -1,4 +1,4 @@
-"""A new package of `ros2 pkg create` has the same files as that of the real `ros2`."""
+"""`ros2 pkg create` creates a package with the same files as the real `ros2`."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_create_a_package_and_again(src: Path) -> None:
 
 
 def tree(folder: Path) -> set[str]:
-    """Return the kind, mode, name and empty size of each file. Other sizes differ, since the texts are our own."""
+    """Return the kind, mode and name of each file, and whether it is empty. Other sizes differ, like the texts."""
     lines = set()
     for path in [folder, *folder.rglob("*")]:
         mode = path.stat().st_mode

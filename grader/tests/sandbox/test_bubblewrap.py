@@ -70,7 +70,7 @@ def test_a_room_has_shared_memory_because_lttng_needs_it() -> None:
 
 
 def test_a_cell_sees_only_named_parts_of_a_hidden_folder(tmp_path: Path) -> None:
-    """A node uses the libraries in the environment of the grader, but needs only the launcher of the grader itself."""
+    """A node uses the libraries in the grader's environment, but it needs only the launcher from the grader itself."""
     package = tmp_path / "site-packages" / "grader"
     for name in ("trial/launcher.py", "trial/rest.py", "solutions/a.py", "fastdds.xml"):
         (package / name).parent.mkdir(parents=True, exist_ok=True)

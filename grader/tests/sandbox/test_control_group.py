@@ -1,4 +1,4 @@
-"""The kernel limits what a cell uses in total, if groups are allowed. Otherwise, the cell runs without a group."""
+"""If control groups are allowed, the kernel limits what a cell uses in total. Otherwise, the cell runs without one."""
 
 from __future__ import annotations
 

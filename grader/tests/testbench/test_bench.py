@@ -107,7 +107,7 @@ def test_it():
 def test_the_code_and_the_environment_are_the_same_for_all_nodes(files: dict[str, bytes]) -> None:
     """Each run fails with the digest of everything that it can read. All digests are equal."""
     nodes = spec("rate", "sign")
-    # The right node is not run, because its rejection would end the other runs.
+    # The correct node is not run, because its rejection would end the other runs.
     runs = run(dataclasses.replace(nodes, right_runs=0), {**files, TESTS: PEEKS.encode()})
     digests = {each.message.split("==")[0] for each in runs}
     assert (len(runs), len(digests)) == (2, 1), runs

@@ -1,4 +1,4 @@
-"""The nodes under test behave as described, and each broken node of the course differs from the right one."""
+"""The nodes under test behave as described, and each broken node of the course differs from the correct one."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ def what_one_spin_handles() -> dict[str, Any]:
 
 
 def a_line_while_the_graph_is_looked_at() -> list[float]:
-    """Return the times (s) at which a line is stored that the node logs just before the clock starts."""
+    """Return the times (s) that are stored for lines that the node prints just before the clock starts."""
     written: list[str] = []
     taken_in_s: list[float] = []
 

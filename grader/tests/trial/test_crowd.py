@@ -125,7 +125,7 @@ def test_a_stall_is_what_the_machine_owes(counts: Counts, monkeypatch: pytest.Mo
 
 
 def looked(counts: Counts, monkeypatch: pytest.MonkeyPatch) -> Stalls:
-    """Return Stalls that will find these counts at the next look."""
+    """Return a Stalls object that will find these counts at its next look."""
     node, simulator, stolen_s = counts
     times = iter([(0.0, 0.0), (0.0, 0.0), node, simulator])
     stolen = iter([0.0, 0.0, stolen_s])

@@ -1,4 +1,4 @@
-"""rqt, rqt_console and rqt_plot beside turtlesim, in the system's Chromium, started as a user does."""
+"""rqt, rqt_console and rqt_plot with a running turtlesim, in the system's Chromium, started as a user would."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The news for pages that receive them, pages that are slow, and pages that are hidden."""
+"""Updates for pages that receive them immediately, for slow pages and for hidden pages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A node that drives turtle1 to the targets and requests their removal, the nearest first."""
+"""A node that drives turtle1 to the targets and requests their removal, nearest first."""
 
 from __future__ import annotations
 

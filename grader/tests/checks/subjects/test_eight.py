@@ -15,7 +15,7 @@ TURN = 2.0 * math.pi / (TICKS * TICK_S)  # in rad/s; a circle takes this many ti
 
 
 def lobe(side: float, radius_m: float = 1.0, degrees: float = 360.0) -> tuple[int, float, float]:
-    """Return one lobe of the eight, to the left (+1) or to the right (-1)."""
+    """Return one lobe of the figure eight, to the left (+1) or to the right (-1)."""
     return round(TICKS * degrees / 360.0), radius_m * TURN, side * TURN
 
 

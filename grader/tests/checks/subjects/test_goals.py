@@ -1,4 +1,4 @@
-"""Goals of rotate_absolute: their requests and ends, the feedback in the log, cancellation, and a star."""
+"""Goals of rotate_absolute: how they are sent and how they end, feedback in the log, cancellation, and a star."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The log lines of step 06, compared with the turtle's trajectory: forward and left, a rest, backward."""
+"""The log lines of step 06, compared with the turtle's trajectory: forward and left, a pause, backward."""
 
 from __future__ import annotations
 

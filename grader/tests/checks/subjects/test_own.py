@@ -33,7 +33,7 @@ def changed(**values: float) -> OwnNumbers:
 
 
 def given(numbers: OwnNumbers | str | None, by: str | None = "alice") -> Evidence:
-    """Return the evidence of a circle with the numbers drawn for alice, and of a file with these numbers."""
+    """Return the evidence of a circle with the numbers derived for alice, and a file with the given numbers."""
     commands = every(1.0 / RATE_HZ, RADIUS_M, SIDE[str(ALICE.values["direction"])])
     text = numbers if numbers is None or isinstance(numbers, str) else to_toml(numbers)
     return evidence(

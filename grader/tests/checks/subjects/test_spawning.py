@@ -50,7 +50,7 @@ def names_at(t_s: float) -> str:
 
 
 def given(**changes: Any) -> Evidence:  # noqa: ANN401
-    """Return the evidence of a right spawner, with these changes."""
+    """Return the evidence of a correct spawner, with these changes."""
     calls = changes.pop("calls", [spawn(0.5, name, *place) for name, place in PLACES.items()] + [catch(), kill()])
     gone = changes.pop("gone", {"target2": CAUGHT_S})
     tracks = tuple(Track(name, ((0.5, *place, 0.0),), gone.get(name)) for name, place in PLACES.items())

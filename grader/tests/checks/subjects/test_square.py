@@ -28,7 +28,7 @@ def round_(sides: tuple[float, ...] = (2.0,) * 4, corners: tuple[float, ...] = (
 
 
 GAP = round_((2.1, 2.1, 1.9, 1.9), (96.0, 96.0, 96.0, 90.0))
-"""Each side and each corner is right, but the square ends 0.62 m away from its start."""
+"""Each side and each corner is correct, but the square ends 0.62 m away from its start."""
 
 
 def square(parts: list[Leg], start: Pose | None = None, **values: str) -> Finding:

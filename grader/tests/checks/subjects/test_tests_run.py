@@ -54,7 +54,7 @@ def test_tests_that_pass_only_sometimes_are_named(order: tuple[NodeRun, ...]) ->
 
 
 def test_a_missing_run_on_the_right_node_is_no_pass() -> None:
-    """No further run starts after two runs that hung, so runs on the right node may be missing."""
+    """No further run starts after two runs that hung, so runs on the correct node may be missing."""
     hung = NodeRun("stop", None, over=True)
     assert passes(GOOD, hung, dataclasses.replace(hung, node="rate")).diagnosis == "test-hangs"
     assert passes().diagnosis == "test-hangs"
@@ -102,7 +102,7 @@ def test_a_damaged_recording_of_tests_is_refused(tmp_path: Path) -> None:
 
 
 def test_tests_that_end_without_a_passed_test_do_not_pass() -> None:
-    """pytest ends with 0 if every test is skipped, or if a test ends the process."""
+    """pytest can exit with 0 if every test is skipped, or if a test ends the process."""
     skipped = dataclasses.replace(GOOD, passed=0, skipped=3)
     assert "skipped" in passes(*[skipped] * 3).cause
     ended = dataclasses.replace(GOOD, passed=0, collected=0)
