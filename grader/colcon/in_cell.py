@@ -1,7 +1,7 @@
 """Run colcon in its cell. Each `python setup.py` that colcon starts becomes a fork of a prepared interpreter.
 
 colcon runs the setup.py of a package three times, each time in a new interpreter that imports setuptools and reads the
-metadata of all installed packages again. This is most of the CPU time of a build. Here, one process does this once,
+metadata of all installed packages again. This is most of the CPU time of a build. Here, one process does all this once,
 before the submission arrives, and forks for each run of setup.py. The fork gets the folder, environment, arguments and
 streams of the process that colcon started, which only waits for the exit code. If a fork might behave differently from
 a new interpreter, no fork is used (`Run.of`).
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 READY = b"colcon-is-ready\n"
-"""Printed before the first byte of the submission is read. An error after it is never a fault of the machine."""
+"""Printed before the first byte of the submission is read. An error after that is never the machine's fault."""
 _MOST_OPEN = 4096
 _MOST_REQUEST = 1024 * 1024
 _IGNORE = re.compile(r"ignore:([^:]*)")
@@ -96,7 +96,7 @@ def _compiles(script: str) -> bool:
 
 
 class Forks:
-    """A process that has imported setuptools and forks for each Run. It ends with its parent."""
+    """A process that has imported setuptools and forks for each Run. It exits with its parent."""
 
     def __init__(self) -> None:
         importlib.import_module("setuptools")
@@ -206,10 +206,10 @@ def _main_of(run: Run) -> tuple[types.ModuleType, bytes]:
 
 
 class EntryPoints:
-    """`importlib.metadata.entry_points` with a cache. The original reads the metadata of every package in each call.
+    """`importlib.metadata.entry_points` with a cache. The original reads the metadata of every package on each call.
 
     setuptools calls it up to fifteen times per run. Here, the metadata of the machine is read once. The metadata in
-    other folders on sys.path, such as the folder of the submission, is read in each call.
+    other folders on sys.path, such as the folder of the submission, is read on each call.
     """
 
     def __init__(self) -> None:
@@ -220,7 +220,7 @@ class EntryPoints:
         self._groups: dict[str, list[metadata.EntryPoint]] = {}
 
     def __call__(self, **chosen: Any) -> Any:  # noqa: ANN401 - as the original
-        """Return the entry points with these attributes."""
+        """Return the entry points that have these attributes."""
         others = {folder: _with_metadata(folder) for folder in sys.path if folder not in self._fixed}
         group = chosen.pop("group", None)
         if group is None and not any(others.values()):

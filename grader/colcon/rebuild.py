@@ -42,7 +42,7 @@ class Rebuild:
         in_cell: bool,
         tell: Callable[[str], None],
     ) -> runner.Built:
-        """Build the submission, with or without colcon. `tell` is called with a message that says which."""
+        """Build the submission, with or without colcon. `tell` is called with a message that says which one."""
         built = read(renewed, submission, *self._last) if self._last else None
         if built is not None:
             tell("Using the last build with the changed modules")
@@ -55,7 +55,7 @@ class Rebuild:
 
 
 def renewed(submission: Submission, before: Submission, built: runner.Built) -> runner.Built | None:
-    """Return the last build with the changed modules, or None if a new build is needed."""
+    """Return the last build updated with the changed modules, or None if a new build is needed."""
     if submission.files.keys() != before.files.keys() or submission.executable != before.executable:
         return None
     changed = {path: data for path, data in submission.files.items() if data != before.files[path]}

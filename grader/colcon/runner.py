@@ -1,7 +1,7 @@
 """Runner: run `colcon build` on a submission in a cell, and read the result without executing it.
 
 The source enters the cell as a tar stream, and the install tree leaves it as another tar stream. So the build does not
-touch the disk of this machine, and the same stream is later passed to the cell of the trial.
+touch the disk of this machine, and the same stream can later be passed to the cell of the trial.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ code=$?
 [ -d install ] && tar -c --format=gnu -f - -C install .
 exit $code
 """
-# The script and in_cell.py report whether the machine can build before the first byte of the submission is read.
+# Before the first byte of the submission is read, the script and in_cell.py report whether the machine can build.
 _CELL, _READY = b"cell-is-ready\n", b"cell-is-ready\ncolcon-is-ready\n"
 _LIMITS_HIT = {
     "disk": (b"No space left on device", b"File too large", b"Disk quota exceeded"),
@@ -73,7 +73,7 @@ class Built:
 
 
 def build(submission: Submission, ros: installation.Ros, *, in_cell: bool, tell: Callable[[str], None]) -> Built:
-    """Build the submission's package with this ROS 2. `tell` is called with a short message about it.
+    """Build the submission's package with this ROS 2. `tell` is called with a short message about the build.
 
     Raises:
         MachineError: the sandbox or colcon itself does not work.
@@ -152,7 +152,7 @@ def _read(done: process.Finished) -> Built:
 def _described(done: process.Finished) -> tuple[Build, bool]:
     """Return the result of the build, and whether its install tree must be discarded."""
     lines = done.stderr[len(_READY) :].decode("utf-8", "replace").splitlines(keepends=True)
-    # colcon complains that the prefix of the wheels is not a colcon install tree. This is unrelated to the submission.
+    # colcon warns that the prefix of the wheels is not a colcon install tree. This is unrelated to the submission.
     log = "".join(line for line in lines if "colcon_ros.prefix_path.ament" not in line)
     out_of = next((name for name, signs in _LIMITS_HIT.items() if any(sign in done.stderr for sign in signs)), None)
     cut = done.timed_out or done.too_much or done.out_of is not None

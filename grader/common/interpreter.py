@@ -1,8 +1,8 @@
 """Command lines for Python that never import a module from the current folder, which may be a student's.
 
 `python -m` and `python -c` put the current folder first on sys.path, and an empty or relative entry of PYTHONPATH names
-the current folder too. A `numpy.py` or a package `grader` in the folder where somebody typed a command would then run
-with that user's rights. So every command line of an interpreter is built here, and a test fails if one is built
+the current folder too. A `numpy.py` or a package `grader` in the folder where a user typed a command would then run
+with that user's rights. So every command line for an interpreter is built here, and a test fails if one is built
 elsewhere.
 
 Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.

@@ -27,7 +27,7 @@ class _Lazy:
     def __init__(self, name: str) -> None:
         self._name = name
 
-    def __getattr__(self, attribute: str) -> Any:  # noqa: ANN401 - whatever the module holds
+    def __getattr__(self, attribute: str) -> Any:  # noqa: ANN401 - any member of the module
         return getattr(self.load(), attribute)
 
     def load(self) -> ModuleType:

@@ -21,7 +21,7 @@ class Need(NamedTuple):
     what: str
     package: str
     lost: str = ""
-    """What does not work without it. Empty if nothing works without it."""
+    """The functions that do not work without it. Empty if nothing works without it."""
 
 
 class Manager(NamedTuple):
@@ -36,13 +36,13 @@ class Manager(NamedTuple):
     names: Mapping[str, str]
     """Debian's name of a package -> the name in this package manager, if the two differ."""
     python: str = ""
-    """Pattern for the package of a Python with venv. It contains the version as 3.12 (`dotted`) or 312 (`joined`)."""
+    """A pattern for the package of a Python with venv, with the version as 3.12 (`dotted`) or 312 (`joined`)."""
     headers: str = ""
     newer: str = ""
     """Debian's name of a newer Python, which is installed if the default Python is too old."""
 
     def packages(self, needs: Iterable[Need]) -> List[str]:
-        """Return the names that this package manager uses for the packages needed."""
+        """Return this package manager's names for the packages needed."""
         names = (self._name(need.package) for need in needs)
         return list(dict.fromkeys(name for name in names if name))
 
@@ -123,7 +123,7 @@ def find_program(name: str, path: str) -> Optional[str]:
 
 
 def command(manager: Optional[Manager], needs: Sequence[Need], *, root: bool) -> str:
-    """Return the command line that installs what is missing. If the manager is unknown, list Debian's package names."""
+    """Return the command line that installs the missing packages. If the manager is unknown, list Debian's names."""
     if manager is None:
         return "your package manager (Debian's names: {})".format(", ".join(dict.fromkeys(n.package for n in needs)))
     sudo = "" if root else "sudo "

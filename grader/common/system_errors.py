@@ -9,7 +9,7 @@ import resource
 from typing import Optional
 
 OF_THE_DISK = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS})
-"""Errors that mean the disk is full or broken. Any other error concerns a single file."""
+"""Errors which mean that the disk is full or broken. Any other error concerns a single file."""
 ROOM = "free some space there, or set another folder with XDG_CACHE_HOME, XDG_STATE_HOME or TMPDIR"
 _SCARCE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN, errno.EIO})
 _NOT_ALLOWED = "see the output of `grader doctor`"

@@ -1,4 +1,4 @@
-"""Helpers for messages: quote untrusted text, format numbers and lists, find the most similar name."""
+"""Helpers for messages: quote untrusted text, format numbers and lists, and find the most similar name."""
 
 from __future__ import annotations
 

@@ -44,8 +44,8 @@ class Arc:
     def deviations(self) -> tuple[float, float, float]:
         """Return the standard deviations of centre x, centre y and radius (m) of the best fit to such points.
 
-        They follow from the noise: the Cramér-Rao bound, as in N. Chernov, "Circular and Linear Regression" (2010),
-        section 7.2.
+        They follow from the noise through the Cramér-Rao bound, as in N. Chernov, "Circular and Linear Regression"
+        (2010), section 7.2.
         """
         angle = self.angles()
         slopes = np.column_stack((np.cos(angle), np.sin(angle), np.ones_like(angle)))
@@ -66,7 +66,7 @@ class PointsInput:
 
 @dataclass(frozen=True)
 class BagInput:
-    """One run of a program that gets the name of a bag as its argument.
+    """One run of a program that takes the name of a bag as its argument.
 
     The bag contains poses of turtle1 on an arc, at `rate_hz`, and `commands` velocity commands in the same period. If
     `poses` is false, it contains only the commands.

@@ -1,10 +1,10 @@
-"""Shell completion of steps. It reads the names of the course's folders and parses no file."""
+"""Shell completion of steps. It reads the names of the course's folders but parses no files."""
 
 from __future__ import annotations
 
 
 def steps(incomplete: str) -> list[str]:
-    """Return the steps that begin with what was typed. "3" and "03" are the same step."""
+    """Return the steps that begin with the typed text. "3" and "03" are the same step."""
     from grader.exercise.model import catalogue
 
     known = list(catalogue())

@@ -1,4 +1,4 @@
-"""Read exercise.toml, and report all mistakes to its author at once.
+"""Read exercise.toml, and report all mistakes to its author together.
 
 The keys in `schema = 2`:
 
@@ -48,7 +48,7 @@ OLDER = {
     "its own; do the same with the keys of [trial.scenario], rename [[scenario.drive]] to [[trial.drive]], and set "
     "schema = 2."
 }
-"""How to update a file that has an older version of the format."""
+"""Instructions for updating a file in an older version of the format."""
 PART = re.compile(r"[a-z]")
 FIELD = Allowed(
     "a number, a string, true or false", lambda value: value if isinstance(value, str | int | float) else None, ""
@@ -76,7 +76,7 @@ def parse_tables(top: dict[str, Any], name: str, folder: Path, digest: str, kind
 
 
 def of_older_schema(values: Mapping[str, Any]) -> str:
-    """Return how to update a file that has an older version of the format, or an empty string for any other file."""
+    """Return instructions for updating a file in an older version of the format, or an empty string for other files."""
     schema = values.get("schema")
     known = OLDER.get(schema) if isinstance(schema, int) else None
     return f"schema {schema} is no longer supported: {known}" if known else ""

@@ -1,4 +1,4 @@
-"""KindSpec: the part of a kind of check that is needed for reading exercise.toml."""
+"""KindSpec: the part of a check kind that is needed for reading exercise.toml."""
 
 from __future__ import annotations
 

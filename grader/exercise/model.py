@@ -64,15 +64,15 @@ class CallInput:
 
 @dataclass(frozen=True)
 class Scenario:
-    """The events of a trial, which lasts `duration_s` (s) on the trial's clock and ends with SIGINT.
+    """The events of a trial that lasts `duration_s` (s) on its clock and ends with SIGINT.
 
     If `anywhere` is set, the start pose is random even without a seed. `rename` contains remapping rules for the
     simulator, such as "/turtle1/pose:=/where". `pose_every` is the number of frames between two poses. The first pose
     is published at `pose_from_s` (s), to simulate a late simulator. Services respond `answers_after_s` (s) after a
     call. The node starts with `parameters` on its command line and with `params_file` in a parameter file.
 
-    The simulator adds `targets` turtles at random places, and the trial plays the node that announces them
-    (grader/trial/target_keeper.py). If `alone_s` is set, the trial ends early when there were other turtles, and
+    The simulator adds `targets` turtles at random places, and the trial plays the part of the node that announces them
+    (grader/trial/target_keeper.py). If `alone_s` is set, the trial ends early once the other turtles are gone and
     turtle1 has been alone for this long (s).
     """
 
@@ -97,8 +97,8 @@ class TrialSpec:
     Without an executable, the simulator runs alone. With `calls`, neither a simulator nor a node runs: the function or
     the executable is called once for each of them. With `tests`, the student's tests run without a simulator.
 
-    If it is `beside` another trial (an id), its node runs in that trial, beside the node there, and the scenario is the
-    same. Its checks judge that trial from the viewpoint of its node.
+    If `beside` names another trial (an id), the node of this one runs there as an additional node, and the scenario is
+    the same. The checks of this trial judge the other one from the viewpoint of the additional node.
     """
 
     id: str
@@ -139,18 +139,18 @@ class Exercise:
     numbers: NumbersSpec | None = None
     """The values that differ from student to student."""
     show_fix: bool = False
-    """Whether a student's report shows the change that made the check pass when the grader tried it in a copy."""
+    """Whether a student's report shows the change that made a check pass when the grader tried it in a copy."""
     unsolved: tuple[str, ...] = ()
     """The checks that the starting point must fail (for `grader validate`). Checks that depend on them are skipped."""
     apart: bool = False
-    """Whether the package has a workspace of its own because it is not the package that grows from step to step."""
+    """Whether the package has a separate workspace because it is not the package that grows from step to step."""
 
     def trial(self, id_: str) -> TrialSpec:
         """Return the trial with this id. Raises KeyError if there is none."""
         return {trial.id: trial for trial in self.trials}[id_]
 
     def beside(self, id_: str) -> tuple[TrialSpec, ...]:
-        """Return the trials whose nodes run in the trial with this id, beside its own node."""
+        """Return the trials whose nodes run in the trial with this id as additional nodes."""
         return tuple(trial for trial in self.trials if trial.beside == id_)
 
 
@@ -168,6 +168,6 @@ def course_folder() -> Path:
 
 
 def catalogue(course: Path | None = None) -> dict[str, Path]:
-    """Return all exercises of the course, id -> exercise.toml, in the order of the lessons. No file is parsed."""
+    """Return all exercises of the course (id -> exercise.toml) in the order of the lessons. No file is parsed."""
     folder = course_folder() if course is None else course
     return {file.parent.name: file for file in sorted(folder.glob(f"*/{FILE_NAME}"))}

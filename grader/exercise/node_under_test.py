@@ -54,7 +54,7 @@ class NodeUnderTest:
 
 @dataclass(frozen=True)
 class TestsSpec:
-    """The table `[trial.tests]`: the tests of the student run on the right node and on every broken node.
+    """The table `[trial.tests]`: the student's tests run on the right node and on every broken node.
 
     The tests import the class `name` from `module`. They run `right_runs` times on the right node. `duration_s` (s) is
     the maximum duration of one run.

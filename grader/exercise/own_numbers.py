@@ -1,8 +1,8 @@
-"""Own numbers: the values of an exercise that differ from student to student, derived from the student's id.
+"""Students' own numbers: the values of an exercise that differ between students, derived from the student's id.
 
 The table `[numbers]` in exercise.toml lists the possible values. `grader start` writes the student's own values to a
-TOML file in the package. They depend only on the id, so a check can detect numbers that were changed. A parameter of a
-check that is `{ own = "radius_m" }` gets the student's own value.
+TOML file in the package. They depend only on the id, so a check can detect numbers that were changed. If a parameter of
+a check is `{ own = "radius_m" }`, it gets the student's own value.
 """
 
 from __future__ import annotations

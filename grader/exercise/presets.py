@@ -103,7 +103,7 @@ def _made(table: Mapping[str, Any], trials: Sequence[Mapping[str, Any]]) -> list
             "points": 0,
             "needs": [need.format(**words) for need in template.get("needs", [])],
         }
-        # The checks of the package do not belong to a particular trial.
+        # The package's checks do not belong to a particular trial.
         more = {"trial": spec["id"]} if prefix else {}
         made.append({**check, **more, **table.get(name, {})})
     return made
@@ -117,6 +117,6 @@ def _one_of(names: Mapping[str, object]) -> str:
     return f"one of {', '.join(names)}"
 
 
-def _guess(name: str, allowed: Any) -> str:  # noqa: ANN401 - whatever holds names
+def _guess(name: str, allowed: Any) -> str:  # noqa: ANN401 - any container of names
     guess = nearest(name, allowed)
     return f' Did you mean "{guess}"?' if guess else ""

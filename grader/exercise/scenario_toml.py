@@ -31,7 +31,7 @@ CALLS = ("function", "points", "bag")
 """The keys of a `[[trial]]` without a simulator."""
 MAX_DURATION_S = 600.0
 MOST_TARGETS = 5
-"""More turtles do not fit on the canvas in an order that is clear (grader/trial/target_places.py)."""
+"""The canvas has no room for more turtles in an unambiguous order (grader/trial/target_places.py)."""
 MAX_SPEED = 10.0
 """The maximum speed (m/s, rad/s)."""
 
@@ -62,7 +62,7 @@ def _trial(table: Table, package: str) -> TrialSpec:
 
 
 def _with_scenario(table: Table, trial: TrialSpec, trials: tuple[TrialSpec, ...]) -> TrialSpec:
-    """Return a trial that is beside another one with the scenario of that one."""
+    """Return the trial with the scenario of the trial that it is `beside`, if there is one."""
     if not trial.beside:
         return trial
     ids = [each.id for each in trials if each.node and not each.beside and each.tests is None]
@@ -144,7 +144,7 @@ def _call(table: Table) -> CallInput:
 
 
 def _set(table: Table, node: str) -> CallInput:
-    """Return the service call that sets one or several parameters of the node, as `ros2 param set` does."""
+    """Return the service call that sets one or more parameters of the node, as `ros2 param set` does."""
     at_s = table.number("at_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)")
     first = _parameter(table.string("parameter"), table.setting("value"))
     others = [_parameter(name, value) for name, value in table.settings("also").items()]

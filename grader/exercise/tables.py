@@ -44,7 +44,7 @@ class Table:
         """Record a mistake in this table."""
         self.problems.append(f"{self.place}: {text}" if self.place else text)
 
-    def _get(self, key: str, allowed: str, good: Callable[[object], bool], *, default: Any) -> Any:  # noqa: ANN401 (whatever `good` lets pass)
+    def _get(self, key: str, allowed: str, good: Callable[[object], bool], *, default: Any) -> Any:  # noqa: ANN401 (any value that `good` accepts)
         """Return the value of the key if `good(value)`. Otherwise, record the mistake and return the default."""
         self.known.append(key)
         if key not in self.values:
@@ -116,7 +116,7 @@ class Table:
         return tuple(float(each) for each in self._get(key, "a list of numbers", good, default=None) or ())
 
     def options(self, key: str) -> tuple[Any, ...]:
-        """Return a list of at least two different values: all strings, or all numbers."""
+        """Return a list of at least two different values, either all strings or all numbers."""
 
         def good(value: object) -> bool:
             if not isinstance(value, list) or len(value) != len(set(map(repr, value))) or len(value) < 2:

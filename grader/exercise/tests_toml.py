@@ -19,7 +19,7 @@ MAX_RUN_S = 60.0
 
 
 def read_tests(table: Table) -> TestsSpec:
-    """Return how to run the student's tests in this trial. Mistakes are recorded in the tables that contain them."""
+    """Return the settings of this trial's tests. Mistakes are recorded in the tables that contain them."""
     tests = table.table("tests")
     duration_s = table.number("duration_s", 1.0, MAX_RUN_S, f"from 1 to {MAX_RUN_S:g} (s)")
     tests.place = f"{table.place}, tests"

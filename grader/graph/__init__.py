@@ -1,1 +1,1 @@
-"""The ROS graph: how it is discovered, what belongs to it, and how it is drawn."""
+"""The ROS graph: its discovery, its contents, and its drawing."""

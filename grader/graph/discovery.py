@@ -48,7 +48,7 @@ _UNKNOWN = "_NODE_NAME_UNKNOWN_"
 
 @contextmanager
 def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bool = False) -> Iterator[Node]:
-    """Create a hidden node without services, and remove it from the graph properly when the context exits.
+    """Create a hidden node without services, and remove it from the graph properly on exit from the context.
 
     A `patient` node announces itself less often, because it runs for hours.
 
@@ -152,7 +152,7 @@ class Settling:
 
 
 def settle(node: Node, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> bool:
-    """Wait until the graph that a new node sees has settled or `enough` returns true; return False at the deadline."""
+    """Wait until the graph seen by a new node has settled or `enough` returns true; return False at the deadline."""
     return Settling(node).settle(enough, deadline_s)
 
 
@@ -174,7 +174,7 @@ def spin_until(node: Node, done: Callable[[], bool], timeout_s: float | None = N
 
 
 def nap(duration_s: float) -> None:
-    """Sleep. Unlike a wait inside rclpy, the sleep is interrupted by a signal at once."""
+    """Sleep. Unlike a wait inside rclpy, the sleep is interrupted immediately by a signal."""
     if duration_s > 0:
         time.sleep(duration_s)
 
@@ -189,7 +189,7 @@ def _graph(node: Node) -> object:
 def _complete(node: Node, waited_s: float, named_s: float | None = None) -> bool:
     """Return whether all participants on this machine have been discovered, including the names of their nodes.
 
-    Participants on other machines cannot be counted. The wait for them is `named_s`, which the user chose.
+    Participants on other machines cannot be counted. The time to wait for them is `named_s`, if the user chose one.
     """
     expected = _participants(node.context.get_domain_id())
     endpoints: list[Any] = []
@@ -207,7 +207,7 @@ def _complete(node: Node, waited_s: float, named_s: float | None = None) -> bool
 def _participants(domain: int) -> int | None:
     """Count the DDS participants on this machine in a domain by their open ports; None if they cannot be counted.
 
-    Ports according to DDSI-RTPS, 9.6.1.1: metatraffic unicast = 7400 + 250 * domain + 10 + 2 * participant.
+    The ports follow DDSI-RTPS, 9.6.1.1: metatraffic unicast = 7400 + 250 * domain + 10 + 2 * participant.
     """
     first = 7400 + 250 * domain
     ports: set[int] = set()

@@ -28,7 +28,7 @@ class Observed:
 
 
 def observe(node: Node) -> Observed:
-    """Return what `node` has discovered so far; call `discovery.settle` first to get the whole graph."""
+    """Return the part that `node` has discovered so far; call `discovery.settle` first to get the whole graph."""
     own = node.get_fully_qualified_name()
     names = [_full(name, namespace) for name, namespace in node.get_node_names_and_namespaces()]
     ends = []

@@ -29,16 +29,16 @@ class Endpoint(Protocol):
 
     @property
     def node(self) -> str:
-        """The full name of its node, as in "/draw_circle"."""
+        """The full name of its node, such as "/draw_circle"."""
 
     @property
     def topic(self) -> str:
-        """The full name of its topic, as in "/turtle1/cmd_vel"."""
+        """The full name of its topic, such as "/turtle1/cmd_vel"."""
 
 
 @dataclass(frozen=True)
 class Show:
-    """Which parts of a graph are shown, like the check boxes of the real rqt_graph."""
+    """The parts of a graph to show, like the check boxes of the real rqt_graph."""
 
     debug: bool = False
     """Debug topics (/rosout, /parameter_events, /clock) and the nodes of tools."""
@@ -85,7 +85,7 @@ class Picture:
 
 
 def picture(nodes: Iterable[str], endpoints: Iterable[Endpoint], show: Show | None = None) -> Picture:
-    """Choose which nodes (full names, one entry per node), publishers and subscriptions to show."""
+    """Choose the nodes (full names, one entry per node), publishers and subscriptions to show."""
     chosen = show or Show()
     ends = list(endpoints)
     counts = Counter(nodes)
@@ -132,14 +132,14 @@ _BOX = 'shape=box, fillcolor="#fff8e1", color="#ef6c00"'
 
 
 def to_dot(drawn: Picture) -> str:
-    """Return the graph in DOT, the language of Graphviz. Each node and each topic has a unique name there."""
+    """Return the graph in DOT, the language of Graphviz. Each node and each topic gets a unique name in it."""
     names = {node.name for node in drawn.nodes}
     lines = []
     for node in drawn.nodes:
         twice = f", label={_quoted(f'{node.name}{chr(10)}({node.count} nodes of this name)')}" if node.count > 1 else ""
         lines.append(f"{_quoted(node.name)} [{_ELLIPSE}{twice}];")
     for topic in drawn.topics:
-        # A topic may have the same name as a node. Without another key, DOT would treat them as one node.
+        # A topic may have the same name as a node. Without a different key, DOT would treat them as one node.
         clash = f", label={_quoted(topic.name)}" if topic.name in names else ""
         key = _quoted(f"topic {topic.name}" if clash else topic.name)
         lines.append(f"{key} [{_BOX}{clash}];")

@@ -24,7 +24,7 @@ _HANG_S = 60.0
 
 
 def render(dot: str, kind: Format) -> bytes:
-    """Lay out a graph in DOT and draw it: SVG is UTF-8 text, PNG has 144 pixels per inch, json0 has all positions.
+    """Lay out a DOT graph and draw it: SVG is UTF-8 text, PNG has 144 pixels per inch, and json0 has all positions.
 
     Raises:
         MachineError: Graphviz is not installed or cannot draw.
@@ -52,7 +52,7 @@ def render(dot: str, kind: Format) -> bytes:
 
 
 def _our_font(folder: Path) -> dict[str, str]:
-    """Limit fontconfig to the fonts of matplotlib, so that text has the same width on every machine."""
+    """Limit fontconfig to matplotlib's fonts, so that text has the same width on every machine."""
     spec = find_spec("matplotlib")
     if spec is None or spec.origin is None:
         return {}

@@ -1,4 +1,4 @@
-"""Names in the graph: whether they are hidden, which types they have, and how to complete them."""
+"""Names in the graph: hidden names, types, and completion."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def hidden(name: str) -> bool:
-    """Return whether a name is meant for tools only, which means that a part of it begins with "_"."""
+    """Return whether a name is meant only for tools, which is the case if a part of it begins with "_"."""
     return any(part.startswith("_") for part in name.split("/"))
 
 

@@ -1,1 +1,1 @@
-"""Submissions: find the package of a student, read it without running it, and copy it."""
+"""Submissions: find a student's package, read it without running it, and copy it."""

@@ -1,6 +1,6 @@
 """BagFolder: a bag that a student recorded, read from the files of the submission.
 
-The bag is not trusted. It is read in the process with limits (reader.py), without writing anything.
+The bag is not trusted. It is read in a process with limits (reader.py), and nothing is written.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Problem = Literal["", "missing", "elsewhere", "unfinished", "storage", "damaged"
 
 @dataclass(frozen=True)
 class Poses:
-    """The poses on one topic, in the order of the bag: when each was received (s), x and y (m)."""
+    """The poses on one topic, in the order of the bag: the time of arrival (s), x and y (m)."""
 
     t_s: tuple[float, ...] = ()
     x: tuple[float, ...] = ()
@@ -41,7 +41,7 @@ class Poses:
 class BagFolder:
     """A bag. `problem` is the reason why it cannot be read, and `detail` the folder, file or error that caused it.
 
-    `types` has the type of each topic, `counts` the number of its messages, and `poses` the messages of type Pose.
+    `types` holds the type of each topic, `counts` the number of its messages, and `poses` the messages of type Pose.
     """
 
     problem: Problem

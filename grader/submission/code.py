@@ -84,14 +84,14 @@ class Call:
 
 @dataclass(frozen=True)
 class Code:
-    """The node's file, then the files of the submission that it imports, except tests and setup.py."""
+    """The node's file and the submission files that it imports, except tests and setup.py."""
 
     modules: tuple[Module, ...]
     node_file: str | None = None
 
     @property
     def start(self) -> Where | None:
-        """The node's file as a place that messages can refer to."""
+        """The node's file, as a place for messages to refer to."""
         return None if self.node_file is None else Where(self.node_file)
 
     @cached_property
@@ -176,7 +176,7 @@ def imported_files(module: Module, paths: Collection[str]) -> list[str]:
         elif isinstance(node, ast.ImportFrom):
             folder = module.file.split("/")[: -node.level] if node.level else []
             base = ".".join([*folder, *([node.module] if node.module else [])])
-            # No file has a name this long, and many such names would take too much memory.
+            # No file name is this long, and many such names would take too much memory.
             names = [base, *(f"{base}.{alias.name}" for alias in node.names)] if len(base) <= MAX_NAME else []
         else:
             continue

@@ -13,7 +13,7 @@ Constant = str | float | int
 
 
 class Names(dict[str, "ast.expr | None"]):
-    """The assigned names with their expressions, and a limit on the work for evaluating them.
+    """The assigned names with their expressions, and a limit on the work of evaluating them.
 
     In `x = y + y; y = z + z; ...`, each line doubles the work. So the number of nodes evaluated per module is limited.
     """

@@ -31,7 +31,7 @@ class Submission:
 
     `files` leaves out build/, install/, log/, hidden folders, virtual environments, caches and everything that is not a
     regular file in the folder. `rejected` names the files that make the submission invalid, each with the reason, for
-    example a symlink that points outside the package. A link to another file of the package has the content of that
+    example a symlink that points outside the package. A link to another file in the package has the content of that
     file. Every path in `files` is printable.
     """
 

@@ -38,7 +38,7 @@ def read_manifest(data: bytes) -> Manifest:
     warnings: list[str] = []
     try:
         package = catkin_package.parse_package_string(data, "package.xml", warnings)
-    except Exception as error:  # InvalidPackage, and any other exception that a broken file causes
+    except Exception as error:  # InvalidPackage, or any other exception that a broken file causes
         text = str(error)
         at = AT_LINE.search(text)
         problem = shorten(NO_NEWS.sub(" ", text).strip(" \n-"), 160)

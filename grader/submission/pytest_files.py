@@ -61,7 +61,7 @@ def is_test_file(path: str) -> bool:
 
 
 def read_test_code(files: Mapping[str, bytes], folder: str) -> TestCode:
-    """Read the test files. Raises TooLargeError if they are larger than anybody writes by hand."""
+    """Read the test files. Raises TooLargeError if they are larger than anyone would write by hand."""
     inside = f"{folder}/"
     paths = [
         path
@@ -75,7 +75,7 @@ def read_test_code(files: Mapping[str, bytes], folder: str) -> TestCode:
 
 
 def is_fixture(node: ast.AST) -> bool:
-    """Return whether a function is a fixture of pytest."""
+    """Return whether a function is a pytest fixture."""
     decorators = getattr(node, "decorator_list", [])
     targets = [each.func if isinstance(each, ast.Call) else each for each in decorators]
     return any((dotted(each) or "").rpartition(".")[2] == "fixture" for each in targets)

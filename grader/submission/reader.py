@@ -1,6 +1,6 @@
 """Reader: read a student's files in a child process with limits on time and memory.
 
-All such reading must go through `read`. The child is a fork, so it has all data of its parent. It returns plain data.
+All such reading must go through `read`. The child is a fork, so it has all its parent's data. It returns plain data.
 A test (grader/tests/test_reading.py) finds every other place that reads a submission.
 """
 
@@ -183,7 +183,7 @@ def _received(pipe: int) -> bytes | None:
     return None
 
 
-def _value(answer: bytes | None, status: int | None) -> Any:  # noqa: ANN401 - whatever was read
+def _value(answer: bytes | None, status: int | None) -> Any:  # noqa: ANN401 - any result
     if answer is None or status is None:
         raise TooLargeError(_too_much())
     if os.WIFSIGNALED(status):

@@ -94,13 +94,13 @@ def _visit_below(search: _Search, folder: int, entry: Entry, path: str, depth: i
         with tree.open_folder(entry.name, folder) as descriptor:
             _visit(search, descriptor, path, depth + 1, name)
     except OSError as error:
-        # This raises an exception if the machine is at fault. Otherwise, a folder that we cannot enter has no package
-        # for us.
+        # This raises an exception if the machine is at fault. Otherwise, a folder that cannot be entered counts as one
+        # without a package.
         tree.reason(error, path)
 
 
 def _is_folder_behind(name: str, folder: int) -> bool:
-    """Return whether the link leads to a folder, for use in a message. The link is not followed."""
+    """Return, for a message, whether the link leads to a folder. The link is not followed."""
     try:
         return stat.S_ISDIR(os.stat(name, dir_fd=folder).st_mode)
     except OSError:

@@ -1,6 +1,6 @@
 """Uses of functions, found by their last names, even if the source gives the functions other names.
 
-A search for calls of `sleep` does not find `from time import sleep as nap`, `nap = time.sleep`, `partial(time.sleep,
+A search for calls to `sleep` does not find `from time import sleep as nap`, `nap = time.sleep`, `partial(time.sleep,
 1)` or `getattr(time, "sleep")`. It does not find a function in another file that calls `sleep` either. So every mention
 of one of the functions counts as a use, and names in other files that refer to one are followed.
 """
@@ -37,7 +37,7 @@ class Use:
 
 @dataclass
 class _File:
-    """One file of the submission, and what its names refer to."""
+    """One file of the submission, and the meanings of its names."""
 
     module: Module
     functions: dict[str, str] = field(default_factory=dict)
@@ -71,7 +71,7 @@ def uses_of(modules: Sequence[Module], file: str | None, names: Collection[str])
 
 
 def _reached(files: Sequence[_File], names: Collection[str]) -> dict[Top, str]:
-    """Map the files' top-level names that lead to one of the functions to the name of that function."""
+    """Map each top-level name that leads to one of the functions to the name of that function."""
     reached: dict[Top, str] = {}
     users: dict[Top, set[Top]] = {}
     for each in files:
@@ -120,7 +120,7 @@ def _bound(statements: Iterable[ast.stmt]) -> set[str]:
 
 
 def _read(module: Module, modules: Sequence[Module], names: Collection[str]) -> _File:
-    """Read a file, and use its imports, at any level, to determine what its names refer to."""
+    """Read a file, and determine the meanings of its names from its imports at any level."""
     found = _File(module)
     tops = {
         each.file.rpartition("/")[2].removesuffix(".py"): {name: (each.file, name) for name in _bound(each.body)}
@@ -187,7 +187,7 @@ def _is_of_a_module(node: ast.expr) -> bool:
 
 
 def _by_string(call: ast.Call, names: Collection[str]) -> str | None:
-    """Return the function that is named by a string argument, or used by source code in a string."""
+    """Return the function that is named in a string argument, or used by source code in a string."""
     for argument in (*call.args, *(keyword.value for keyword in call.keywords)):
         if isinstance(argument, ast.Constant) and isinstance(argument.value, str):
             words: list[str] = re.findall(r"\w+", argument.value[:10_000])

@@ -29,11 +29,11 @@ if TYPE_CHECKING:
 RELAYED = Path(__file__).absolute().with_name("relayed_node.py")
 MOST_LANES = 4
 MOST_HANGS = 2
-"""After this number of runs that did not end in time, no further run is started."""
+"""After this number of runs that did not finish in time, no further run is started."""
 
 
 class Bench:
-    """The runs of one submission. `start` begins them in threads, and `result` waits for them."""
+    """The runs of one submission. `start` runs them in threads, and `result` waits for them."""
 
     def __init__(
         self,
@@ -65,7 +65,7 @@ class Bench:
         self._done = [pool.submit(self._work) for _ in range(self._count)]
 
     def result(self) -> tuple[Ended, ...]:
-        """Wait for all runs, and return how they ended.
+        """Wait for all runs, and return their results.
 
         Raises:
             MachineError: the sandbox, pytest or rclpy does not work.
@@ -75,7 +75,7 @@ class Bench:
         return tuple(self._queue.ended)
 
     def close(self) -> None:
-        """End all runs."""
+        """Stop all runs."""
         self._queue.close()
         for lane in self._opened:
             lane.kill()
@@ -96,7 +96,7 @@ class Bench:
 
 
 class _Queue:
-    """The pending runs, in a random order, and the runs that have ended."""
+    """The pending runs, in a random order, and the runs that have finished."""
 
     def __init__(self, spec: TestsSpec) -> None:
         self._waiting: list[tuple[str, Behaviour]] = [("", spec.right)] * spec.right_runs
@@ -109,8 +109,8 @@ class _Queue:
     def take(self) -> tuple[str, Behaviour] | None:
         """Return the next run, or None.
 
-        If the tests rejected the right node, they earn nothing on broken nodes. The remaining runs then use the right
-        node.
+        If the tests rejected the right node, they earn no points for rejecting broken nodes. The remaining runs then
+        use the right node.
         """
         with self._lock:
             if self._closed or sum(each.over for each in self.ended) >= MOST_HANGS:
@@ -120,7 +120,7 @@ class _Queue:
             return self._waiting.pop() if self._waiting else None
 
     def put(self, ended: Ended) -> None:
-        """Store how a run ended."""
+        """Store the result of a run."""
         with self._lock:
             self.ended.append(ended)
 

@@ -1,4 +1,4 @@
-"""A lane: one cell in which the student's tests run on one node after the other, and the brain of the current node."""
+"""A lane: one cell, in which the student's tests run on one node after another, and the brain of the current node."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ class Lane:
         self._send(json.dumps(order).encode() + b"\n" + self._package.tree)
 
     def run(self, node: str, behaviour: Behaviour) -> Ended:
-        """Run the tests on this node (the id of a broken one, or ""), and return how the run ended.
+        """Run the tests on this node (the id of a broken one, or ""), and return the result.
 
         Raises:
             MachineError: pytest or rclpy could not be imported.
@@ -157,7 +157,7 @@ class Lane:
         return Ended(node, None, time.monotonic() >= until, time.monotonic() - begun)
 
     def _converse(self, brain: Brain, until: float) -> bytes | None:
-        """Answer requests about the node until the session reports the end. Return None if it does not."""
+        """Answer requests about the node until the session reports the end of the run. Return None if it never does."""
         assert self._process.stdout is not None
         reports = self._process.stdout.fileno()
         asked, rest, received = 0, b"", b""
@@ -199,7 +199,7 @@ class Lane:
         elif event == b"t":
             answer = brain.tick(number, now_ns)
         data = json.dumps(answer).encode()
-        with suppress(OSError):  # a run that does not read its answers gets no more of them
+        with suppress(OSError):  # a run that does not read its answers gets no further ones
             os.write(self._answers, _LENGTH.pack(len(data)) + data)
 
     def _discard_questions(self) -> None:
@@ -211,7 +211,7 @@ class Lane:
 
     def _send(self, data: bytes) -> None:
         assert self._process.stdin is not None
-        with suppress(BrokenPipeError):  # the process has ended, and `run` will notice
+        with suppress(BrokenPipeError):  # the process has exited, and `run` will notice
             self._process.stdin.write(data)
             self._process.stdin.flush()
 
@@ -220,7 +220,7 @@ class Lane:
         self.kill()
 
     def kill(self) -> None:
-        """End all processes of the cell."""
+        """Kill all processes of the cell."""
         with suppress(ProcessLookupError):
             os.killpg(self._process.pid, signal.SIGKILL)
 

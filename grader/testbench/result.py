@@ -10,14 +10,14 @@ from typing import Any
 from grader.common.json_types import number, text, whole_or_none
 
 MOST_MESSAGE = 1500
-"""The maximum length of a message of pytest (characters)."""
+"""The maximum length of a pytest message (characters)."""
 
 
 @dataclass(frozen=True)
 class NodeRun:
     """One run of all tests. `node` is the id of the broken node, or "" for the right one.
 
-    `exit_code` is that of pytest, None if the run did not end on its own. `collected` is the number of tests that
+    `exit_code` is that of pytest, or None if the run did not finish on its own. `collected` is the number of tests that
     pytest found. The other fields describe the first test that did not pass: its name, the message, the file, the line,
     and what failed: the test itself ("failed"), a fixture ("setup") or the import of its file ("import"). A student's
     process reports all of this. So only the pass or failure of a run counts, and only together with the other runs.
@@ -72,7 +72,7 @@ class Ended:
 
 
 def run_of(ended: Ended) -> NodeRun:
-    """Return the run with its report. Parts of the report that have an unexpected form are left out."""
+    """Return the run with its report. Parts of the report that have an unexpected form are ignored."""
     try:
         report = json.loads(ended.report)
     except ValueError:
@@ -103,7 +103,7 @@ def runs_of(ended: tuple[Ended, ...]) -> tuple[NodeRun, ...]:
 
 
 def from_json(data: Any) -> BenchResult:  # noqa: ANN401 - JSON
-    """Return the result in a recording. Raises KeyError, TypeError or ValueError for anything else."""
+    """Return the result stored in a recording. Raises KeyError, TypeError or ValueError if the data is not one."""
     return BenchResult(tuple(map(_run, data["runs"])), number(data["seconds"]))
 
 

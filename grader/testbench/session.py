@@ -3,9 +3,10 @@
 This file runs as a separate script. It reads one line of JSON and the files of the package (a tar stream) from
 standard input, then one byte per run. It writes to standard output: READY as soon as it can run tests, and after each
 run the exit code of pytest, whether the time limit was exceeded, the seconds, the size of the report, and the report.
-It does not know which node a run gets.
+It does not know which node a run uses.
 
-Between two runs, it ends all processes of the cell and empties its disks. So a run finds no traces of earlier runs.
+Between two runs, it kills all other processes of the cell and empties its disks. So a run finds no trace of the
+earlier ones.
 """
 
 from __future__ import annotations
@@ -66,7 +67,7 @@ class _Watcher:
             self.cases.append({"name": report.nodeid, "outcome": outcome, **_details(report)})
 
     def report(self) -> bytes:
-        """Return the report as JSON: how many tests were found, and those that ran."""
+        """Return the report as JSON: the number of tests that were found, and the tests that ran."""
         return json.dumps({"collected": self.collected, "cases": self.cases[-50:]}).encode()
 
 
@@ -125,7 +126,7 @@ def _run_tests(order: dict[str, Any], source: bytes) -> NoReturn:
     code: int = 1
     try:
         ctypes.CDLL(None).prctl(_DUMPABLE, 1, 0, 0, 0)
-        # Without a cell, nothing else ends a run whose session is killed.
+        # Without a cell, nothing else stops a run whose session is killed.
         ctypes.CDLL(None).prctl(_PARENT_DEATH, signal.SIGKILL, 0, 0, 0)
         os.setpgid(0, 0)
         null = os.open(os.devnull, os.O_RDWR)
@@ -173,7 +174,7 @@ def _empty_pipe(pipe: int) -> None:
 
 
 def _end_all(group: int | None) -> None:
-    """End all other processes of the cell. Outside of a cell, end those of this process group."""
+    """Kill all other processes of the cell, or, outside a cell, those of this process group."""
     until = time.monotonic() + _GONE_S
     try:
         while time.monotonic() < until:
@@ -193,8 +194,8 @@ class _Disk:
         self._first = set(self._entries(folder))
 
     def empty(self) -> None:
-        """Remove what a run left behind. Exit if that fails, because the next run could find it."""
-        # in this order, the contents of a folder come before the folder itself
+        """Remove everything that a run left behind. Exit if that fails, because the next run could find it."""
+        # in this order, the contents of a folder are removed before the folder itself
         for path in sorted(self._entries(self._folder), reverse=True):
             if path in self._first:
                 path.chmod(0o755)
