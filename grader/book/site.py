@@ -50,7 +50,7 @@ def assets() -> dict[str, Path]:
 
 
 def pictures(among: Sequence[Lesson]) -> dict[str, Path]:
-    """Return the pictures of the lessons by their path in the book. Only pictures inside course/ are included."""
+    """Return the pictures of the lessons by their paths in the book. Only pictures inside course/ are included."""
     found = {}
     for lesson in among:
         course = lesson.folder.parent.resolve()

@@ -1,4 +1,4 @@
-"""An engine with worker processes on this machine. Their number depends on the processors and the memory."""
+"""An engine with worker processes on this machine. Their number depends on the processors and memory."""
 
 from __future__ import annotations
 

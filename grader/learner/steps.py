@@ -30,7 +30,7 @@ FIRST_OF_PART_TWO = "08"
 
 @dataclass(frozen=True)
 class Begun:
-    """A step that was started, with the changes in the workspace and the folder of the work."""
+    """A step that was started, with the changes in the workspace and the folder with the work."""
 
     exercise: Exercise
     started: Started
@@ -92,7 +92,7 @@ def _setup_file() -> Path:
 
 
 def current(folder: Path | None) -> tuple[Exercise, Path] | None:
-    """Return the current step and the folder of the work on it, or None before the first `start`."""
+    """Return the current step and the folder with the work on it, or None before the first `start`."""
     root = progress.workspace_of(folder)
     name = progress.load(root).current
     if name is None or name not in catalogue():

@@ -207,8 +207,8 @@ class Watched:
     def prove(self, tell: Callable[[str], None], give_up: Callable[[], bool]) -> Graded | None:
         """Prove the causes of the last report by trying to fix them in a copy (see `grader.grading.explain`).
 
-        Before each try, `give_up` returns whether other work must be done first. If so, the next call starts again.
-        Return the report with the results of the tries, or None if they have changed nothing.
+        Before each attempt, `give_up` returns whether other work must be done first. If so, the next call starts again.
+        Return the report with the results of the attempts, or None if they have changed nothing.
         """
         if self._unproved is None or give_up():
             return None

@@ -52,7 +52,7 @@ def _guard() -> None:
     """Mark the future child processes of the kernel, and start the guardian that stops them after the kernel."""
     mark = f"{os.getpid()}-{secrets.token_hex(8)}"
     # Only this process has the write end of the pipe, because Python does not pass descriptors to child processes.
-    # The guardian must not inherit the folder or the mark of the kernel.
+    # The guardian must not inherit the kernel's folder or mark.
     env = {"PATH": os.environ.get("PATH", ""), "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
     start = interpreter(str(Path(guardian.__file__).absolute()), mark, env=env)
     started = subprocess.Popen(

@@ -62,7 +62,7 @@ class Ros:
 
     @property
     def name(self) -> str:
-        """The name in a report. It contains no paths, so reports of different machines are equal."""
+        """The name in a report. It contains no paths, so reports from different machines are identical."""
         return f"Jazzy (rclpy {self.version}, {'sourced' if self.kind == 'sourced' else 'wheels'})"
 
     @property

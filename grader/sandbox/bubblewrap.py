@@ -222,7 +222,7 @@ def _disk(view: View) -> list[str]:
     # bwrap creates missing parent folders readable only by their owner, so name them here.
     parents = dict.fromkeys(parent for path in shown for parent in reversed(path.parents[:-1]))
     command += [word for parent in parents for word in ("--dir", str(parent))]
-    # Visible parts of a hidden folder are added after the folder was emptied.
+    # Visible parts of a hidden folder are added after the folder has been emptied.
     within = {path: folder for path in shown for folder in view.hidden if path.is_relative_to(folder)}
     command += [word for path in shown if path not in within for word in _observed(path)]
     command += [word for folder in view.hidden for word in ("--tmpfs", str(folder))]

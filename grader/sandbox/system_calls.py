@@ -2,7 +2,7 @@
 
 The filter forbids calls that no node needs and that attackers have used to escape from sandboxes. A list of allowed
 calls would break with a new Python or Fast DDS. Namespaces, limits and mounts are the first defence; this is the
-second. It also forbids memory that counts neither for a tmpfs nor for a process (memfd, System V shared memory), and
+second. It also forbids memory that counts towards neither a tmpfs nor a process (memfd, System V shared memory), and
 calls that use up a user's or the machine's resources, because other cells may have the same user.
 """
 

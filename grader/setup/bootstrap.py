@@ -94,7 +94,7 @@ def say(text: str) -> None:
 
 
 def clean_environment(env: Mapping[str, str]) -> Dict[str, str]:
-    """Return the environment without variables of a sourced ROS 2 or an active venv, which mislead installers."""
+    """Return the environment without variables of a sourced ROS 2 or active venv, which would mislead installers."""
     foreign = {
         "PYTHONPATH",
         "PYTHONHOME",

@@ -109,12 +109,12 @@ class TurtleInterface:
         return self._rotate.idle
 
     def before_frame(self) -> None:
-        """Pass the requests of clients on to the turtle before it moves."""
+        """Pass client requests on to the turtle before it moves."""
         if not self._rotate.idle:
             self._rotate.before_frame()
 
     def after_frame(self, now_s: float) -> None:
-        """Publish the turtle's pose and colour at `now_s` (s), and the feedback of its rotation."""
+        """Publish the turtle's pose and colour at `now_s` (s), and the feedback on its rotation."""
         if not self._rotate.idle:
             self._rotate.after_frame()
         turtle = self._turtle()

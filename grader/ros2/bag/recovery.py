@@ -39,7 +39,7 @@ def recover(folder: Path) -> None:
     The old files are kept until the new ones are complete.
 
     Raises:
-        Ros2Error: the folder contains no files of a bag, or they cannot be read.
+        Ros2Error: the folder contains no bag files, or they cannot be read.
     """
     # The last file of a split bag is in a separate folder until it is complete (split_writer.py).
     part = f"{glob.escape(folder.resolve().name)}_[0-9]*"
