@@ -38,7 +38,7 @@ Point = tuple[int, int]
 
 @dataclass
 class Stroke:
-    """A line with one pen (red, green, blue, width in px). `skipped` has the omitted points of the last segment."""
+    """A line with one pen (red, green, blue, width in px). `skipped` holds the omitted points of the last segment."""
 
     pen: tuple[int, int, int, int]
     points: list[Point]
