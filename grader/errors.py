@@ -1,10 +1,10 @@
-"""The exceptions of the grader. Each message says what was observed, what was expected, and what to do."""
+"""The grader's exceptions. Each message says what was observed, what was expected, and what to do."""
 
 from __future__ import annotations
 
 
 class GraderError(Exception):
-    """The base class of all errors of the grader. A command exits with `exit_code` (docs/design.md, decision 9)."""
+    """The base class of the grader's errors. A command exits with `exit_code` (docs/design.md, decision 9)."""
 
     exit_code = 3
 

@@ -172,8 +172,8 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
 def unreadable(how: str) -> Finding:
     """Return a failed finding about a submission that the grader cannot read.
 
-    Its status is not `error`, because a check reads only what the submission produced, so only the submission can
-    make it fail.
+    Its status is not `error`: a check reads only data produced by the submission, so only the submission can make it
+    fail.
     """
     observed = f"The submission could not be read: {shorten(how, 150)}."
     expected = "The grader can read the submitted files and the data that the node sends."

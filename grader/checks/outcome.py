@@ -27,10 +27,10 @@ class Status(str, Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """What a check found. `observed`, `expected` and `cause` are text for a beginner; `diagnosis` is a stable id.
+    """The result of a check. `observed`, `expected` and `cause` are text for a beginner; `diagnosis` is a stable id.
 
-    `near_edge` is True if the distance of the measured value from the edge of the tolerance is at most a fifth of the
-    tolerance, or if the node did not stop in simulated time. Such a check is judged again in wall time.
+    `near_edge` is True if the distance between the measured value and the edge of the tolerance is at most a fifth of
+    the tolerance, or if the node did not stop in simulated time. Such a check is judged again in wall time.
     """
 
     status: Status

@@ -60,7 +60,7 @@ class Band:
 
 
 def unless_starved(finding: Finding, recording: Recording, off: float, per_s: float) -> Finding:
-    """Return the finding, or an error finding if stalls of the machine explain the failure.
+    """Return the finding, or an error finding if the failure can be explained by stalls.
 
     `off` is the distance of the value from its tolerance range; `per_s` is the change of the value per second. While
     the machine stalls, the turtle continues with its last command.

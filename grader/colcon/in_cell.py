@@ -3,8 +3,8 @@
 colcon runs the setup.py of a package three times, each time in a new interpreter that imports setuptools and reads the
 metadata of all installed packages again. This is most of the CPU time of a build. Here, one process does all this once,
 before the submission arrives, and forks for each run of setup.py. The fork gets the folder, environment, arguments and
-streams of the process that colcon started, which only waits for the exit code. If a fork might behave differently from
-a new interpreter, no fork is used (`Run.of`).
+streams of the process that colcon started, and that process only waits for the exit code. If a fork might behave
+differently from a new interpreter, no fork is used (`Run.of`).
 
 This file runs as a separate script. Standard input is the submission, a tar stream that is unpacked into src.
 """
@@ -131,7 +131,7 @@ class Forks:
 
 
 def _import_commands() -> None:
-    """Import the commands of setup.py, which `setup.py --help-commands` imports too."""
+    """Import the setup.py commands, which `setup.py --help-commands` imports too."""
     for command in metadata.entry_points(group="distutils.commands"):
         with suppress(Exception):
             command.load()

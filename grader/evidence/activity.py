@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 ROS_TOPICS = ("/rosout", "/parameter_events", "/clock")
 """Topics on which every node, or the grader, publishes."""
 SPINS = re.compile(r'executors\.py", line \d+, in (?:await_or_execute|handler|_execute_\w+)\b')
-"""In a traceback, a stack frame of rclpy's executor that calls callbacks."""
+"""A traceback entry for the code in rclpy's executor that calls callbacks."""
 START_S = 0.2
-"""The length of the first moment (s), in which the publisher of the node may not have been discovered yet."""
+"""The length of the initial period (s), in which the node's publisher may not have been discovered yet."""
 
 
 def end_s(recording: Recording) -> float:
@@ -28,8 +28,8 @@ def ended_at_start(recording: Recording) -> bool:
     """Return whether the node exited on its own before it ran.
 
     A node that raised an exception inside rclpy's spin did run, no matter how soon it exited. This depends neither on
-    the clock nor on when the node was first observed. Without such an exception, a node that exits in the first moment
-    did not run.
+    the clock nor on the time of the first observation. Without such an exception, a node that exits in the initial
+    period (START_S) did not run.
     """
     end = recording.end
     return end.by == "itself" and end.t_s <= START_S and not spun(recording)

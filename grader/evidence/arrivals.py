@@ -19,8 +19,8 @@ class Measured:
     """Arrival times (s), the intervals between them, their mean, and the times before the first and after the last one.
 
     `intervals` and `mean_s` leave out the intervals that were changed by a stall of the machine, and those that begin
-    in the first moment (`activity.START_S`). `begins` contains the start times of the intervals. `trusted` is the share
-    of intervals that were not changed by a stall.
+    in the initial period (`activity.START_S`). `begins` contains the start times of the intervals. `trusted` is the
+    share of intervals that were not changed by a stall.
     """
 
     arrivals: tuple[float, ...]

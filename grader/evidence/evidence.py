@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Fault:
-    """The reason why `stage` and all later stages could not be completed: a fault of the machine, and the remedy.
+    """The reason why `stage` and all later stages could not be completed: a machine fault, and its remedy.
 
     If `unreadable` is set, the machine is not at fault. Instead, something that the submission produced could not be
     read.

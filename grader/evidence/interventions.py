@@ -1,4 +1,4 @@
-"""Whether something other than velocity commands moved the turtle, judged by its effect and not by its name.
+"""Whether something other than velocity commands moved the turtle, judged by its effect rather than its name.
 
 turtlesim moves a turtle in each frame by its velocities alone. A frame in which the turtle moved differently, or with a
 turning speed that no command set, shows a teleport, a reset or a goal of rotate_absolute.
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 MOVING = frozenset({"reset", "teleport_absolute", "teleport_relative", "rotate_absolute"})
 """Calls that may move a turtle. They have no effect if the turtle is already at the destination."""
 ALWAYS = frozenset({"kill", "set_parameters"})
-"""Calls that remove a turtle or change how it obeys commands."""
+"""Calls that remove a turtle or change its response to commands."""
 FRAME_S = 0.016
 SAME = 1e-5
 """The largest difference (m, rad, rad/s) that counts as zero."""

@@ -1,4 +1,4 @@
-"""The pens of the turtles, and what they drew with them."""
+"""The pens that the turtles had, and the periods in which they had them."""
 
 from __future__ import annotations
 

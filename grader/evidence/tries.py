@@ -1,4 +1,4 @@
-"""Try: the result of changing a copy of a submission at the place named as the cause by a check."""
+"""Try: the result of changing a copy of a submission at the place that a check named as the cause."""
 
 from __future__ import annotations
 

@@ -49,12 +49,12 @@ class Drive:
 
 
 Setting = bool | int | float | str
-"""The value of a parameter of a node."""
+"""The value of a node parameter."""
 
 
 @dataclass(frozen=True)
 class CallInput:
-    """A call of a service of the node at `at_s` (s). `type` is the service type, for example "std_srvs/srv/SetBool"."""
+    """A call to a service of the node at `at_s` (s). `type` is the service type, for example "std_srvs/srv/SetBool"."""
 
     at_s: float
     service: str

@@ -1,4 +1,4 @@
-"""Choose the clock of a trial, and decide when a trial is repeated.
+"""Choose the clock of a trial, and decide whether it is repeated.
 
 The rules, in the order in which they are applied:
 

@@ -17,7 +17,7 @@ DEBUG_TOPICS = frozenset({"/rosout", "/rosout_agg", "/parameter_events", "/clock
 """Topics that nearly every node has, or that are meant for tools. rqt_graph calls them debug topics."""
 
 DEBUG_NODES = ("/rqt_gui", "/rqt_graph", "/rviz", "/rosbag2_")
-"""The prefixes of the names of nodes that belong to tools."""
+"""The name prefixes of nodes that belong to tools."""
 
 
 class Endpoint(Protocol):

@@ -111,7 +111,7 @@ def _ordered(names: Sequence[str]) -> list[str]:
 
 
 def _places(names: Sequence[str], height: float) -> dict[str, float]:
-    """Return the y coordinate of the middle of each name, with even spacing."""
+    """Return evenly spaced y coordinates for the middles of the names."""
     room = (height - 34) / max(len(names), 1)
     return {name: 30 + room * (index + 0.5) for index, name in enumerate(names)}
 

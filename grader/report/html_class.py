@@ -242,7 +242,7 @@ def _in_words(shares: Iterable[float]) -> str:
 
 
 def distribution(shares: Iterable[float]) -> str:
-    """Draw a bar chart of the number of submissions in each range of percentages of the points."""
+    """Draw a bar chart of the number of submissions in each range of percentages."""
     found = counts(shares)
     width, height, top, bar = 560.0, 170.0, 24.0, 46.0
     most = max(*found, 1)

@@ -35,6 +35,6 @@ def write(file: Path, content: bytes) -> None:
 
 
 def not_written(file: Path, error: OSError) -> UsageError | MachineError:
-    """Return the error to raise when a file could not be written: UsageError or MachineError, with the reason."""
+    """Return the error to raise if a file could not be written: UsageError or MachineError, with the reason."""
     message = f"{file} cannot be written: {error.strerror or error}."
     return MachineError(message) if of_the_machine(error) else UsageError(message)

@@ -34,7 +34,7 @@ class Report:
     """The wall time of each stage. It is ignored when two reports are compared."""
     recording: str | None = None
     confined: bool = True
-    """False if the student's code ran outside of a sandbox, with resource limits only."""
+    """False if the student's code ran outside a sandbox, with resource limits only."""
     exercise_digest: str = ""
     """The sha256 of the exercise.toml with which this report was made."""
 

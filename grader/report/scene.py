@@ -27,7 +27,7 @@ MOST_OTHERS = 40
 """The maximum number of other turtles that are drawn."""
 MOST_TICKS = 150
 TURNED_RAD = 0.1
-"""A turtle that turned by less than this (rad) counts as not turned."""
+"""A turtle that turned by less than this (rad) counts as not having turned."""
 TICK_M = 0.11
 """Half the length of a tick."""
 

@@ -1,6 +1,6 @@
 """Find submissions that an instructor should look at, because the grader could not judge or read them.
 
-Faults of the machine affect submissions at random. If the grader repeatedly fails to judge a submission but can judge
+Machine faults affect submissions at random. If the grader repeatedly fails to judge a submission but can judge
 the others, the submission may have been designed to break the grader.
 """
 

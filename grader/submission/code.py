@@ -185,7 +185,7 @@ def imported_files(module: Module, paths: Collection[str]) -> list[str]:
 
 
 def imported_packages(code: Code, paths: Collection[str]) -> dict[str, Where]:
-    """Return the names of the packages outside of the submission that the code imports, with their first lines.
+    """Return the imported packages that are outside the submission, with the line of each first import.
 
     An import inside `try` or `if` is optional, so it does not count.
     """

@@ -38,7 +38,7 @@ class TestFunction:
 
 @dataclass(frozen=True)
 class TestCode:
-    """The Python files outside of the package's modules (`folder`), except setup.py: the tests and their helpers."""
+    """The Python files outside the package's module folder (`folder`), except setup.py: the tests and their helpers."""
 
     __test__ = False
 

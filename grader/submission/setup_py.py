@@ -51,7 +51,7 @@ class SetupPy:
     tested_with: tuple[str, ...] = ()
     """The packages in extras_require["test"], which determine how colcon runs the tests."""
     tests_require_line: int | None = None
-    """The line of the argument tests_require, which setuptools ignores since version 72."""
+    """The line of the argument tests_require, which setuptools has ignored since version 72."""
     stray: tuple[EntryPoint, ...] = ()
     """Strings outside console_scripts that look like entry points."""
     unreadable: Unreadable | None = None

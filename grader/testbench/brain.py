@@ -32,7 +32,7 @@ class _State:
 
 
 class Brain:
-    """Controls all nodes that are created in one run of the tests. `node` is the name of the node."""
+    """Controls all nodes that are created in one run of the tests. `node` is the name of these nodes."""
 
     def __init__(self, behaviour: Behaviour, node: str) -> None:
         self._behaviour = behaviour

@@ -1,4 +1,4 @@
-"""The results of the runs of a student's tests, in memory and as JSON."""
+"""The results of running a student's tests, in memory and as JSON."""
 
 from __future__ import annotations
 

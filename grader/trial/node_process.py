@@ -42,7 +42,7 @@ class LaunchError(Exception):
 def enlarge(pipe: int) -> int:
     """Make a pipe as large as the kernel allows, up to PIPE, and return its size (bytes).
 
-    The kernel refuses if all pipes of the user together are too large (fs.pipe-user-pages-soft, see pipe(7)).
+    The kernel refuses if the user's pipes are too large in total (fs.pipe-user-pages-soft, see pipe(7)).
     """
     size = PIPE
     while size > (given := fcntl.fcntl(pipe, fcntl.F_GETPIPE_SZ)):

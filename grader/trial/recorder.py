@@ -36,7 +36,7 @@ MOST_TYPES = 200
 MOST_NODES = 100
 MOST_SERVICES = 200
 OF_EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
-"""The prefixes of the types of the services that rclpy adds to every node, below the name of the node."""
+"""The type prefixes of the services that rclpy adds to every node, under the node's name."""
 MOST_OBSERVED = 50_000
 """The maximum number of nodes and endpoints in all snapshots together."""
 MOST_MESSAGES = 20_000
@@ -53,7 +53,7 @@ class Recorder(Node):
 
         `now` returns the time of the trial (s). `prefixes` are the folders in which the message types are installed.
 
-        The simulator itself reports what it sends on the `simulated` topics (name -> type). The `judged` topics are
+        The simulator itself reports its messages on the `simulated` topics (name -> type). The `judged` topics are
         always recorded, however many other topics there are.
         """
         super().__init__("recorder", namespace=OWN_NAMESPACE, start_parameter_services=False, enable_rosout=False)

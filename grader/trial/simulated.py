@@ -44,7 +44,7 @@ OWN_EVERY = 5
 """The number of frames between two checks for work that no message announces, such as our own log lines and the steps
 of an action."""
 WAITS_EVERY = 7
-"""The number of frames between two checks of what the node's threads wait for."""
+"""The number of frames between two checks of the waits of the node's threads."""
 ENDING_S = 0.5
 """The time limit for a sleeping node to exit (s of wall time). If it does not, the sleep counts as a doubt."""
 _POLL_S = 0.00005

@@ -1,7 +1,7 @@
 """Draw the places of targets, which are turtles that a node must catch, nearest first.
 
-The places are drawn again until the order is unambiguous: always going to the nearest target gives a single order, and
-any other rule (by name, by the distance from the start) gives a different order.
+The places are drawn again until the order is unambiguous: the rule of always going to the nearest target gives a single
+order, and any other rule (by name, by the distance from the start) gives a different order.
 """
 
 from __future__ import annotations

@@ -95,7 +95,7 @@ def compile_conductor() -> None:
 class Trial:
     """One trial, as a context manager.
 
-    Entering it starts the simulator and the launcher, so that both are ready when the build is done.
+    On entry, it starts the simulator and the launcher, so that both are ready when the build is done.
     """
 
     def __init__(self, plan: Plan, ros: installation.Ros, *, in_cell: bool) -> None:

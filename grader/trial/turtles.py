@@ -1,4 +1,4 @@
-"""The tracks of the turtles other than turtle1, and the changes of the pens of all turtles."""
+"""The tracks of the turtles other than turtle1, and all changes to the turtles' pens."""
 
 from __future__ import annotations
 

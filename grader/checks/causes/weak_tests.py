@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from grader.submission.pytest_files import TestCode, TestFunction
 
 RAISING = frozenset({"raises", "fail", "warns"})
-"""Functions of pytest that make a test fail."""
+"""Pytest functions that make a test fail."""
 CATCHES_ALL = frozenset({"AssertionError", "Exception", "BaseException"})
 
 

@@ -30,7 +30,7 @@ OF_THE_NODE = re.compile(
     r"^(\w+) cannot be modified after node creation|property '(\w+)' of '\w+' object has no setter"
     r"|can't set attribute '(\w+)'"
 )
-"""Messages of rclpy and of Python 3.10 to 3.14 about an attribute name that nodes already use."""
+"""Messages from rclpy and from Python 3.10 to 3.14 about an attribute name that nodes already use."""
 MANGLED = re.compile(r"^_[A-Za-z]\w*?__(?=[a-zA-Z])")
 """The prefix that Python adds to an attribute whose name begins with two underscores."""
 PLAIN = {

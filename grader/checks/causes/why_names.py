@@ -31,7 +31,7 @@ MEMBERS = {
 }
 """Module -> its names that learners use and often forget to prefix with the module."""
 TAKE_A_STRING = {"__init__": 0, "create_node": 0, "create_publisher": 1, "create_subscription": 1, "create_client": 1}
-"""Functions of rclpy that take the name of a node, topic or service, and the position of that argument."""
+"""rclpy functions that take the name of a node, topic or service, and the position of that argument."""
 CONSTANTS = {
     "true": "True",
     "false": "False",

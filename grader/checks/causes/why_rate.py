@@ -21,7 +21,7 @@ OFTEN = 0.5
 SEVERAL = 0.1
 """Several calls in a row explain a rate if the number of messages per period differs by less than this share."""
 FRAME_S = 0.016
-"""The duration of a frame of turtlesim (s). turtlesim publishes the pose once per frame."""
+"""The duration of a turtlesim frame (s). turtlesim publishes the pose once per frame."""
 
 
 def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:

@@ -167,7 +167,7 @@ def _why(answer: str, find: str, truth: Collection[str], others: Collection[str]
 
 @dataclass(frozen=True, kw_only=True)
 class AnswerRate:
-    """The mean rate (Hz) of the messages whose type name ends in this way."""
+    """The mean rate (Hz) of the messages whose type name ends with `type_ends`."""
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
     type_ends: str = string(

@@ -159,7 +159,7 @@ def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
 
 
 def _is_top_level(module: Module, call: ast.Call) -> bool:
-    """Return whether this is a call of rclpy.init or rclpy.spin outside any function."""
+    """Return whether this is a call to rclpy.init or rclpy.spin outside any function."""
     top = [node for node in module.body if isinstance(node, ast.Expr | ast.Assign)]
     return dotted(call.func) in ("rclpy.init", "rclpy.spin") and any(call in ast.walk(node) for node in top)
 

@@ -160,7 +160,7 @@ def _overwritten(evidence: Evidence) -> Cause | None:
 
 
 def _trusted(recording: Recording, format_: str) -> list[Line]:
-    """Return the lines in the format that were not delayed by a stall of the machine."""
+    """Return the lines in the format that were not delayed because the machine stalled."""
     return [line for line in student_log.in_format(recording, format_) if not recording.stalled(line.t_s)]
 
 

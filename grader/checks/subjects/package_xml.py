@@ -1,4 +1,4 @@
-"""Checks of package.xml: it is valid, declares what the code uses, and has the right package name."""
+"""Checks of package.xml: it is valid, declares the packages that the code uses, and has the right package name."""
 
 from __future__ import annotations
 

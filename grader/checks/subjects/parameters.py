@@ -1,4 +1,4 @@
-"""Checks of parameters: how they are declared, and how the node responds when the trial sets one."""
+"""Checks of parameters: their declarations, and the node's response when the trial sets one."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def sets_parameter(evidence: Evidence, params: SetsParameter) -> Finding:
 
 
 def set_calls(evidence: Evidence) -> list[Call]:
-    """Return the calls of the trial that set a parameter of the node, in order."""
+    """Return the calls by the trial that set a parameter of the node, in order."""
     return [call for call in calls_of(evidence) if call.by_trial and call.service.endswith(SET)]
 
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 LATE_S = 1.05
 """The maximum delay of an announcement (s): two periods of the topic."""
 AT_ONCE_S = 0.1
-"""The maximum time between the end of the announcements of a turtle and its removal (s)."""
+"""The maximum time between the last announcement of a turtle and its removal (s)."""
 OFTEN = 3
 """The maximum number of messages, as a multiple of the timer's messages. A node may also publish after each change."""
 ALIKE_M = 0.01
@@ -64,7 +64,7 @@ class Announces:
 
 @dataclass(frozen=True, kw_only=True)
 class Removes:
-    """The service that the trial calls with the name of a turtle, and the topic with the names."""
+    """The service that the trial calls with a turtle's name, and the topic with the names."""
 
     service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
     type: str = string("a service type, as in turtlesim/srv/Kill", about="Its type. The request has the field name.")
@@ -74,7 +74,7 @@ class Removes:
 
 
 def spawns(evidence: Evidence, params: Spawns) -> Finding:
-    """The node spawned this many turtles with the right names, at different places on the field."""
+    """The node spawned this many turtles with the right names, in different places on the field."""
     wanted = [f"{params.name}{index + 1}" for index in range(int(params.turtles))]
     expected = (
         f"The node spawns {count(len(wanted), 'turtle')}, {wanted[0]} to {wanted[-1]}, at random places. "
@@ -125,7 +125,7 @@ def _places(evidence: Evidence, params: Spawns, calls: list[Call], expected: str
 
 
 def places_differ(evidence: Evidence, params: PlacesDiffer) -> Finding:
-    """The turtles are in different places than in another trial of the same node."""
+    """The turtles are not in the same places as in another trial of the same node."""
     expected = "Each time the node is started, the turtles are at other places."
     now, before = (_spawned(each) for each in (evidence, evidence.from_trial(params.other)))
     if now and now[: len(before)] == before[: len(now)]:
@@ -259,7 +259,7 @@ def _not_killed(evidence: Evidence, name: str, topic: str, kills: list[Call], ex
 
 
 def _callback(evidence: Evidence) -> Where | None:
-    """Return the place of the callback of the node's service."""
+    """Return the place of the node's service callback."""
     names = {name for _, name in callbacks_of(evidence, "create_service")}
     return next(
         (Where(each.file, method.lineno) for each, method in methods_of(evidence) if method.name in names), None

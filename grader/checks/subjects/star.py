@@ -105,7 +105,7 @@ def _measured(evidence: Evidence, params: Star, sides: Sides, expected: str) -> 
 
 
 def requested_star(evidence: Evidence, params: Star) -> Requested:
-    """Return the corners, closed with the first one."""
+    """Return the corners, ending with the first one again."""
     x, y = evidence.recording.start.x, evidence.recording.start.y
     corners = [(x, y)]
     for index in range(int(params.sides)):

@@ -1,4 +1,4 @@
-"""Checks of the source of a student's tests: how colcon runs them, and what good tests avoid."""
+"""Checks of the source of a student's tests: they are declared for colcon, and avoid common weaknesses."""
 
 from __future__ import annotations
 
