@@ -45,7 +45,7 @@ def commands(duration_s: float = 10.0) -> list[Message]:
 
 
 def record(folder: Path, messages: list[Message]) -> None:
-    """Replace the bag in `folder` by a bag with these messages."""
+    """Replace the bag in `folder` with a bag that contains these messages."""
     shutil.rmtree(folder, ignore_errors=True)
     ros = with_turtlesim(find_ros(), lambda _: None)
     write_bag(folder, sorted(messages, key=lambda message: message.t_s), ros.all_prefixes)

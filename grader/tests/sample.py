@@ -1,8 +1,8 @@
 """The sample of mistakes that `make test` grades.
 
-For each exercise, it covers every group of diagnoses, and one diagnosis of each group that no test of the checks
-expects. A test of the checks judges an invented recording, which takes milliseconds. A case takes one to three seconds,
-and at least ten if wall time judges it.
+For each exercise, it covers every group of diagnoses. From each group, it also covers one diagnosis that no test of the
+checks expects. A test of the checks judges an invented recording, which takes milliseconds. A case takes one to three
+seconds, and at least ten if wall time judges it.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def lives_in_wall_time(case: Case) -> bool:
 
 @cache
 def without_test() -> frozenset[str]:
-    """Return MOST_OF_GROUP diagnoses of each group, or fewer, that no test of the checks expects by their id.
+    """Return at most MOST_OF_GROUP diagnoses of each group, whose ids no test of the checks expects.
 
     An id of one word may appear in a test for another reason, so it does not count as expected.
     """

@@ -1,4 +1,4 @@
-"""The targets: one function of bytes for each reader of students' files, and seeds."""
+"""The targets: for each reader of students' files, a function that processes bytes, and its seeds."""
 
 from __future__ import annotations
 

@@ -103,7 +103,7 @@ def machine(learner: Course, domain: int) -> Iterator[Machine]:
 
 
 def hostile(learner: Course, found: Machine, name: str) -> None:
-    """Replace the learner's node by the attack."""
+    """Replace the learner's node with the attack."""
     words = {
         "HOME": str(learner.home),
         "WORKSPACE": str(learner.workspace),

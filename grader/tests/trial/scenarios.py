@@ -61,7 +61,7 @@ def a_line_while_the_graph_is_looked_at() -> list[float]:
 
 
 def a_node_that_drives_before_it_is_found() -> int:
-    """Return how many commands have arrived when the clock starts, for a node that drives before its discovery."""
+    """Return how many commands have arrived when the clock starts, for a node that drives before it is discovered."""
     commands: list[str] = []
     stage: Any = WallTrial.__new__(WallTrial)
     stage.node = SimpleNamespace(pids=(1,), ended=lambda: False, read_output=lambda _: 0)

@@ -63,6 +63,6 @@ def test_it_never_drives_faster_than_a_metre_a_second() -> None:
 
 
 def test_the_last_turn_goes_on_over_the_seam_of_the_angle() -> None:
-    # From west, the turn to the south goes from pi to -pi/2.
+    # A turn from west to south goes from pi to -pi/2.
     _, _, angular = follow(Leg(0.0, 0.0, math.pi, turning=True), 0.0, 0.0, -math.pi + 0.1)
     assert angular > 0
