@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 OF_BASES = "03-circle-publisher"
 """The exercise of the packages in bases/."""
 MOST_OF_GROUP = 1
-"""How many diagnoses of a group the sample includes because no test of the checks expects them."""
+"""The number of diagnoses of a group that the sample includes because no test of the checks expects them."""
 WALL = re.compile(r"\btime\b|spin_once|sleep|thread|asyncio|datetime|subprocess")
 """Wall time probably judges source code with one of these words."""
 WALL_COST = 5

@@ -1,4 +1,4 @@
-"""Which movements count as interventions: the movement decides, not the service that was called."""
+"""Movements that count as interventions. This depends on the movement, not on the service that was called."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Scores that the grader has not confirmed do not count. The tests use the real nbgrader and forging notebooks."""
+"""Scores that the grader has not confirmed do not count. The tests use the real nbgrader and false scores."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def forge(folder: Path) -> None:
 
 
 def unreadable(folder: Path) -> None:
-    """Create a forging notebook with a cell whose file would be inside another file."""
+    """Create a notebook that forges scores and has a cell whose file would be inside another file."""
     forge(folder)
     edit(
         folder,

@@ -27,7 +27,7 @@ MAKES_DIAGNOSES = re.compile(r"\b(failed|Cause)\(|diagnosis")
 NOT_THESE = frozenset({"judge.py", "kind.py", "kinds.py"})
 """Modules that only pass diagnoses on."""
 ALIKE_CASES, ALIKE_TESTS = 3, 12
-"""How many of the tests that cover the same lines run on a mutant. Tests differ more than cases."""
+"""The number of tests covering the same lines that run on a mutant. Tests differ more than cases."""
 WORST = 0.10
 """If a larger share survives, the run fails."""
 

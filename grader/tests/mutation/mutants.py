@@ -44,7 +44,7 @@ MAKERS = {"failed": None, "Cause": 2}
 """Calls whose first argument is the id of a diagnosis -> the index of the place among the positional arguments."""
 OTHER = cst.SimpleString('"another"')
 KINDS = OUT, ALWAYS, NAME, PLACE, DETAIL = ("taken out", "always", "other name", "no place", "detail")
-"""How a change affects a diagnosis. A "detail" is a change by one of mutmut's operators."""
+"""The effect of a change on a diagnosis. A "detail" is a change by one of mutmut's operators."""
 Change = tuple[str, cst.CSTNode, cst.CSTNode]
 """Its kind, the old code and the new code."""
 

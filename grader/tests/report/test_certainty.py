@@ -1,4 +1,4 @@
-"""Which causes a report states as facts, and which as possibilities."""
+"""The causes that a report states as facts, and those that it states as possibilities."""
 
 from __future__ import annotations
 

@@ -158,7 +158,7 @@ def test_with_turtlesim_and_draw_circle(name: str, driving: World) -> None:
     same(name, driving)
 
 
-# --- what differs for a reason ----------------------------------------------------------------------------------------
+# --- allowed differences ----------------------------------------------------------------------------------------------
 
 
 def test_interfaces_of_a_package_come_in_another_order(empty: World) -> None:

@@ -1,4 +1,4 @@
-"""How crowds and stalls are measured, with real processes; the exact numbers of some tests are made up."""
+"""The measurement of crowds and stalls, with real processes; the exact numbers of some tests are made up."""
 
 from __future__ import annotations
 

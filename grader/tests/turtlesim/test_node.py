@@ -209,7 +209,7 @@ def test_a_trial_knows_what_the_node_subscribes_to_and_publishes(in_ros: InRos) 
     ]
 
 
-# --- alone ----------------------------------------------------------------------------------------------------------
+# --- without a client -----------------------------------------------------------------------------------------------
 
 
 def test_a_late_frame_is_caught_up_and_none_left_out(in_ros: InRos) -> None:

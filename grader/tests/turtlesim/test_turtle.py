@@ -91,7 +91,7 @@ def test_a_normalized_angle_is_the_same_direction(angle: float) -> None:
     assert math.sin(normalize(angle)) == pytest.approx(math.sin(angle), abs=1e-9)
 
 
-# --- whatever happens -----------------------------------------------------------------------------------------------
+# --- unusual requests -----------------------------------------------------------------------------------------------
 
 numbers = st.floats(allow_nan=False, allow_infinity=False, width=32)
 speeds = st.floats(-20.0, 20.0)

@@ -22,7 +22,7 @@ FEW = 60
 DRAW_CIRCLE = f"python3 {SOLUTION}/my_robot_controller/draw_circle.py"
 
 
-# --- what is seen -----------------------------------------------------------------------------------------------------
+# --- display ----------------------------------------------------------------------------------------------------------
 
 
 def test_the_turtle_is_observed_to_move_and_the_graph_shows_who_moves_it(page: Page, system: World) -> None:
@@ -70,7 +70,7 @@ def test_a_page_that_is_opened_late_sees_what_was_drawn_before(page: Page, brows
     late.close()
 
 
-# --- what is pressed --------------------------------------------------------------------------------------------------
+# --- keys and buttons -------------------------------------------------------------------------------------------------
 
 STANDS = "0.0,0.0,0.0,0.0,0.0,0.0"
 
@@ -199,7 +199,7 @@ def test_a_simulator_that_was_started_again_is_found_by_the_same_tab(browser: Br
     tab.close()
 
 
-# --- for everybody ----------------------------------------------------------------------------------------------------
+# --- accessibility and errors -----------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

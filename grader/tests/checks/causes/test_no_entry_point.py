@@ -1,4 +1,4 @@
-"""Why the exercise's executable is missing or cannot start."""
+"""The reasons why the exercise's executable is missing or cannot start."""
 
 from __future__ import annotations
 

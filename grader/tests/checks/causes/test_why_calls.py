@@ -1,4 +1,4 @@
-"""Why Python or rclpy rejected a call."""
+"""The reasons why Python or rclpy rejected a call."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why a message field rejected a value."""
+"""The reasons why a message field rejected a value."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why an import failed."""
+"""The causes of a failed import."""
 
 from __future__ import annotations
 

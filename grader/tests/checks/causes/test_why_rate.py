@@ -1,4 +1,4 @@
-"""Why messages arrive far too often, or at an increasing rate."""
+"""The reasons why messages arrive far too often, or at an increasing rate."""
 
 from __future__ import annotations
 

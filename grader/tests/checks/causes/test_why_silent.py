@@ -1,4 +1,4 @@
-"""Why a running node sends nothing."""
+"""The reasons why a running node sends nothing."""
 
 from __future__ import annotations
 
