@@ -88,7 +88,7 @@ def judge_so_far(evidence: Evidence, settled: Mapping[str, Finding]) -> Judgemen
 
 @dataclass(frozen=True)
 class Early:
-    """The results before any code of the submission runs: failed outcomes, and ids of checks that cannot pass."""
+    """The results before any of the submission's code runs: failed outcomes, and ids of checks that cannot pass."""
 
     failed: tuple[Outcome, ...]
     blocked: frozenset[str]

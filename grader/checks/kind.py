@@ -1,7 +1,7 @@
 """A kind is a type of check, with the parameters that exercise.toml may set.
 
 The parameters of a kind are a dataclass next to the check function. The functions `number`, `string`, `strings` and
-`choice` create its fields with their defaults and allowed values. A new exercise needs no Python code.
+`choice` create its fields with their defaults and allowed values. So a new exercise needs no Python code.
 """
 
 # ruff: noqa: ANN401 (the functions below return what dataclasses.field returns)

@@ -34,12 +34,12 @@ class Manager(NamedTuple):
     install: str
     quiet: str
     names: Mapping[str, str]
-    """Debian's name of a package -> the name in this package manager, if the two differ."""
+    """Debian's name for a package -> this package manager's name for it, if the two differ."""
     python: str = ""
     """A pattern for the package of a Python with venv, with the version as 3.12 (`dotted`) or 312 (`joined`)."""
     headers: str = ""
     newer: str = ""
-    """Debian's name of a newer Python, which is installed if the default Python is too old."""
+    """Debian's name for a newer Python, which is installed if the default Python is too old."""
 
     def packages(self, needs: Iterable[Need]) -> List[str]:
         """Return this package manager's names for the packages needed."""

@@ -1,7 +1,7 @@
 """Whether something other than velocity commands moved the turtle, judged by its effect rather than its name.
 
 turtlesim moves a turtle in each frame by its velocities alone. A frame in which the turtle moved differently, or with a
-turning speed that no command set, shows a teleport, a reset or a goal of rotate_absolute.
+turning speed that no command set, shows a teleport, a reset or a rotate_absolute goal.
 """
 
 from __future__ import annotations

@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 START = "Traceback (most recent call last):"
 TOP = re.compile(r'\s*File ".*", line \d+, in <module>')
-"""The outermost frame of a program. Only the traceback of an exception that nobody caught contains it."""
+"""The outermost frame of a program. Only the traceback of an uncaught exception contains it."""
 
 
 def with_crash_first(recording: Recording) -> Recording:
-    """Return the recording. If the node raised an uncaught exception before Ctrl-C, it exited on its own."""
+    """Return the recording. After an uncaught exception before Ctrl-C, the node counts as having exited by itself."""
     end, stderr = recording.end, recording.stderr
     if end.by == "itself" or end.out_of is not None:
         return recording

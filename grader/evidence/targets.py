@@ -66,7 +66,7 @@ def place_at(track: Track, t_s: float) -> tuple[float, float]:
 
 
 def distance_m(recording: Recording, track: Track, t_s: float) -> float:
-    """Return the distance of turtle1 from a target at this time (m)."""
+    """Return the distance between turtle1 and a target at this time (m)."""
     (x, y), (to_x, to_y) = place_of_turtle1(recording, t_s), place_at(track, t_s)
     return math.hypot(to_x - x, to_y - y)
 
@@ -77,7 +77,7 @@ def is_there(track: Track, from_s: float, to_s: float) -> bool:
 
 
 def caught(recording: Recording) -> list[Track]:
-    """Return the targets that were removed before SIGINT, in that order."""
+    """Return the targets that were removed before SIGINT, in the order of their removal."""
     until = activity.end_s(recording)
     return sorted(
         (track for track in recording.tracks if track.gone_s is not None and track.gone_s <= until),

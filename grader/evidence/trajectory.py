@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Floats, Recording
 
 RESTS_M = 1e-9
-"""In a frame in which it moves at most this far, the turtle is at rest (m)."""
+"""A turtle that moves at most this far in a frame is at rest (m)."""
 STRAIGHT_RAD = 1e-9
 """A step that turns by at most this angle counts as straight (rad)."""
 
@@ -76,7 +76,7 @@ class Trajectory:
 
     @property
     def turns(self) -> float:
-        """The number of turns about the centre of that circle, positive if counter-clockwise; 0 without a circle."""
+        """The number of turns about the centre of that circle, positive if counter-clockwise; 0 if there is none."""
         return 0.0 if self.circle is None else turns_about(*self.points, self.circle.x, self.circle.y)
 
     @property

@@ -55,7 +55,7 @@ class Arc:
 
 @dataclass(frozen=True)
 class PointsInput:
-    """One call of a function with x and y (m): the points of an arc, or given numbers, as lists if `lists` is set."""
+    """One call to a function with x and y (m): the points of an arc, or given numbers, as lists if `lists` is set."""
 
     id: str
     arc: Arc | None = None

@@ -1,4 +1,4 @@
-"""Read exercise.toml, and report all mistakes to its author together.
+"""Read exercise.toml, and report all mistakes to its author in one message.
 
 The keys in `schema = 2`:
 
@@ -213,7 +213,7 @@ def _check(
 
 
 def _param(value: object, allowed: Allowed, numbers: NumbersSpec | None) -> Param | None:
-    """Return the value of a parameter, or None if it is not allowed. Every possible own value must be allowed."""
+    """Return the value of a parameter, or None if it is not allowed. All possible student values must be allowed."""
     if isinstance(value, dict) and "own" in value:
         options = numbers.options.get(value["own"], ()) if numbers is not None and len(value) == 1 else ()
         fits = bool(options) and all(allowed.accept(option) is not None for option in options)

@@ -95,7 +95,7 @@ class TrialSpec:
     """One `[[trial]]`: the executable, the name of its node (without a slash), and the scenario.
 
     Without an executable, the simulator runs alone. With `calls`, neither a simulator nor a node runs: the function or
-    the executable is called once for each of them. With `tests`, the student's tests run without a simulator.
+    the executable is called once for each call listed. With `tests`, the student's tests run without a simulator.
 
     If `beside` names another trial (an id), the node of this one runs there as an additional node, and the scenario is
     the same. The checks of this trial judge the other one from the viewpoint of the additional node.

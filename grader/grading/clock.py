@@ -95,7 +95,7 @@ def stops_at_doubt(choice: ClockChoice) -> bool:
 
 
 def repeats(doubt: WallTimeNeeded) -> bool:
-    """Return whether a trial that this doubt stopped for the first time is repeated in simulated time (rule 3)."""
+    """Return whether a trial is repeated in simulated time if this doubt was the first to stop it (rule 3)."""
     return doubt.by_chance
 
 

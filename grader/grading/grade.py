@@ -155,7 +155,7 @@ class _Grading:
         return Graded(report, evidence, prefixes)
 
     def _run_all(self, certain: Early) -> None:
-        """Build the submission and run its trials. A failure of the machine is stored as the fault of the evidence."""
+        """Build the submission and run its trials. A machine failure is stored as the `fault` of the evidence."""
         try:
             self.ros = find_ros()
             with self.stopwatch.stage("interfaces"):

@@ -134,7 +134,7 @@ class Trials:
         return policy.that_counts(attempts)
 
     def _run_simulated(self, evidence: Evidence, trial: Runs, clock: Clock, settled: Mapping[str, Finding]) -> Attempt:
-        """Run the trial in simulated time, and once more if a doubt that arose by chance stopped it.
+        """Run the trial in simulated time, and once more if the doubt that stopped it may be due to chance.
 
         Raises:
             WallTimeNeeded: wall time must decide.

@@ -33,7 +33,7 @@ then sends its endpoints."""
 NOTHING_THERE_S = 0.5
 """The time to listen if the number of participants is unknown, as in the real `ros2`."""
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
-"""The Fast DDS profile for the nodes of commands on the loopback interface."""
+"""The Fast DDS profile for the nodes that commands create on the loopback interface."""
 PATIENT_PROFILE = LOOPBACK_PROFILE.with_name("loopback_patient.xml")
 """The same profile for a node that runs for hours."""
 _RANGE, _PROFILE = "ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTRTPS_DEFAULT_PROFILES_FILE"

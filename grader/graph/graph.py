@@ -41,7 +41,7 @@ class Show:
     """The parts of a graph to show, like the check boxes of the real rqt_graph."""
 
     debug: bool = False
-    """Debug topics (/rosout, /parameter_events, /clock) and the nodes of tools."""
+    """Debug topics (/rosout, /parameter_events, /clock) and the nodes that belong to tools."""
     hidden: bool = False
     """Names with a part that begins with "_", such as the topics of actions and the nodes of tools."""
     dead_ends: bool = True

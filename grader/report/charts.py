@@ -1,7 +1,7 @@
 """Charts over time as SVG: the intervals between commands, and the values in the commands.
 
 All charts have the same time axis. If there are more values than a chart can show, only the lowest and the highest
-value of each short period of time are drawn. Colour is never the only cue: a value outside its band is drawn as a
+value of each short period are drawn. Colour is never the only cue: a value outside its band is drawn as a
 cross.
 """
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 LARGEST = 4_000_000
-"""A file size in bytes. No report is this large."""
+"""The maximum size of a file that may be a report (bytes). No report is this large."""
 PAGE = "index.html"
 MOST_DIAGNOSES = 5
 BAR = "#1c7ed6"
@@ -181,7 +181,7 @@ def _link(file: Path, folder: Path) -> str:
 
 
 def failures(entries: Iterable[Entry]) -> list[FailedCheck]:
-    """Return the failed checks, the most frequently failed first."""
+    """Return the failed checks, most frequently failed first."""
     checks: dict[tuple[str, str], FailedCheck] = {}
     for entry in entries:
         for outcome in entry.failed:

@@ -125,7 +125,7 @@ def _in_one_line(difference: str) -> str:
 
 
 def _why_this_clock(evidence: Evidence) -> str:
-    """Return the reason for the clock of the first trial, and for each trial that was judged by the other clock."""
+    """Return the reason for the first trial's clock, and for that of each trial judged on the other clock."""
     first = evidence.run.recording
     if first is None and evidence.run.called is not None:
         return "No node was run. Your code was called, without a simulator."

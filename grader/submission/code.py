@@ -108,7 +108,7 @@ class Code:
         return found
 
     def calls(self, name: str) -> list[Call]:
-        """Return the calls to functions and methods with this last name, in the order of the source."""
+        """Return the calls to functions and methods whose dotted name ends with this name, in source order."""
         return self._calls.get(name, [])
 
     def assigned(self, *path: str) -> Where | None:

@@ -209,7 +209,7 @@ def _too_much() -> str:
 
 
 class _Packer(pickle.Pickler):
-    """Pickles enumeration members and our errors as calls to their classes, whatever other reducers are registered."""
+    """Pickles enumeration members and our errors as calls to their classes, even if other reducers are registered."""
 
     def reducer_override(self, obj: object) -> Any:  # noqa: ANN401 - as the base class
         """Return the call that recreates the object."""

@@ -1,4 +1,4 @@
-"""Uses of functions, found by their last names, even if the source gives the functions other names.
+"""Uses of functions, found by the last part of their names, even if the source gives the functions other names.
 
 A search for calls to `sleep` does not find `from time import sleep as nap`, `nap = time.sleep`, `partial(time.sleep,
 1)` or `getattr(time, "sleep")`. It does not find a function in another file that calls `sleep` either. So every mention
@@ -47,7 +47,7 @@ class _File:
     others: dict[str, Top] = field(default_factory=dict)
     """Local name or MODULE.NAME -> the top-level name in another file that it refers to."""
     stored: set[str] = field(default_factory=set)
-    """Attributes that the file itself assigns. For example, `self.sleep = 0` is a number and not a function."""
+    """Attributes that the file itself assigns. For example, after `self.sleep = 0` the attribute is not a function."""
 
 
 Top = tuple[str, str]

@@ -35,7 +35,7 @@ MOST_QUESTIONS = 100_000
 """The maximum number of requests that are answered in one run. A test makes a few hundred."""
 MOST_REPORT = 64 * 1024
 EXTRA_S = 30.0
-"""The time of a run in addition to that of the tests, for forking and cleaning up (s)."""
+"""The time that a run may take in addition to its tests, for forking and cleaning up (s)."""
 START_S = 120.0
 """The maximum time for the imports, on a crowded machine (s)."""
 _QUESTION = struct.Struct("<cHqdd")
@@ -56,7 +56,7 @@ class Package:
 
 
 class Lane:
-    """The cell with its session, as a context manager. Entering it starts the imports.
+    """The cell with its session, as a context manager. On entry, it starts the imports.
 
     Without a cell, the lane uses `folder`, which no other lane uses. Its nodes then discover no other nodes on the
     machine.

@@ -2,7 +2,7 @@
 
 This file runs as a separate script. It reads one line of JSON and the files of the package (a tar stream) from
 standard input, then one byte per run. It writes to standard output: READY as soon as it can run tests, and after each
-run the exit code of pytest, whether the time limit was exceeded, the seconds, the size of the report, and the report.
+run the exit code of pytest, whether the time limit was exceeded, the duration (s), the report's size, and the report.
 It does not know which node a run uses.
 
 Between two runs, it kills all other processes of the cell and empties its disks. So a run finds no trace of the

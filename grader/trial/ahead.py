@@ -79,7 +79,7 @@ class Ahead:
             pool.shutdown()
 
     def start(self, name: str, trial: Trial) -> None:
-        """Start the simulator and the launcher as soon as those of the previous trials are ready.
+        """Start the simulator and the launcher as soon as the previous trials have theirs ready.
 
         If that fails, the trial's `run` raises the error.
         """

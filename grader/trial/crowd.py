@@ -17,8 +17,8 @@ simulator counts as work of the node: a simulator that answers thousands of call
 machine.
 """
 SIMULATOR = 0.3
-"""The share of a processor that the simulator may use for itself. A tenth was measured. The rest counts as the
-node's."""
+"""The share of a processor that the simulator may use for itself. The measured share is a tenth. The rest counts as
+work for the node."""
 OTHERS = 0.2
 """Other programs use the machine if they take at least this share of one processor."""
 WAITED = 0.05
@@ -46,7 +46,7 @@ def is_machines(stalled_s: float, others_s: float) -> bool:
 
 
 class Stalls:
-    """Finds stalls. The kernel counts how long threads were ready to run but did not run."""
+    """Finds stalls. The kernel measures the time for which threads were ready to run but did not run."""
 
     def __init__(self, *pids: int) -> None:
         self._parts = [_threads(*pids), _threads(os.getpid())]

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Call:
-    """A call of a service, with its request and response as plain data, at the time `t_s` of the trial's clock.
+    """A service call, with its request and response as plain data, at the time `t_s` of the trial's clock.
 
     If `by_trial` is False, a node called the simulator. Otherwise, the trial called the node. Then `response` is None
     and `answered_s` is None until the response arrives, and `missing` says that no node offered the service.

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     Floats = npt.NDArray[np.float64]
 
 AFTER_STALL_S = 0.05
-"""The time after a stall in which messages still arrive late (s)."""
+"""The time after a stall for which messages still arrive late (s)."""
 
 ClockName = Literal["simulated", "wall"]
 
@@ -190,7 +190,7 @@ class Recording:
     offers: tuple[Offer, ...] = ()
     """The services of the submission's nodes, if the trial calls any."""
     pens: tuple[PenChange, ...] = ()
-    """The changes of pens, in order. A new turtle has turtlesim's default pen."""
+    """The changes to the pens, in order. A new turtle has turtlesim's default pen."""
     tracks: tuple[Track, ...] = ()
     """The tracks of the turtles other than turtle1."""
     graph_dropped: int = 0
@@ -220,7 +220,7 @@ class Recording:
     def stalled(self, t_s: float) -> bool:
         """Return whether this time was in a stall or right after one.
 
-        The time of a message that arrived then depends on the machine, not on the node.
+        At such times, the arrival time of a message depends on the machine, not on the node.
         """
         return any(begin <= t_s <= end + AFTER_STALL_S for begin, end in self.stalls)
 

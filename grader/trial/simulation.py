@@ -103,7 +103,7 @@ class Simulation:
         self._services: list[str] = []
 
     def lap(self, part: str) -> None:
-        """Record the duration of the part of the trial that ends now."""
+        """Record the duration of the part of the trial that has just ended."""
         now = time.monotonic()
         self.seconds[part] = now - self._since
         self._since = now
@@ -257,7 +257,7 @@ class Simulation:
 
 
 def _handle_messages(subscription: Subscription) -> None:
-    """Pass the waiting messages to the callback of the subscription."""
+    """Pass the waiting messages to the subscription's callback."""
     with subscription.handle:
         for _ in range(_MOST_AT_ONCE):
             taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
@@ -269,7 +269,7 @@ def _handle_messages(subscription: Subscription) -> None:
 def leave_out_events(node: Node) -> None:
     """Stop waiting for events (other types, other QoS) on a node's topics, except the topics of the turtle.
 
-    rclpy adds every source of events to every wait. Topics that the node adds later keep their events.
+    rclpy adds all event sources to every wait. Topics that the node adds later keep their events.
     """
     for endpoint in (*node.publishers, *node.subscriptions):
         if not endpoint.topic_name.startswith("/turtle1/"):

@@ -1,4 +1,4 @@
-"""The node `spawner` of a trial, which plays the other half of a game: it announces targets and removes caught ones.
+"""The node `spawner`, with which a trial plays the other half of a game: it announces targets and removes caught ones.
 
 The node of the trial receives the names on /targets twice a second, and calls /catch to have one removed.
 """

@@ -16,7 +16,7 @@ MOST_CHANGES = 2000
 
 
 class TurtleWatch:
-    """Records the changes of turtles and pens, frame by frame."""
+    """Records the changes to turtles and pens, frame by frame."""
 
     def __init__(self) -> None:
         self._pens: dict[str, Pen] = {}

@@ -74,6 +74,6 @@ class WallTrial(Simulation):
             if self.recorder.commands:
                 return
             found = self.all_nodes_found() and not self.recorder.follow_graph()
-        # Handle what arrived before the clock starts, so that no interval contains it. Reading the graph takes a while.
+        # Handle earlier arrivals before the clock starts, so that no interval contains them. Reading the graph is slow.
         self.spin()
         self.node.read_output(self.now())

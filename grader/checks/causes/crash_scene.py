@@ -130,7 +130,7 @@ def _end(node: ast.AST) -> int:
 
 
 def _small(node: ast.AST) -> bool:
-    """Return whether the node is part of a single statement, and not a function or block that surrounds the line."""
+    """Return whether the node is part of a single statement rather than a function or block around the line."""
     return not isinstance(
         node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef | ast.If | ast.For | ast.While | ast.Try | ast.With
     )

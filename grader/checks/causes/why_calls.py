@@ -234,7 +234,7 @@ def _not_callable(scene: CrashScene, kind: str) -> Cause | None:
 
 
 def why_refused(scene: CrashScene) -> Cause | None:
-    """Return the cause of an error that rclpy raises about a type, a period, a callback or a second init."""
+    """Return the cause of an error that rclpy raises about a type, a period, a callback or a second call to init."""
     text = scene.crash.message
     if "must only be called once" in text:
         lines = [

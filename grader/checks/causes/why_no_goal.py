@@ -1,4 +1,4 @@
-"""Why a goal does not reach the action, or is aborted: another name or type, a wait in a callback, a second goal."""
+"""Why a goal does not reach the action, or is aborted: a wrong name or type, a wait in a callback, or a second goal."""
 
 from __future__ import annotations
 

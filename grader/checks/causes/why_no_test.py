@@ -32,7 +32,7 @@ def why_no_test(code: TestCode) -> Cause:
 
 
 def _misnamed(nodes: tuple[ast.AST, ...]) -> Function | None:
-    """Return a function with an assert that nothing in the file calls."""
+    """Return a function that contains an assert but is not called anywhere in the file."""
     called = {node.id for node in nodes if isinstance(node, ast.Name)}
     called |= {node.attr for node in nodes if isinstance(node, ast.Attribute)}
     for node in nodes:

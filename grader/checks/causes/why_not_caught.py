@@ -84,7 +84,7 @@ def _never_drives(evidence: Evidence, left: list[Track]) -> Cause:
 
 
 def _nearest_m(evidence: Evidence, track: Track) -> float:
-    """Return the smallest distance of turtle1 from a target that was never caught (m)."""
+    """Return the smallest distance between turtle1 and a target that was never caught (m)."""
     x, y = track.rows[-1][1:3]
     frames = evidence.recording.frames
     return float(np.min(np.hypot(frames.x - x, frames.y - y)))

@@ -26,7 +26,7 @@ IN_GENERAL = "A timer calls its callback without arguments; a subscription passe
 
 
 def too_few(scene: CrashScene, function: str, names: str) -> Cause | None:
-    """Return the cause if a function of the student was called without a value for `names`, else None."""
+    """Return the cause if one of the student's functions was called without a value for `names`, else None."""
     own = scene.functions(function)
     if not own:
         return None
@@ -49,7 +49,7 @@ def too_few(scene: CrashScene, function: str, names: str) -> Cause | None:
 
 
 def too_many(scene: CrashScene, function: str) -> Cause | None:
-    """Return the cause if a function of the student was called with more arguments than it takes, else None."""
+    """Return the cause if one of the student's functions was called with more arguments than it takes, else None."""
     own = scene.functions(function)
     if not own:
         return None

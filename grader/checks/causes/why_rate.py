@@ -1,4 +1,4 @@
-"""Why messages or log lines arrive too often: loops, callbacks of subscriptions, timers that are created repeatedly."""
+"""Why messages or log lines arrive too often: loops, subscription callbacks, or timers that are created repeatedly."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ FRAME_S = 0.016
 
 
 def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:
-    """Return the cause if a loop without a pause, or the callback of a subscription, contains `call`, else None."""
+    """Return the cause if a loop without a pause, or a subscription callback, contains `call`, else None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             where = Where(module.file, getattr(node, "lineno", None))

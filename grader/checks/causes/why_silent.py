@@ -62,7 +62,7 @@ def _nothing_to_spin(evidence: Evidence) -> Cause | None:
     if any(evidence.code.calls(name) for name in WAKES):
         return None
     for call in evidence.code.calls("spin_once"):
-        # In rclpy.spin_once, the timeout comes after node and executor. In Executor.spin_once, it comes first.
+        # In rclpy.spin_once, the timeout follows the node and the executor. In Executor.spin_once, it comes first.
         of_rclpy = dotted(call.node.func) in ("rclpy.spin_once", "spin_once")
         limit = call.argument(2 if of_rclpy else 0, "timeout_sec")
         if limit is None or (isinstance(limit, ast.Constant) and limit.value is None):

@@ -181,7 +181,7 @@ def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
     arrivals = [each.t_s for each in evidence.recording.messages if each.type.endswith(params.type_ends)]
     steps = [later - earlier for earlier, later in pairwise(arrivals)]
     if not any(steps):
-        # This trial runs no code of the student, so the machine is at fault.
+        # This trial runs none of the student's code, so the machine is at fault.
         message = "No message of that type was recorded, so there is no rate to compare with. Try again."
         raise MachineError(message)
     truth = len(steps) / sum(steps)

@@ -158,7 +158,7 @@ def _modules(evidence: Evidence) -> Finding:
         expected = "Each folder with Python files has a file __init__.py, which may be empty."
         cause = "find_packages in setup.py finds only folders with an __init__.py." if finds else ""
         return failed(observed, expected, Cause("missing-init", cause, Where("setup.py", _setup_line(evidence))))
-    # Without a package.xml that it can read, colcon reports what setup.py raised, and continues.
+    # If colcon cannot read package.xml, it reports the exception from setup.py and continues.
     raised = _raised(evidence) if missing else None
     if raised is not None:
         return raised

@@ -30,7 +30,7 @@ SIGMAS = 6.0
 
 @dataclass(frozen=True, kw_only=True)
 class OneCall:
-    """One call of the trial."""
+    """One call made by the trial."""
 
     call: str = string("the id of a call", about="The id of a `[[trial.points]]` or a `[[trial.bag]]`.")
 
@@ -118,7 +118,7 @@ def _missing(evidence: Evidence, called: Called, expected: str, name: str) -> Fi
 
 
 def _late(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
-    """Return a finding about a call that did not return, or was not made because an earlier one did not, or None."""
+    """Return a finding about a call that did not return or was not made because an earlier one did not; else None."""
     late = any(each.ended == TOO_LATE for each in evidence.run.called or ())
     if not late or called.ended not in (TOO_LATE, ""):
         return None

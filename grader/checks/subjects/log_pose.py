@@ -83,7 +83,7 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
 
 
 def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
-    """Every line shows how far the turtle has driven since the start."""
+    """Every line shows the distance that the turtle has driven since the start."""
     recording, frames = evidence.recording, evidence.recording.frames
     logged = [line for line in _trusted(recording, params.format) if line.t_s >= evidence.trial.scenario.pose_from_s]
     expected = "The distance is the length of the trajectory so far, in metres. It never gets smaller."

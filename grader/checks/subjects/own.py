@@ -52,7 +52,7 @@ def _shown(numbers: OwnNumbers) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class OwnCircle:
-    """Like the kind `circle`, but radius and direction are the student's own."""
+    """Like the kind `circle`, but the radius and the direction are the student's own."""
 
     radius_tolerance_m: float = number(0.05, above=0, about="The maximum error of the radius.")
     centre_tolerance_m: float = number(0.05, above=0, about="The maximum error of the centre.")

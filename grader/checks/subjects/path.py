@@ -31,7 +31,7 @@ MOVED_M = 0.05
 """A turtle with a shorter trajectory than this did not move."""
 TURNED_RAD = 0.1
 STRAIGHT_RADIUS_M = 50.0
-"""A larger circle than this looks straight on a canvas of 11 m."""
+"""A larger circle than this looks straight on an 11 m canvas."""
 LIVES_S = 1.0
 """The time for which one command moves a turtle (s)."""
 AT_ONCE_S = 0.05

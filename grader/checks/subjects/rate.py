@@ -218,7 +218,7 @@ def _wrong_mean(
 
 
 def _timers(evidence: Evidence) -> list[tuple[Call, float | None]]:
-    """Return the calls of create_timer, each with its period (s) if that is a constant."""
+    """Return the calls to create_timer, each with its period (s) if that is a constant."""
     calls = evidence.code.calls("create_timer")
     return [(call, constant(call.argument(0, "timer_period_sec"), call.module.names)) for call in calls]
 

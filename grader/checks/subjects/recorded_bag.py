@@ -77,7 +77,7 @@ class TopicInBag(InBag):
 
 
 def topic_in_bag(evidence: Evidence, params: TopicInBag) -> Finding:
-    """The bag contains messages of the topic."""
+    """The bag contains messages on the topic."""
     bag, where = evidence.bag(params.bag), Where(params.bag)
     expected = f"The bag contains {params.topic} with messages of type {params.type}."
     held = [f"{shorten(topic)} ({count})" for topic, count in sorted(bag.counts.items())]

@@ -113,7 +113,7 @@ def _why_accepted(evidence: Evidence, params: Catches, code: TestCode) -> Cause:
 
 
 def _is_silent(evidence: Evidence, broken: str) -> bool:
-    """Return whether the broken node sends nothing on the topic of the commands."""
+    """Return whether the broken node sends nothing on the command topic."""
     spec = evidence.trial.tests
     assert spec is not None
     behaviours: dict[str, Behaviour] = {each.id: each.behaviour for each in spec.broken}

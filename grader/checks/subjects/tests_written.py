@@ -24,7 +24,7 @@ TEST_DEPEND = "python3-pytest"
 READERS = frozenset(
     {"open", "read_text", "read_bytes", "getsource", "getsourcelines", "getsourcefile", "find_spec", "get_data"}
 )
-"""Functions that read the file of a module."""
+"""Functions that read a module's file."""
 SOURCE_MODULES = frozenset({"ast", "inspect", "dis", "linecache", "tokenize", "marshal", "py_compile", "pkgutil"})
 """Modules whose purpose is to look at source or compiled code."""
 CODE_ATTRIBUTES = frozenset({"__code__", "co_code", "co_consts", "co_names"})
@@ -38,7 +38,7 @@ def code_of(evidence: Evidence) -> TestCode:
 
 
 def declared(evidence: Evidence, _: NoParams) -> Finding:
-    """setup.py says that pytest runs the tests, and package.xml that it must be installed."""
+    """setup.py says that pytest runs the tests, and package.xml says that pytest must be installed."""
     expected = f'setup.py names "{PYTEST}" as "test" in extras_require, and package.xml {TEST_DEPEND} as <test_depend>.'
     setup, manifest = evidence.setup_py, evidence.manifest
     if setup is not None and not any(_name(each) == PYTEST for each in setup.tested_with):
@@ -93,7 +93,7 @@ LOOKS = "The same node can be written differently. A test of its source would th
 
 
 def _imported(node: ast.AST, modules: frozenset[str]) -> str:
-    """Return the name in an import statement of one of these modules, or an empty string."""
+    """Return the imported name if the statement imports one of these modules, or an empty string."""
     if isinstance(node, ast.Import):
         return next((alias.name for alias in node.names if alias.name.partition(".")[0] in modules), "")
     if isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] in modules and not node.level:
@@ -107,7 +107,7 @@ def _is_of_code(node: ast.AST) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class Steady:
-    """The names of functions that make a test depend on luck."""
+    """The names of functions that make a test depend on chance."""
 
     names: tuple[str, ...] = strings(about="Functions that wait for a fixed time, such as `sleep`.")
     random: tuple[str, ...] = strings(about="Functions that return a different result each time, such as `randint`.")
