@@ -9,7 +9,6 @@ from grader.checks.diagnosis_of_files import DiagnosisOfFiles
 
 Diagnosis = Literal[
     DiagnosisOfFiles,
-    DiagnosisOfCatching,
     # Starting and stopping
     "crash",
     "needs-stdin",
@@ -257,6 +256,7 @@ Diagnosis = Literal[
     "wrong-count",
     "program-traceback",
     "exit-code",
+    DiagnosisOfCatching,
     # Advice
     "no-timer",
 ]

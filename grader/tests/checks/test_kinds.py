@@ -20,4 +20,4 @@ def test_a_drawn_start_leaves_room_for_the_circle_of_the_check() -> None:
 def test_what_is_drawn_of_a_kind_is_what_a_node_must_drive_for() -> None:
     drawn = {name for name, kind in KINDS.items() if kind.requested is not None}
     assert drawn == {"circle", "own_circle", "figure_eight", "square", "goal", "star", "rate", "values"}
-    assert {name for name, kind in KINDS.items() if kind.drives} == drawn | {"own_rate", "arc", "pause"}
+    assert {name for name, kind in KINDS.items() if kind.drives} == drawn | {"own_rate", "arc", "pause", "catches_all"}
