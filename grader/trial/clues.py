@@ -98,7 +98,7 @@ def _is_timeless(node: ast.Attribute, modules: Mapping[str, str]) -> bool:
 
 
 def _wall_time_names(tree: ast.Module) -> Iterator[tuple[str, str]]:
-    """Yield each name that a file imports from a module that follows wall time, together with its full name."""
+    """Yield each name that a file imports from a module that uses wall time, together with its full name."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             for alias in node.names:

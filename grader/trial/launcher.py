@@ -85,7 +85,7 @@ def _frames_of_others(trace: types.TracebackType | None) -> types.TracebackType 
 
 
 def main() -> None:
-    """Import rclpy, wait for the order, and become the node."""
+    """Import rclpy, wait for the start command, and then run the node in this process."""
     sys.path.pop(0)
     _import_ahead()
     os.write(1, b"\x00ready\n")

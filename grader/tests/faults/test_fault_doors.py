@@ -54,7 +54,7 @@ def commanded(name: str, folder: Path, shim: Path, call: str, number: int, nth: 
 
 
 def reported(done: Done) -> None:
-    """Check that the command succeeded, or reported an error of the machine."""
+    """Check that the command either succeeded or reported a machine error."""
     no_traceback(done)
     if done.failures and done.code not in (0, 1):
         assert done.code == 3, done

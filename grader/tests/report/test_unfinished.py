@@ -1,4 +1,4 @@
-"""A check that could not be judged keeps its points in the maximum, in every format."""
+"""In every format, the points of a check that could not be judged still count toward the maximum."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""turtlesim, whose frames the test computes, and a client, both in one process with ROS 2."""
+"""turtlesim, which the test advances frame by frame, and a client, both in one process with ROS 2."""
 
 # ruff: noqa: ANN401 - mypy sees everything of ROS 2 as Any
 
