@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 MAGICS = ("node", "package", "answers")
 KEPT = ".kept"
 """The folder for files that were changed elsewhere before a cell replaced them. It is hidden, so it is not graded."""
+SOLUTIONS = "solutions"
+"""The folder of the notebooks with solutions, in this course and in a class of nbgrader."""
 _FIRST_LINE = re.compile(rf"\s*%%({'|'.join(MAGICS)})\b[ \t]*(.*?)\s*")
 
 
@@ -122,7 +124,8 @@ def begin(exercise: Exercise, folder: Path, *, alone: bool = False) -> tuple[str
     if not alone and not target.exists() and own.is_dir():
         written = workspace.add_missing(own, target, {})[0]
     written += workspace.add_missing(source, target, {})[0]
-    if not alone and exercise.numbers is not None:
+    # An instructor runs the solution's notebook: the numbers of its code are in its file already.
+    if not alone and exercise.numbers is not None and folder.resolve().parent.name != SOLUTIONS:
         written += _own_numbers(exercise.numbers, source, target)
     return tuple(f"{exercise.package}/{path}" for path in dict.fromkeys(written))
 

@@ -1,13 +1,17 @@
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from grader.checks.exercises import find_exercise
 from grader.errors import UsageError
-from grader.notebook.cell_files import Part, counts, part_path, parts_of
+from grader.learner import workspace
+from grader.notebook.cell_files import Part, begin, counts, part_path, parts_of
 
 CIRCLE = find_exercise("03")
 ANSWERS = find_exercise("02")
+CHALLENGES = find_exercise("07")
 
 
 @pytest.mark.parametrize(
@@ -69,3 +73,18 @@ def test_the_files_of_a_notebook_are_read_from_its_cells() -> None:
 )
 def test_a_file_counts_if_the_student_changed_it(file: str | None, start: str | None, what: str) -> None:
     assert counts(file, start) == what
+
+
+@pytest.mark.parametrize(("parent", "kept"), [("exercises", False), ("solutions", True)])
+def test_only_the_notebook_of_a_solution_keeps_the_numbers_of_the_starting_point(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, parent: str, kept: bool
+) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setattr("getpass.getuser", lambda: "ada")
+    folder = tmp_path / parent / CHALLENGES.id
+    folder.mkdir(parents=True)
+    begin(CHALLENGES, folder)
+    assert CHALLENGES.numbers
+    numbers = Path(CHALLENGES.package, CHALLENGES.numbers.file)
+    given = (workspace.starting_point(CHALLENGES) / numbers).read_bytes()
+    assert ((folder / numbers).read_bytes() == given) is kept
