@@ -149,10 +149,7 @@ def _measured(evidence: Evidence, params: CircleParams, trajectory: Trajectory, 
         direction = "clockwise" if turns < 0.0 else "counter-clockwise"
         cause = "The sign of angular.z sets the direction: a positive value turns left, which is counter-clockwise."
         if (_steady(evidence) or (0.0, 0.0))[0] < 0.0:
-            cause = (
-                "linear.x is negative, so the turtle drives backwards. When it drives forwards, a positive "
-                "angular.z turns left."
-            )
+            cause = f"linear.x is negative, so the turtle drives backwards. {cause}"
         observed = f"The turtle drove the circle {direction}."
         return failed(observed, expected, Cause("wrong-direction", cause, _line(evidence)))
     near = round_.near(fitted.rms) or size.near(fitted.radius) or place.near(centre) or long.near(forward)
@@ -291,8 +288,7 @@ CIRCLE = Kind(
     "The turtle drives the circle",
     CircleParams,
     circle,
-    about="Velocity commands drive the turtle on a circle: round, in the right direction, with the right size and "
-    "place.",
+    about="Velocity commands drive the turtle on a circle with the right shape, direction, size and place.",
     drives=True,
     requested=requested_circle,
     radius_m=lambda params: params.radius_m,
