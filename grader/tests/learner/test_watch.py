@@ -28,6 +28,7 @@ from grader.ros.underlay import with_turtlesim
 from grader.sandbox import bubblewrap
 from grader.submission.package import open_submission
 from grader.tests.no_ros import NO_ROS
+from grader.tests.waiting import until
 from grader.trial.recording import Pose
 from grader.trial.trial import Plan
 
@@ -64,6 +65,11 @@ def change(file: Path, old: str, new: str) -> None:
     file.write_text(text.replace(old, new))
 
 
+def state(pid: int) -> str:
+    """Return the state of a process: T if it is suspended (see proc(5))."""
+    return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+
+
 def ignored(_: str) -> None:
     """Discard a progress message."""
 
@@ -72,12 +78,21 @@ def failed(watched: Watched) -> list[str]:
     return [o.id for o in watched.grade().report.outcomes if o.status.value == "failed" and not o.advice]
 
 
-def test_changed_modules_are_graded_without_colcon(package: Path, watched: Watched) -> None:
+def test_changed_modules_are_graded_without_colcon(
+    package: Path, watched: Watched, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("grader.learner.watch.SUSPEND_S", 0.0)
     assert failed(watched) == []
+    watched.prepare()
+    assert watched._warm is not None
+    prepared = watched._warm[1]._processes
+    if bubblewrap.usable():
+        until(lambda: state(prepared.leader) == "T")
     change(node_of(package), "2.0", "1.0")
     assert watched.changed()
     assert failed(watched) == ["values", "circle"]
     node_of(package).write_text("def main(:\n")
+    assert not Path(f"/proc/{prepared.leader}").exists(), "the prepared trial was not used"
     assert "entry-point" in failed(watched)
     shutil.copyfile(
         ROOT / "solutions" / STEP / "my_robot_controller/my_robot_controller/draw_circle.py", node_of(package)
@@ -266,6 +281,9 @@ def test_the_first_of_several_trials_is_prepared_early(package: Path, monkeypatc
 
         def start(self) -> None:
             begun.append(self.plan)
+
+        def suspend(self) -> None:
+            pass
 
         def close(self) -> None:
             begun.remove(self.plan)

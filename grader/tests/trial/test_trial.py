@@ -50,6 +50,20 @@ def test_a_trial_that_is_ready_may_wait_for_its_turn_as_long_as_it_takes(monkeyp
         assert [limit.finished.is_set() for limit in limits] == [True]
 
 
+def test_a_suspended_trial_continues_when_it_is_used_and_is_not_suspended_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    starter = ["sh", "-c", """read plan; echo '{"ready": true}'; read order; read more"""]
+    monkeypatch.setattr("grader.sandbox.bubblewrap.room", lambda *_, **__: starter)
+    with Trial(Plan("simulated", Pose(5.5, 5.5, 0.0), None, 1.0), find_ros(), in_cell=True) as trial:
+        stat = Path(f"/proc/{trial._processes.leader}/stat")
+        trial.suspend()
+        until(lambda: " T " in stat.read_text())
+        trial.await_ready()
+        trial.suspend()
+        assert " T " not in stat.read_text()
+
+
 def test_what_the_conductor_imports_is_compiled_when_it_starts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     modules = [tmp_path / name for name in ("errors.py", *(f"{room}/a.py" for room in CONDUCTORS_ROOMS))]
     for module in modules:
