@@ -37,7 +37,7 @@ UNITS = {
     "_m": "m",
     "_s": "s",
 }
-"""Suffix of a parameter's name -> its unit. Longer suffixes come first."""
+"""Maps the suffix of a parameter's name to the parameter's unit. Longer suffixes come first."""
 STAGES = {
     "source": ("Judged from the files", "These checks read the submission's files. They do not build or run it."),
     "build": ("Judged from the build", "These checks read what `colcon build` printed and installed."),

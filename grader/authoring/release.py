@@ -2,10 +2,10 @@
 
     python -m grader.authoring.release [--check]
 
-First, source notebooks are updated from the files and checks of the solution. Then marked regions
-(grader/exercise/markers.py) are replaced with their starting point. Notebooks are converted as nbgrader does it
-(grader/notebook/released.py). All other files are copied. A file that becomes empty is not written, because the student
-creates it.
+First, source notebooks are updated from the files and checks of the solution. Then each marked region of the solution
+is replaced with the text that students start from (grader/exercise/markers.py). Notebooks are converted in the same way
+as by nbgrader (grader/notebook/released.py). All other files are copied. A file that would be empty is not written,
+because students create that file themselves.
 """
 
 from __future__ import annotations
@@ -48,7 +48,9 @@ class ReleasedFile:
 
 
 def released(solution: Path) -> dict[str, ReleasedFile]:
-    """Return the starting point as POSIX path -> file. `solution` is the folder of a step in solutions/.
+    """Return the files that students start from, by their POSIX paths.
+
+    `solution` is the folder of a step in solutions/.
 
     Raises UsageError with file and line if markers are wrong or the result cannot be parsed.
     """
@@ -121,7 +123,7 @@ def _stale_step(solution: Path, exercise: Path) -> list[str]:
 
 
 def release_file(data: bytes, path: str, name: str) -> bytes | None:
-    """Return the released content of a file, or None if the student creates the file. Messages contain `name`."""
+    """Return the released content of a file, or None if the student creates the file. Error messages contain `name`."""
     if path.endswith(RECORDED):
         return None
     if path.endswith(".ipynb"):

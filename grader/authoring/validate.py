@@ -35,10 +35,10 @@ _CODE = re.compile(r"^```.*?^```|`[^`\n]*`", re.MULTILINE | re.DOTALL)
 def validate(
     names: list[str], tell: Callable[[str], None] = lambda _: None, *, course: Path | None = None
 ) -> list[str]:
-    """Return the problems of these exercises (of all if `names` is empty), one sentence per problem.
+    """Return the problems of these exercises (or of all exercises if `names` is empty), one sentence per problem.
 
-    `tell` is called with progress messages. `course` is the folder course/; the default is the
-    folder of this checkout or installation.
+    `tell` is called with progress messages. `course` is the folder course/; the default is the folder of this checkout
+    or installation.
 
     Raises:
         UsageError: no exercise has this name.

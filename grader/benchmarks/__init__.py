@@ -1,1 +1,1 @@
-"""Benchmarks that measure ratios within one run: `python -m grader.benchmarks.NAME`."""
+"""Benchmarks that compare costs measured in the same run: `python -m grader.benchmarks.NAME`."""

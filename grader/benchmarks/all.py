@@ -2,9 +2,9 @@
 
     python -m grader.benchmarks.all [--times N] [--class N] [--sync N]
 
-F is the wall time of a bare `colcon build` of the package plus a bare process with one rclpy node, as in
-grader.benchmarks.check. It is measured before each of the other measurements, so that other load affects both. The
-first line shows the load of the machine. Figures of a busy machine can only be compared with each other.
+F is the wall time of a bare `colcon build` of the package plus that of a bare process with one rclpy node, as in
+grader.benchmarks.check. F is measured again before each cost, so that other programs slow down F and the cost alike.
+The first line shows the load of the machine. Results measured on a busy machine can be compared only with each other.
 """
 
 from __future__ import annotations
@@ -50,14 +50,17 @@ class Row:
 
 @dataclass(frozen=True)
 class InF:
-    """The wall time and the CPU time of a measurement, each divided by that of F."""
+    """The wall time and the CPU time of a measurement, each divided by the time of the reference F."""
 
     wall: float
     cpu: float
 
 
 class Bench:
-    """The measurements of one run. `folder` is for their files, and `times` is the number of repetitions."""
+    """The measurements of one run.
+
+    The measurements write their files to `folder`, and each is repeated `times` times.
+    """
 
     def __init__(self, folder: Path, times: int) -> None:
         self._folder = folder
@@ -78,7 +81,7 @@ class Bench:
         return self.bare[-1]
 
     def in_f(self, measure: Callable[[], Cost]) -> InF:
-        """Measure F and `measure` alternately. Return the medians of the ratios."""
+        """Measure the reference F and the cost `measure` alternately. Return the medians of the ratios."""
         pairs = [(self.f(), measure()) for _ in range(self._times)]
         return InF(
             statistics.median(one.wall_s / f.wall_s for f, one in pairs),
@@ -87,7 +90,7 @@ class Bench:
 
 
 def main() -> None:
-    """Measure everything and print the table."""
+    """Measure all costs and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--times", type=int, default=5, help="number of measurements, whose median is printed")
     parser.add_argument("--class", dest="students", type=int, default=16, help="submissions in the class (default: 16)")

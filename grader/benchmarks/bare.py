@@ -1,4 +1,4 @@
-"""The two parts of the unit F: a bare colcon build of a package, and a bare process with one rclpy node."""
+"""The two parts of F, the unit of cost: a bare colcon build of a package, and a bare process with one rclpy node."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _COLCON = "import sys; from colcon_core.command import main; sys.exit(main())"
 
 
 def bare_costs(submission: Path, folder: Path) -> dict[str, Cost]:
-    """Measure both costs in an empty folder. F is the sum of their wall times."""
+    """Measure a bare build and a bare node in an empty folder. The unit of cost F is the sum of the two wall times."""
     ros = with_turtlesim(find_ros())
     env = environment(ros, home=folder)
     opened = open_submission(submission)

@@ -4,17 +4,17 @@
 
 The benchmark puts mistakes into correct packages with the operators of grader/tests/operators (two operators in a third
 of the packages), and judges the packages in simulated time. The correct packages are the solutions and the cases of
-tests/unusual that follow ROS time. A package that still passes is ignored. For the others, the
-benchmark prints how often each of these is true:
+tests/unusual that follow ROS time. A package that still passes is ignored. For all other packages, the benchmark prints
+how often each of these statements is true:
 
 - first: the first failed check names the cause, at a line that must change;
 - at all: any failed check names the cause in this way;
 - false: a failed check names a wrong cause. A diagnosis that only repeats what was observed does not count.
 
-Each is counted twice: according to the diagnoses that the operators expect, and according to facts without diagnoses
-(the difference between the two packages, the source and the recording; grader/tests/operators/facts.py). The benchmark
-also lists what the reports missed, with the difference. `--keep` stores recordings, and `--again` judges stored
-recordings again without running anything.
+Each statement is counted twice: according to the diagnoses that the operators expect, and according to facts without
+diagnoses (the difference between the two packages, the source and the recording; grader/tests/operators/facts.py). The
+benchmark also lists each wrong package whose report missed the cause, with the difference from the correct package.
+`--keep` stores recordings, and `--again` judges stored recordings again without running anything.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ class Judged:
 
     @cached_property
     def facts(self) -> Facts:
-        """The facts about the package, without the tables of diagnoses."""
+        """The facts about the package, found without the tables of diagnoses."""
         return Facts(self.made.right, self.made.files, self.evidence)
 
     @property
@@ -101,7 +101,7 @@ class Judged:
         return [sentence for outcome in self.failed for sentence in self.facts.false(outcome)]
 
     def marks(self) -> dict[str, bool]:
-        """Return the result of each measure. A bad result is False for named causes, and True for false statements."""
+        """Return whether each of the statements that the benchmark counts is true for this package."""
         by_fact = [self.facts.names(outcome) for outcome in self.failed]
         return {
             "cause named first": self.first,
@@ -162,7 +162,7 @@ def again(kept: Path) -> Judged:
 
 
 def tell(all_: Iterable[Judged], *, everything: bool = False) -> None:
-    """Print what the reports missed, and the statistics."""
+    """Print each package whose report missed the cause, and the statistics."""
     every = list(all_)
     wrong = [each for each in every if each.failed]
     for each in wrong:

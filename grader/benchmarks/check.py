@@ -1,4 +1,4 @@
-"""Measure the cost of `grader check` in F: a bare colcon build of the package plus a bare process with one rclpy node.
+"""Measure the cost of `grader check` relative to F: a bare colcon build plus a bare process with one rclpy node.
 
     python -m grader.benchmarks.check [--times N] [--submission FOLDER]
 

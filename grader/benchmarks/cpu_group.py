@@ -1,10 +1,10 @@
 """Count the CPU time of a command and of all its descendants in a control group.
 
 The kernel adds the CPU time of a process to that of its parent when the parent waits for it. No process waits for the
-processes that are still running when a cell ends, so without a group, most of the time of a build or trial can be
-missing.
+processes that are still running when a cell ends, so without a control group, most of the CPU time of a build or trial
+can be missing.
 
-This needs control groups of version 1. In version 2, a process is in only one group, and each cell has a group.
+This module needs control groups of version 1. In version 2, a process is in only one group, and each cell has a group.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ class CpuGroup:
         return ControlGroup((self.folder,)).joined(argv) if self.folder else list(argv)
 
     def wait(self) -> None:
-        """Wait a short time until no process of the group is running."""
+        """Wait until no process of the group is running, but only for a short time."""
         until = time.monotonic() + _ENDED_S
         while self.folder and (self.folder / "cgroup.procs").read_text().strip() and time.monotonic() < until:
             time.sleep(0.01)
 
     def cpu_s(self) -> float | None:
-        """Return the CPU time that the group has used (s), or None without a group."""
+        """Return the CPU time that the group has used (s), or None if there is no group."""
         if self.folder is None:
             return None
         return int((self.folder / "cpuacct.usage").read_text()) / 1e9

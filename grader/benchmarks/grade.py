@@ -1,13 +1,13 @@
-"""Measure the cost of a class per submission in F, for several class sizes and with Dask workers.
+"""Measure the cost of a class per submission, relative to F, for several class sizes and with Dask workers.
 
     python -m grader.benchmarks.grade [--sizes 25,50,100,200] [--workers 1,2,4] [--dask-size 50] [--jobs N]
                                       [--mix right|all] [--times N]
 
 F (see grader.benchmarks.check) is measured before and after the class, in the same run. The class is mixed: out of
 every eight submissions, four are correct, three are wrong in different ways, and one is hostile. With `--mix right`,
-all are correct. Each submission contains a different comment, so that the grader grades every one of them. The memory
-is that of all processes of the run, including those in cells. It is sampled several times per second, and shared memory
-is counted once.
+all submissions are correct. Each submission contains a different comment, so that the grader grades every one of them.
+The benchmark also measures the memory of all processes of the run, including those in sandbox cells. It samples this
+memory several times per second, and counts shared memory once.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def _bare(folder: Path, times: int) -> list[float]:
 
 
 def class_cost(folder: Path, size: int, jobs: int | None, mix: str) -> ClassCost:
-    """Grade a class on this machine, in a folder. `mix` is "right" or "all", as in the option."""
+    """Grade a class on this machine, in a folder. `mix` is "right" or "all", like the value of the option --mix."""
     submitted = _class(folder / f"class-{size}", size, mix)
     options = ["--jobs", str(jobs)] if jobs else []
     return _graded(submitted, size, folder / f"grades-{size}", options)
@@ -201,7 +201,7 @@ def _wait_for_workers(address: str, workers: int) -> None:
 
 @contextmanager
 def _watched(also: list[int]) -> Iterator[list[float]]:
-    """Sample the total memory (MB) of this process's descendants, and of the processes `also` and their descendants."""
+    """Sample the total memory (MB) of all descendants of this process, and of the processes in `also` with theirs."""
     samples: list[float] = []
     stopped = Event()
 

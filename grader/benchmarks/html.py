@@ -1,4 +1,4 @@
-"""Measure the time to create a page in F, the time to show it in a browser, and both for a class of 200.
+"""Measure how long it takes to create a page (relative to F) and to show it in a browser, also for a class of 200.
 
     python -m grader.benchmarks.html [--times N] [--submission FOLDER]
 
@@ -77,7 +77,7 @@ def _making(submission: Path, folder: Path, times: int) -> None:
 
 
 def page_cost(recording: Path, page: Path) -> tuple[float, float]:
-    """Write the page of a recording. Return the time for this (s), and the size of the page (KB)."""
+    """Write the page of a recording. Return the time that this took (s), and the size of the page (KB)."""
     start = interpreter("-c", _PAGE, str(recording), str(page))
     done = subprocess.run(start.argv, check=True, capture_output=True, text=True)
     seconds, size = done.stdout.split()
@@ -113,7 +113,7 @@ def _showing(folder: Path, times: int) -> None:
 
 
 def _opening(tab: Page, address: str) -> tuple[float, float]:
-    """Open a page. Return the time in its scripts, and the time until it was loaded (s)."""
+    """Open a page. Return the time for which its scripts ran, and the time until the page was loaded (s)."""
     session = tab.context.new_cdp_session(tab)
     session.send("Performance.enable")
     tab.goto(address)

@@ -1,4 +1,4 @@
-"""Measure the time until the files alone show a mistake, and the time of the slowest mistake in simulated time (F).
+"""Measure how long the grader takes to find mistakes in files, and to check the slowest case in simulated time.
 
     python -m grader.benchmarks.mistakes [--only NNN ...]
 
@@ -69,7 +69,7 @@ def main() -> None:
 
 
 def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
-    """Return the cost in F of checking each case, except for cases that needed wall time."""
+    """Return the cost of checking each case, divided by F. Cases that needed wall time are left out."""
     bare = _bare_s(folder / "bare")
     found: dict[str, float] = {}
     for case in cases:
@@ -84,7 +84,10 @@ def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
 
 
 def _beside_f(case: Case, folder: Path) -> float:
-    """Return the ratio of a check to an F measured immediately before, or infinity if the check needed wall time."""
+    """Return the time of a check divided by F, or infinity if the check needed wall time.
+
+    F is measured immediately before the check.
+    """
     bare = _bare_s(folder / "bare")
     seconds = _whole_s(case, folder / "whole")
     return math.inf if seconds is None else seconds / _f_s(case, bare)

@@ -8,8 +8,8 @@ In one run on the same machine, this benchmark measures:
 - the same for a notebook with empty cells, which is nbgrader's own cost (imports, a kernel, the database);
 - one `grader check` of the package.
 
-The first should take at most 1.5 times as long as the other two together. Then a class is measured: nbgrader autogrades
-the submissions one by one, and `grader gradebook sync` grades several in parallel.
+The first of these measurements should take at most 1.5 times as long as the other two together. Then a class is
+measured: nbgrader autogrades the submissions one by one, and `grader gradebook sync` grades several in parallel.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ c.GenerateAssignment.force = True
 
 
 def make_empty(root: Path) -> None:
-    """Create a class with plain nbgrader, and the same notebook with empty cells."""
+    """Create a class that uses only nbgrader, and empty the cells of the notebook."""
     make_class(root, None)
     (root / "course" / "nbgrader_config.py").write_text(PLAIN.format(root=str(root)))
     file = root / "solutions" / STEP / f"{STEP}.ipynb"

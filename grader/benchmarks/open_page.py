@@ -2,8 +2,8 @@
 
     python -m grader.benchmarks.open_page [--times 5] [--idle 30]
 
-Both grade the same saves alternately in the same home folder. The page runs in a real browser, whose CPU time is not
-counted.
+`grader open` and `grader watch` grade the same saves alternately in the same home folder. The page runs in a real
+browser, whose CPU time is not counted.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ AIM_MORE_S = 0.1
 AIM_SIZE = 600_000
 AIM_READY_S = 1.0
 AIM_IDLE = 0.01
-"""The aim for the share of one core of an idle page."""
+"""The aim for the share of one core that an idle page uses."""
 _REST_S = 2.0
 """The shortest time that a learner needs between two saves (s), during which the next trial is prepared."""
 _PATIENCE_S = 300

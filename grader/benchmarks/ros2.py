@@ -1,9 +1,9 @@
-"""Measure `ros2 topic list` with a running turtlesim, and `ros2 interface show`, relative to an rclpy node.
+"""Measure `ros2 topic list` with a running turtlesim, and `ros2 interface show`, relative to a bare rclpy node.
 
     python -m grader.benchmarks.ros2 [--times N]
 
 Everything is measured in one run. The measurements alternate, so that other load affects all of them. The benchmark
-also prints how often the list was complete.
+also prints how often the list of topics was complete.
 """
 
 from __future__ import annotations

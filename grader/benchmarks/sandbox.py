@@ -1,4 +1,4 @@
-"""Measure the cost of the sandbox in F: the same grading with the student's code in cells and without cells.
+"""Measure the cost of the sandbox relative to F: grade the same submission with and without sandbox cells.
 
     python -m grader.benchmarks.sandbox [--times N] [--submission FOLDER]
 

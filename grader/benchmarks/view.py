@@ -1,10 +1,10 @@
-"""Measure the live view with one tab and with ten: frames per second, CPU time, and latency from key to turtle.
+"""Measure the live view with one tab and with ten: frames per second, CPU time, and the delay after a key press.
 
     python -m grader.benchmarks.view [--seconds 10] [--keys 30]
 
 The simulator, the server and a browser with one page are real. Nine more pages are simulated by connections that only
-listen. The browser's CPU time is not counted. Run the benchmark on an idle machine, since the browser and the
-simulator share the cores.
+listen. The browser's CPU time is not counted. Run the benchmark on an idle machine, since the browser and the simulator
+share the cores.
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ def _opened(browser: Browser, url: str) -> Page:
 
 @contextmanager
 def _listening(url: str) -> Iterator[None]:
-    """Connect to the server like a browser tab, but without the CPU time of a browser."""
+    """Connect to the server like a browser tab, but without using the CPU time of a browser."""
     host, _, token = url.removeprefix("http://").partition("/#")
     with connect(f"ws://{host}/live?token={token}", origin=Origin(f"http://{host}")) as link:
         reading = threading.Thread(target=lambda: [None for _ in link], daemon=True)

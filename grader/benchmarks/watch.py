@@ -1,9 +1,9 @@
-"""Measure the time of `grader watch` from save to verdict in F: a bare colcon build plus a bare rclpy node.
+"""Measure how long `grader watch` takes from save to verdict, relative to F: a bare build plus a bare rclpy node.
 
     python -m grader.benchmarks.watch [--times N] [--submission FOLDER --exercise NAME --file PATH]
 
-The benchmark uses a real terminal. The time is measured from the save until the line after the verdict appears. F is
-measured alternately in the same run, so that other load affects both.
+The benchmark uses a real terminal. The time is measured from the save until the line after the verdict appears. F and
+`grader watch` are measured alternately in the same run, so that other programs slow down both.
 """
 
 from __future__ import annotations

@@ -138,7 +138,7 @@ def _add_anchors(tokens: list[Token]) -> None:
 
 
 def _link(tokens: list[Token]) -> None:
-    """Change links to lessons to links to their pages, and paragraphs with only a picture to figures."""
+    """Replace links to lessons with links to their pages, and paragraphs that contain only a picture with figures."""
     for token in _inner(tokens):
         if token.type == "link_open":
             token.attrSet("href", _LESSON_LINK.sub(rf"\1{PAGE}\2", str(token.attrs["href"])))
@@ -162,7 +162,7 @@ def _inner(tokens: list[Token]) -> Iterator[Token]:
 
 
 def _sections(tokens: list[Token], title: str) -> Iterator[Section]:
-    """Yield a section with the text before the first heading and the lesson's title, then one section per heading."""
+    """Yield a section for the lesson's title and the text before the first heading, then one section per heading."""
     level, heading, anchor = 1, title, ""
     texts: list[str] = []
     heads = {id(inline) for opening, inline in pairwise(tokens) if opening.type == "heading_open"}

@@ -19,7 +19,7 @@ POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; require-trusted-types-for 'script'; trusted-types 'none'"
 )
-"""The policy for pages on any web server. The pages load nothing from other sites."""
+"""The content security policy for pages on any web server. The pages load nothing from other sites."""
 
 
 def lesson_page(lesson: Lesson, among: Sequence[Lesson], repository: str = "", policy: str = POLICY) -> str:

@@ -1,1 +1,4 @@
-"""Checks: pure functions of the evidence about a submission. `judge.judge` runs them; each subject has one module."""
+"""Checks: pure functions of the evidence about a submission.
+
+`judge.judge` runs the checks, and the checks of each subject are in a module of their own.
+"""

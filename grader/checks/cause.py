@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 class Cause:
     """A diagnosis id, the cause in words (empty if the observation is enough), and the place in the code to look at.
 
-    `fix` is the smallest change that would fix the mistake, if known. The grader tries it but never shows it to a
-    student.
+    `fix` is the smallest change that would fix the mistake, if known. The grader tries this change but never shows it
+    to a student.
     """
 
     diagnosis: Diagnosis
@@ -25,7 +25,7 @@ class Cause:
     fix: tuple[Edit, ...] = ()
 
     def at(self, where: Where | None) -> Cause:
-        """Return the cause with this place to look at, unless it already has one."""
+        """Return the cause with this place in the code to look at, unless the cause already has a place."""
         return self if self.where is not None else replace(self, where=where)
 
     def fixed_by(self, edits: tuple[Edit, ...]) -> Cause:

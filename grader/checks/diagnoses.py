@@ -1,8 +1,8 @@
 """The stable id of each known mistake, with a one-line explanation.
 
-Each failed check has one of these ids. Reports, class pages and instructors' scripts count them, so the meaning of an
-id never changes, although the wording of a message may. `python -m grader.tests.catalogue` writes the table of all ids
-to grader/checks/README.md.
+Each failed check has one of these ids. Reports, class pages and instructors' scripts count these ids, so the meaning of
+an id never changes, although the wording of its message may change. `python -m grader.tests.catalogue` writes the table
+of all ids to grader/checks/README.md.
 """
 
 from __future__ import annotations
@@ -281,6 +281,6 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "no-timer": "the node does not use a timer",
     },
 }
-"""Subject -> id -> meaning, in the order in which a submission is graded."""
+"""Maps each subject to its ids, and each id to its meaning, in the order in which a submission is graded."""
 
 DIAGNOSES: dict[Diagnosis, str] = {id_: meaning for group in GROUPS.values() for id_, meaning in group.items()}

@@ -139,4 +139,4 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "message-arguments": "a message is created with arguments that it does not take",
     },
 }
-"""Subject -> id -> meaning, in the order in which a submission is graded."""
+"""Maps each subject to its ids, and each id to its meaning, in the order in which a submission is graded."""

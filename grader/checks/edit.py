@@ -15,7 +15,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Edit:
-    """Replace `old` with `new` on a line of a file (counted from 1), or insert `new` before it if `old` is empty."""
+    """Replace `old` with `new` on a line of a file, or insert `new` before the line if `old` is empty.
+
+    Lines are counted from 1.
+    """
 
     file: str
     line: int
@@ -57,7 +60,10 @@ def difference(before: Mapping[str, bytes], after: Mapping[str, bytes]) -> str:
 
 
 def _replaced(line: str, edit: Edit) -> str | None:
-    """Return the line with the first `old` replaced. If possible, replace a whole name, not part of a longer one."""
+    """Return the line with the first `old` replaced.
+
+    If possible, replace a whole name rather than part of a longer name.
+    """
     begin = r"(?<![\w.])" if re.match(r"\w", edit.old) else ""
     end = r"(?!\w)" if re.search(r"\w$", edit.old) else ""
     found = re.search(begin + re.escape(edit.old) + end, line) or re.search(re.escape(edit.old), line)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def find_exercise(name: str, course: Path | None = None) -> Exercise:
     """Return the exercise with the id `name`, or the only one whose id starts with `name`, such as "03" or "3".
 
-    Raises UsageError if no exercise matches, or more than one.
+    Raises UsageError if no exercise matches, or more than one exercise does.
     """
     files = catalogue(course)
     name = f"{int(name):02}" if name.isascii() and name.isdigit() else name

@@ -25,7 +25,7 @@ class Judgement:
     """The findings of the checks so far.
 
     `findings` has a finding for every check. The findings in `settled` are final, because the evidence of their stage
-    was complete. The others say that the node was not run, or that a check that they need has not passed yet.
+    was complete. Each other finding says that the node was not run, or that a required check has not passed yet.
     """
 
     exercise: Exercise
@@ -46,7 +46,10 @@ class Judgement:
         )
 
     def wants(self, trial: str) -> bool:
-        """Return whether any check would use a recording of this trial (an id). If not, the trial need not run."""
+        """Return whether any check would use a recording of this trial (an id).
+
+        If no check would, the trial need not run.
+        """
         return any(
             _judges_trial(self.exercise, spec, trial) and not any(_blocks(self.findings[need]) for need in spec.needs)
             for spec in self.exercise.checks
@@ -56,9 +59,9 @@ class Judgement:
 def judge(evidence: Evidence) -> tuple[Outcome, ...]:
     """Return the outcome of every check, in the order of the exercise.
 
-    A check is skipped if a check that it needs did not pass; its message names the first such check. If the machine
-    could not produce the evidence for a check (`evidence.fault`), its status is `error`, and so is that of every check
-    that needs it.
+    A check is skipped if a check that it needs did not pass; the message of the skipped check names the first such
+    check. If the machine could not produce the evidence for a check (`evidence.fault`), the status of that check and of
+    every check that needs it is `error`.
     """
     return judge_so_far(evidence, {}).outcomes
 
@@ -128,7 +131,7 @@ def _blocks(finding: Finding) -> bool:
 
 
 def _in_order(specs: Iterable[CheckSpec]) -> list[CheckSpec]:
-    """Sort the checks so that each one comes after all those that it needs. Dependencies are never circular."""
+    """Sort the checks so that each check comes after all the checks that it needs. Dependencies are never circular."""
     waiting = list(specs)
     done: dict[str, CheckSpec] = {}
     while waiting:

@@ -1,7 +1,8 @@
 """A kind is a type of check, with the parameters that exercise.toml may set.
 
 The parameters of a kind are a dataclass next to the check function. The functions `number`, `string`, `strings` and
-`choice` create its fields with their defaults and allowed values. So a new exercise needs no Python code.
+`choice` create its fields with their defaults and allowed values. Therefore, the author of a new exercise writes no
+Python code.
 """
 
 # ruff: noqa: ANN401 (the functions below return what dataclasses.field returns)
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NoParams:
-    """An empty set of parameters, for kinds that take none."""
+    """An empty set of parameters, for kinds without parameters."""
 
 
 P = TypeVar("P")
@@ -101,7 +102,7 @@ def number(
     at_least: float | None = None,
     at_most: float | None = None,
 ) -> Any:
-    """Create a field for a finite number. Without a default, exercise.toml must set it."""
+    """Create a field for a finite number. If the field has no default, exercise.toml must set it."""
 
     def accept(value: object) -> float | None:
         if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
@@ -123,7 +124,10 @@ def number(
 
 
 def string(words: str = "a string", *, about: str, start: str = "", default: str | None = None) -> Any:
-    """Create a field for a non-empty string that starts with `start`. Without a default, exercise.toml must set it."""
+    """Create a field for a string that starts with `start` and is not empty.
+
+    If the field has no default, exercise.toml must set it.
+    """
 
     def accept(value: object) -> str | None:
         return value if isinstance(value, str) and value.strip() and value.startswith(start) else None

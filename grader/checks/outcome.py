@@ -30,7 +30,8 @@ class Finding:
     """The result of a check. `observed`, `expected` and `cause` are text for a beginner; `diagnosis` is a stable id.
 
     `near_edge` is True if the distance between the measured value and the edge of the tolerance is at most a fifth of
-    the tolerance, or if the node did not stop in simulated time. Such a check is judged again in wall time.
+    the tolerance, or if the node did not stop in simulated time. A check with such a finding is judged again in wall
+    time.
     """
 
     status: Status
@@ -41,14 +42,14 @@ class Finding:
     where: Where | None = None
     near_edge: bool = False
     fix: tuple[Edit, ...] = field(default=(), compare=False)
-    """The change that would fix the mistake. The grader tries it but never shows it to a student."""
+    """The change that would fix the mistake. The grader tries this change but never shows it to a student."""
     tried: str = ""
     """A sentence about the result of trying the change."""
     change: str = ""
     """The change as a unified diff if it has proved the cause. It is for instructors, because it is the solution."""
 
     def because(self, cause: Cause) -> Finding:
-        """Return the finding with this cause instead of its own."""
+        """Return the finding with this cause instead of its own cause."""
         return replace(self, diagnosis=cause.diagnosis, cause=cause.text, where=cause.where, fix=cause.fix)
 
 

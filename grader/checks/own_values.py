@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def numbers_spec(evidence: Evidence) -> NumbersSpec:
-    """Return the table `[numbers]` of the exercise. Raises ValueError if it has none."""
+    """Return the table `[numbers]` of the exercise. Raises ValueError if the exercise has none."""
     if evidence.exercise.numbers is None:
         message = "exercise.toml has no [numbers]"
         raise ValueError(message)
@@ -24,7 +24,7 @@ def numbers_spec(evidence: Evidence) -> NumbersSpec:
 
 
 def read_numbers(evidence: Evidence) -> OwnNumbers | Finding:
-    """Return the numbers in the file of the submission, or a failed finding if there are none."""
+    """Return the numbers in the file of the submission, or a failed finding if the file contains no numbers."""
     spec = numbers_spec(evidence)
     data = evidence.submission.files.get(spec.file)
     expected = f"{spec.file} is next to package.xml, as `grader start` wrote it."
@@ -37,7 +37,10 @@ def read_numbers(evidence: Evidence) -> OwnNumbers | Finding:
 
 
 def drawn_numbers(evidence: Evidence) -> OwnNumbers | Finding:
-    """Return the numbers of the student named in the file. They are drawn again rather than read from the file."""
+    """Return the numbers of the student whom the file names.
+
+    The numbers are calculated again rather than read from the file.
+    """
     found = read_numbers(evidence)
     return found if isinstance(found, Finding) else draw_numbers(numbers_spec(evidence), found.student)
 

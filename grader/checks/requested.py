@@ -43,7 +43,7 @@ class Requested:
 
 
 def first_heading(evidence: Evidence) -> Pose:
-    """Return the start position, facing the direction of the first movement: the turtle may turn before it drives."""
+    """Return the start position with the heading of the first movement. The turtle may turn before it drives."""
     start, trajectory = evidence.recording.start, evidence.trajectory
     if not trajectory.finite:
         return start

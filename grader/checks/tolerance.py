@@ -1,4 +1,4 @@
-"""Whether a measured value is within its tolerance, or so close to an edge that wall time must decide."""
+"""Decide whether a measured value is within its tolerance, or so near an edge that wall time must decide."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ NEAR = 0.2
 class Band:
     """The values from `low` to `high`; `low_width` and `high_width` are the tolerances that define these edges.
 
-    None means that there is no edge on that side. NaN is never inside: every comparison with NaN is False, so each
-    comparison below states what must be true.
+    None means that there is no edge on that side. NaN is never inside a band: every comparison with NaN is False, so
+    each comparison below states what must be true.
     """
 
     low: float | None
@@ -44,7 +44,7 @@ class Band:
         return cls(limit, None, abs(limit), 0.0)
 
     def holds(self, value: float) -> bool:
-        """Return whether the value is inside, including the edges."""
+        """Return whether the value is inside the band, including the edges of the band."""
         above_low = self.low is None or self.low <= value
         below_high = self.high is None or value <= self.high
         return above_low and below_high and value == value  # false for NaN, even without edges
@@ -60,7 +60,7 @@ class Band:
 
 
 def unless_starved(finding: Finding, recording: Recording, off: float, per_s: float) -> Finding:
-    """Return the finding, or an error finding if the failure can be explained by stalls.
+    """Return the finding, or an error finding if stalls of the machine can explain the failure.
 
     `off` is the distance of the value from its tolerance range; `per_s` is the change of the value per second. While
     the machine stalls, the turtle continues with its last command.

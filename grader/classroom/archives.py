@@ -1,4 +1,7 @@
-"""Unpack a student's archive into a temporary folder. unpack.py does this; this module limits its resources."""
+"""Unpack a student's archive into a temporary folder.
+
+The script unpack.py does the work, and this module limits the resources of the script.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +31,10 @@ _LIMITS = ("prlimit", f"--cpu={_CPU_S}", f"--as={1024 * _MIB}", f"--fsize={128 *
 
 
 class NotUnpackedError(Exception):
-    """The student's archive cannot be unpacked. The message completes a sentence that begins with its name."""
+    """The student's archive cannot be unpacked.
+
+    The message completes a sentence that begins with the name of the archive.
+    """
 
 
 def stem(name: str) -> str | None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from grader.classroom.task import Done
 
 TRIES = 2
-"""The number of times that a submission may kill its worker or end with an `error` before that is its result."""
+"""The number of times that a submission may kill its worker or end with an `error` before its result is final."""
 LOOK_S = 0.5
 """The maximum time to wait for events of the engine (s)."""
 
@@ -26,8 +26,9 @@ LOOK_S = 0.5
 def run(order: Order, todo: list[Todo], engine: Engine, results: Results, screen: Screen) -> list[Result]:
     """Grade the submissions and write each result as soon as it is ready, in any order.
 
-    Submissions that end with an `error` are graded once more after all others if at least one other submission could
-    be judged. The machine works in that case, so the error occurred by chance or was caused by the submission.
+    Submissions that end with an `error` are graded once more after all others if at least one other submission could be
+    judged. If another submission could be judged, the machine works, so the error occurred by chance or was caused by
+    the submission.
 
     Raises:
         MachineError: the machine cannot grade or write any more. Results that were written are kept.

@@ -56,7 +56,7 @@ MEANINGS = {
 
 @dataclass(frozen=True)
 class Crash:
-    """An exception in the student's node. `error` is its class; `where` is the last line of student code."""
+    """An exception in the student's node. `error` is its class; `where` is the last line of the student's own code."""
 
     error: str
     message: str
@@ -116,7 +116,10 @@ def end_observed(evidence: Evidence) -> str:
 
 
 def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:
-    """Return the last exception in stderr. In a chain, return the first that Ctrl-C did not cause."""
+    """Return the last exception in stderr.
+
+    In a chain of exceptions, return the first exception that Ctrl-C did not cause.
+    """
     last: list[Crash] = []
     for chained, crash in read_tracebacks(text, files):
         last = [*last, crash] if chained else [crash]

@@ -1,4 +1,4 @@
-"""Why the executable of the exercise does not exist, with any similar entry in setup.py."""
+"""Find the reason why the executable of the exercise does not exist, such as a misspelt entry in setup.py."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def no_entry_point(evidence: Evidence) -> Finding:
 
 
 def _is_another(evidence: Evidence, name: str) -> bool:
-    """Return whether an executable is a separate program, and not this one under another name."""
+    """Return whether an executable is a separate program, and not the executable of the exercise under another name."""
     executable = evidence.trial.executable
     has_file = any(path.rpartition("/")[2] == f"{executable}.py" for path in evidence.submission.files)
     module = evidence.built.entry_points.get(name, "").partition(":")[0].strip()

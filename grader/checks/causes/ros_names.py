@@ -30,7 +30,7 @@ MODULE_OF = {
     "find_packages": "setuptools",
     "glob": "glob",
 }
-"""Class -> the module that it is usually imported from."""
+"""Maps a class to the module that it is usually imported from."""
 
 MODULES = (
     "rclpy",
@@ -77,7 +77,7 @@ OF_ROS_1 = {
     "logwarn": "In ROS 2, the logger has the method warning.",
     "logerr": "In ROS 2, the logger has the method error.",
 }
-"""Name in rospy -> its replacement in ROS 2."""
+"""Maps a name in rospy to its replacement in ROS 2."""
 
 NODE = (
     "create_publisher",
@@ -114,7 +114,7 @@ FIELDS = {
     "Pose": ("x", "y", "theta", "linear_velocity", "angular_velocity"),
     "String": ("data",),
 }
-"""Message -> its fields."""
+"""Maps the name of a message to its fields."""
 
 OTHERS = {
     "Publisher": ("publish",),

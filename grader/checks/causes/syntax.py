@@ -90,7 +90,7 @@ OTHERWISE = "The mistake is often at the end of the previous line: a bracket, a 
 
 
 def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
-    """Return the cause of a SyntaxError, with the line to look at if it differs from the one that Python names."""
+    """Return the cause of a SyntaxError, with the line to look at if Python names a different line."""
     conflict = line_of(data, CONFLICT)
     if conflict is not None:
         text = (

@@ -16,8 +16,8 @@ WAITS_FOR_SUBSCRIBER = ("get_subscription_count", "count_subscribers")
 def too_soon(finding: Finding, evidence: Evidence) -> Finding:
     """Return the finding about a trajectory whose beginning is too short, with the cause `too-soon` if it applies.
 
-    In simulated time, the clock starts only when the publisher and the subscription are connected, so nothing is lost.
-    Nor is anything lost if the node checks how many subscriptions are connected.
+    In simulated time, the clock starts only when the publisher and the subscription are connected, so no command is
+    lost. No command is lost either if the node itself checks how many subscriptions are connected.
     """
     if evidence.recording.clock != "wall" or any(evidence.code.calls(name) for name in WAITS_FOR_SUBSCRIBER):
         return finding

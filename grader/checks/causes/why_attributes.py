@@ -43,7 +43,7 @@ PLAIN = {
     "dict": "a dictionary",
     "set": "a set",
 }
-"""Built-in type -> a phrase for a value of this type."""
+"""Maps a built-in type to a phrase for a value of this type."""
 MOST_LETTERS = 2
 """The largest number of letters that a typo adds or removes."""
 MODULES_READ = {"math": math, "time": time, "random": random}
@@ -72,7 +72,7 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
 
 
 def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None:
-    """Return the cause if an rclpy object, a message or a plain value has no such attribute."""
+    """Return the cause if an rclpy object, a message or a plain value has no attribute with this name."""
     if owner in ros_names.FIELDS:
         fields = ros_names.FIELDS[owner]
         guess = nearest(name, fields)
@@ -125,7 +125,10 @@ def _class_for_object(name: str) -> Cause:
 
 
 def _set_twice(scene: CrashScene, name: str, text: str) -> Cause:
-    """Return the cause. If the name of the object is assigned more than once, the cause lists these lines."""
+    """Return the cause.
+
+    If the name of the object is assigned more than once, the cause lists the lines of the assignments.
+    """
     holders = [dotted(node.value) for node in scene.on_line if isinstance(node, ast.Attribute) and node.attr == name]
     for holder in filter(None, holders):
         lines = [
@@ -140,7 +143,7 @@ def _set_twice(scene: CrashScene, name: str, text: str) -> Cause:
 
 
 def _of_own_type(scene: CrashScene, owner: str, name: str) -> Cause:
-    """Return the cause if a class in the file has no such attribute: only its instances do, or it does not exist."""
+    """Return the cause if a class in the file lacks the attribute: only its instances have it, or it does not exist."""
     own = scene.class_named(owner)
     assert own is not None
     outside = next((each for each in scene.top_functions() if each.name == name), None)

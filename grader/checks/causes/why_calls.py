@@ -45,7 +45,7 @@ TAKES = {
     "spin": "the node",
     "info": "one string",
 }
-"""Function -> the arguments that it takes."""
+"""Maps a function to the arguments that it takes."""
 
 
 def callback_called(scene: CrashScene) -> Cause | None:

@@ -35,7 +35,7 @@ TOPIC_RULES = {
     "start with a number": "No part of a topic name may begin with a digit.",
     "must not be empty": "A topic name must not be empty.",
 }
-"""Part of rclpy's message about a topic name -> the rule."""
+"""Maps a part of rclpy's message about a topic name to the rule that the name breaks."""
 
 
 def _why_no_topic(scene: CrashScene) -> Cause:
@@ -75,7 +75,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "UnboundLocalError": why_unbound,
     "ValueError": _why_value,
 }
-"""Exception -> the function that finds its cause in the source code, or returns None."""
+"""Maps an exception to the function that finds its cause in the source code, or returns None."""
 
 
 def why_crashed(evidence: Evidence, crash: Crash) -> Cause:

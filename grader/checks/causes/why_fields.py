@@ -112,6 +112,9 @@ def _assigned(scene: CrashScene, field: str) -> ast.expr | None:
 
 
 def _resolved(scene: CrashScene, value: ast.expr) -> ast.expr:
-    """Return the expression, or the value assigned to it if it is a name. The scene must have a module."""
+    """Return the expression, or the value assigned to a name if the expression is that name.
+
+    The scene must have a module.
+    """
     assert scene.module is not None
     return scene.module.names.get(dotted(value) or "") or value

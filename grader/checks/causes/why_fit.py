@@ -44,7 +44,10 @@ class Fit:
         return self.is_like(self.truth[:2])
 
     def is_like(self, other: Sequence[float], more: float = 0.0) -> bool:
-        """Return whether the values differ from `other` (perhaps shorter) by at most their tolerances plus `more`."""
+        """Return whether the values differ from those in `other` by at most their tolerances plus `more`.
+
+        `other` may be shorter.
+        """
         return all(
             abs(value - one) <= width + more for value, one, width in zip(self.values, other, self.within, strict=False)
         )

@@ -13,18 +13,18 @@ if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
 WRAPPED = {"_FeedbackMessage": "feedback", "_GetResult_Response": "result"}
-"""The ending of the type name of an rclpy message -> the field with the content."""
+"""Maps the ending of an rclpy message's type name to the field with the content of the message."""
 OF_A_RESULT = ("status", "result")
 NO_OBJECT = re.compile(r"^(Action|Service) classes can not be instantiated")
 OF_AN_ACTION = re.compile(r"service type provided is not valid \(<class '\w+\.action\.")
 PARTS = {"Action": "Goal", "Service": "Request"}
-"""The kind of interface -> the part that a client creates."""
+"""Maps each kind of interface to the part of it that a client fills in, for example a service to its Request."""
 OF_A_TYPE = "_TYPE_SUPPORT"
 """The attribute that rclpy requires of every type."""
 
 
 def why_interface(scene: CrashScene) -> Cause | None:
-    """Return the cause if the wrong part of a type or of a response was used, else None."""
+    """Return the cause if the node used the wrong part of an interface type or of a response, else None."""
     whole = NO_OBJECT.match(scene.crash.message)
     if whole is not None:
         part = PARTS[whole[1]]

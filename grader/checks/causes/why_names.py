@@ -29,7 +29,7 @@ MEMBERS = {
     "time": frozenset({"sleep", "perf_counter", "monotonic"}),
     "random": frozenset(name for name in dir(random) if name.islower() and not name.startswith("_")),
 }
-"""Module -> its names that learners use and often forget to prefix with the module."""
+"""Maps a module to those of its names that learners often forget to prefix with the name of the module."""
 TAKE_A_STRING = {"__init__": 0, "create_node": 0, "create_publisher": 1, "create_subscription": 1, "create_client": 1}
 """rclpy functions that take the name of a node, topic or service, and the position of that argument."""
 CONSTANTS = {
@@ -43,7 +43,7 @@ CONSTANTS = {
 
 
 def why_no_name(scene: CrashScene) -> Cause | None:
-    """Return the cause of a NameError, such as a missing self or import, a misspelling, or a local name elsewhere."""
+    """Return the cause of a NameError, such as a missing self or import, a typo, or a local name in another method."""
     match = NO_NAME.search(scene.crash.message)
     if match is None:
         return None
@@ -119,7 +119,7 @@ def _of_import(scene: CrashScene, name: str) -> Cause | None:
 
 
 def _star_import(scene: CrashScene, module: str) -> ast.ImportFrom | None:
-    """Return the line that imports everything from the package of this module instead of from the module, or None."""
+    """Return a star import from the module's package (or another module in it) instead of from the module, or None."""
     for node in scene.nodes:
         if isinstance(node, ast.ImportFrom) and node.module and node.names[0].name == "*":
             same_package = node.module.partition(".")[0] == module.partition(".")[0]

@@ -41,7 +41,7 @@ def why_no_goal(evidence: Evidence, action: str, type_name: str) -> Cause:
 
 
 def _other_client(evidence: Evidence, action: str, type_name: str) -> Cause | None:
-    """Return the cause if the node is a client of another action, or of this one with another type; else None."""
+    """Return the cause if the node is a client of another action, or of this action with another type; else None."""
     ours = evidence.recording.own_nodes
     found = {
         (end.topic.removesuffix(FEEDBACK), end.type.removesuffix(OF_A_TYPE))

@@ -118,7 +118,8 @@ def _moved_m(evidence: Evidence, from_s: float) -> float:
 def loop_variable(evidence: Evidence) -> Cause | None:
     """Return the cause if a function that is created in a loop uses the loop variable, else None.
 
-    All these functions use the last value. A default value (`name=name`) keeps the value of each iteration.
+    All functions that are created in the loop use the last value of the variable. A default value (`name=name`) keeps
+    the value of each iteration.
     """
     for module in evidence.code.modules:
         for loop in (node for node in module.nodes if isinstance(node, ast.For)):

@@ -21,7 +21,7 @@ PASSED = {
     "add_done_callback": "A future passes itself to its callback.",
     "add_on_set_parameters_callback": "The callback for parameters gets the list of new parameters.",
 }
-"""A method that takes a callback -> the arguments of the callback, as a sentence."""
+"""Maps a method that takes a callback to a sentence about the arguments of the callback."""
 IN_GENERAL = "A timer calls its callback without arguments; a subscription passes the message."
 
 

@@ -120,11 +120,11 @@ def _made_in_callback(evidence: Evidence, maker: str) -> tuple[str, Where] | Non
 
 
 PLACES = {"create_timer": 1, "add_done_callback": 0, "add_on_set_parameters_callback": 0}
-"""Function -> the index of the argument that is the callback. For all other functions, it is 2."""
+"""Maps a function to the index of its callback argument. In functions that are not listed, the index is 2."""
 
 
 def callbacks_of(evidence: Evidence, *makers: str) -> Iterator[tuple[Module, str]]:
-    """Yield the names of the functions that are passed to these makers as callbacks, with their modules."""
+    """Yield the names of the functions that are passed as callbacks to `makers`, with their modules."""
     for maker in makers or ("create_subscription",):
         for call in evidence.code.calls(maker):
             name = dotted(call.argument(PLACES.get(maker, 2), "callback") or ast.Constant(0))

@@ -1,4 +1,4 @@
-"""Why a student's tests do not pass on the right node."""
+"""Why a student's tests do not pass on the correct node."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def place_of(run: NodeRun, code: TestCode) -> Where | None:
 
 
 def why_rejected(run: NodeRun, code: TestCode) -> Cause:
-    """Return the reason why this run on the right node did not pass."""
+    """Return the reason why this run of the tests on the correct node did not pass."""
     where = place_of(run, code)
     if run.over:
         text = "A loop that waits for a message needs a deadline. rclpy.spin never returns."

@@ -150,7 +150,7 @@ WAITS = ("spin_until_future_complete", "send_goal", "cancel_goal", "get_result")
 
 
 def waits_inside(node: ast.AST) -> bool:
-    """Return whether this waits for a response: spin_until_future_complete, Client.call, or a loop on done()."""
+    """Return whether the code waits for a response: spin_until_future_complete, Client.call, or a loop on done()."""
     if isinstance(node, ast.While):
         return _calls(node.test, "done")
     if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):

@@ -1,4 +1,4 @@
-"""Why a topic name is wrong: it is misspelt, lacks the turtle's name, has a namespace, or is another turtle's."""
+"""Why a topic name is wrong: it is misspelt, lacks the turtle's name, has a namespace, or belongs to another turtle."""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ def answer_text(evidence: Evidence, params: OneOf) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class AllOf:
-    """The strings that the list must contain, in any order, with no others."""
+    """The strings that the list must contain, in any order, and no other strings."""
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
     items: tuple[str, ...] = strings(about="All items of the right answer, in any order.")
@@ -91,7 +91,8 @@ def answer_list(evidence: Evidence, params: AllOf) -> Finding:
 class GraphQuestion:
     """A question about the ROS graph: the topics, types or nodes of the endpoints that match all these parameters.
 
-    If `connected_to` is set, a topic counts only if that node has the opposite endpoint on it.
+    If `connected_to` is set, a topic counts only if the node with that name has an endpoint of the opposite direction
+    on the topic.
     """
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")

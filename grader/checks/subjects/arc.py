@@ -36,7 +36,7 @@ MOST_ROOM_M = 2.5
 
 @dataclass(frozen=True, kw_only=True)
 class Arc:
-    """An arc of a circle. If `red` is not negative, only the parts that were drawn in this colour count."""
+    """An arc of a circle. If `red` is not negative, only the parts that were drawn in the given colour count."""
 
     radius_m: float = number(above=0, at_most=5.5, about="The radius.")
     radius_tolerance_m: float = number(0.06, above=0, about="The maximum error of the radius.")
@@ -59,7 +59,7 @@ class Arc:
 
 
 def arc(evidence: Evidence, params: Arc) -> Finding:
-    """The piece of the trajectory is an arc with the right radius, direction, angle and speed."""
+    """The examined piece of the trajectory is an arc with the right radius, direction, angle and speed."""
     expected = _expected(params)
     moved = moved_otherwise(evidence, expected)
     if moved is not None:

@@ -32,7 +32,7 @@ class CancelsGoal:
 
 @dataclass(frozen=True, kw_only=True)
 class NoGoalAfter:
-    """The service that the trial calls, after which the node sends no goal."""
+    """The service that the trial calls, after which the node must send no goal."""
 
     service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
 
@@ -80,7 +80,7 @@ def _goes_on(evidence: Evidence, params: CancelsGoal, goal: Goal, took_s: float,
 
 
 def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
-    """After the service call, no goal arrives."""
+    """After the trial has called the service, no goal arrives."""
     expected = f"After a call of {params.service}, the node sends no more goals."
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     goals = goals_of(evidence)

@@ -26,8 +26,10 @@ if TYPE_CHECKING:
     from grader.trial.recording import Recording
 
 NEARER_M = 0.5
-"""The minimum difference between two distances for one target to count as nearer (m). The turtle moves while the node
-decides."""
+"""A target counts as nearer than another one if the distances differ by at least this much (m).
+
+The turtle moves while the node decides.
+"""
 SLACK_M = 0.1
 """The additional distance that is allowed because a pose is slightly old when the node decides (m)."""
 OFTEN = 3

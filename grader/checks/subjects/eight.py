@@ -108,7 +108,7 @@ def eight(evidence: Evidence, params: Eight) -> Finding:
 
 
 def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: bool) -> tuple[Finding | None, bool]:
-    """Return the failed finding about a lobe or None, and whether a value is near an edge."""
+    """Return the failed finding about a lobe or None, and whether a value is near an edge of its tolerance."""
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
     recording = evidence.recording
     subject = f"The {name} lobe, to the {lobe.side},"

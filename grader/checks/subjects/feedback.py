@@ -1,4 +1,4 @@
-"""Check of logged feedback: while the turtle follows a goal, lines show the remaining angle."""
+"""Check of logged feedback: while the turtle follows a goal, log lines show the remaining angle."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class LogFeedback:
 
 
 def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
-    """While the turtle follows a goal, lines show the remaining angle."""
+    """While the turtle follows a goal, log lines show the remaining angle."""
     example = student_log.Format(params.format).example(1.25)
     expected = f'While the turtle turns, a line such as "{example}" appears every {params.period_s:g} s.'
     goals = [goal for goal in goals_of(evidence) if _ended_s(evidence, goal) - goal.t_s >= LONG * params.period_s]
@@ -83,7 +83,7 @@ def _unheard(evidence: Evidence) -> Cause | None:
 
 
 def _none_in_format(evidence: Evidence, params: LogFeedback, goals: list[Goal], expected: str) -> Finding:
-    """Return the failed finding about a log without lines in the format. Only lines during a goal are compared."""
+    """Return the failed finding about a log without lines in the format. Only lines logged during a goal count."""
     cause = waits_in_callback(evidence) or _unheard(evidence)
     if cause is not None:
         return failed("The log has no such line.", expected, cause)

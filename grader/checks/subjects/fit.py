@@ -1,4 +1,4 @@
-"""Checks of a function that fits a circle: its centre and radius, and an error if the points determine none."""
+"""Checks of a function that fits a circle: its centre and radius, and an error if the points determine no circle."""
 
 from __future__ import annotations
 

@@ -31,7 +31,10 @@ LARGE_RAD = 7.0
 
 @dataclass(frozen=True, kw_only=True)
 class SendsGoals:
-    """`total` goals, beginning with the `nth` (from 1). Each heading is `turn_deg` to the left of the previous one."""
+    """A sequence of `total` goals, beginning with goal number `nth`.
+
+    Each heading is `turn_deg` to the left of the last.
+    """
 
     heading_deg: float = number(about="The heading of the goal, in degrees: 0 is to the right, 90 is up.")
     nth: float = number(1, at_least=1, about="The number of the first goal that is compared, from 1.")

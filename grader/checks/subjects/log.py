@@ -37,7 +37,7 @@ class LogFormat:
 
 
 def log_lines(evidence: Evidence, params: LogFormat) -> Finding:
-    """Lines in the format arrive on /rosout."""
+    """Log lines in the required format arrive on /rosout."""
     example = student_log.Format(params.format).example()
     expected = f'The log contains lines such as "{example}".'
     if student_log.in_format(evidence.recording, params.format):
@@ -107,13 +107,13 @@ def _same_words(line: str, format_: str) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class LogRate(Rate):
-    """Like the rate of commands, but for log lines in the format."""
+    """The parameters of the kind `rate`, but for log lines in the required format."""
 
     format: str = string("a log line with its numbers in braces", about=FORMAT)
 
 
 def log_rate(evidence: Evidence, params: LogRate) -> Finding:
-    """Lines in the format arrive at the rate."""
+    """Log lines in the required format arrive at the required rate."""
     arrivals = (line.t_s for line in student_log.in_format(evidence.recording, params.format))
     return rate_of(evidence, params, LOG_LINE, measure_arrivals(evidence.recording, arrivals))
 
@@ -128,7 +128,7 @@ class Counter:
 
 
 def log_counter(evidence: Evidence, params: Counter) -> Finding:
-    """The number starts at the right value and increases by one with each line."""
+    """The logged number starts at the right value and increases by one with each line."""
     numbers = [line.numbers[params.counts] for line in student_log.in_format(evidence.recording, params.format)]
     form = student_log.Format(params.format)
     expected = f'"{form.example(params.first)}", then "{form.example(params.first + 1)}", and so on.'

@@ -261,7 +261,7 @@ def _line(evidence: Evidence) -> Where | None:
 
 
 def no_wall(evidence: Evidence, _: NoParams) -> Finding:
-    """No frame was clamped to the canvas. The check is skipped for a turtle that never moved."""
+    """The turtle touched no wall in any frame. The check is skipped for a turtle that never moved."""
     trajectory = evidence.trajectory
     # A turtle that is always teleported away before it reaches a wall would never touch one.
     moved = moved_otherwise(evidence, "The turtle never touches a wall.")
@@ -277,7 +277,7 @@ def no_wall(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def requested_circle(evidence: Evidence, params: CircleParams) -> Requested:
-    """Return the circle, placed relative to the turtle's start."""
+    """Return the required circle, placed relative to the turtle's start position."""
     centre = expected_centre(evidence.recording.start, params)
     return Requested(f"radius {params.radius_m:.2f} m", ((centre, params.radius_m),), fits=True)
 

@@ -28,7 +28,10 @@ BEFORE_S = 1.0
 
 @dataclass(frozen=True, kw_only=True)
 class Pause:
-    """From `from_s` to `until_s` (s) the turtle stands still. It has `within_s` (s) to stop, and to continue."""
+    """From `from_s` to `until_s` (s) the turtle stands still.
+
+    The turtle has `within_s` (s) to stop, and as long to continue.
+    """
 
     from_s: float = number(at_least=0, about="The start of the pause, on the trial's clock.")
     until_s: float = number(above=0, about="The end of the pause.")

@@ -76,7 +76,7 @@ class Subject:
 
     @property
     def plural(self) -> str:
-        """The plural, for the beginning of a sentence."""
+        """The plural of the name, for the beginning of a sentence."""
         return f"{self.noun.capitalize()}s"
 
 
@@ -89,7 +89,7 @@ def rate(evidence: Evidence, params: Rate) -> Finding:
 
 
 def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured) -> Finding:
-    """Commands or log lines arrive at the rate: on average and in each interval, until the end."""
+    """Commands or log lines arrive at the required rate: on average and in each interval, until the end."""
     period = 1.0 / params.rate_hz
     expected = f"One {what.noun} every {period:.2f} s ({params.rate_hz:.1f} Hz)."
     if len(measured.arrivals) < FEWEST:
@@ -138,7 +138,7 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
 
 
 def _follows_poses(evidence: Evidence, mean_hz: float) -> bool:
-    """Return whether the node acts once per pose. This rate is the same in simulated time and in wall time."""
+    """Return whether the node acts once per pose, which gives the same rate in simulated time and in wall time."""
     return abs(mean_hz - POSES_HZ) <= 0.5 and not evidence.code.calls("create_timer")
 
 
@@ -156,7 +156,7 @@ def _slow_timer(evidence: Evidence, params: Rate, amount: int) -> Cause | None:
 
 
 def _period_cause(cause: Cause, period: float, params: Rate) -> Cause:
-    """Return the cause of a wrong timer period, for example that the rate was given instead."""
+    """Return the cause of a wrong timer period, for example that the rate was passed instead of the period."""
     if abs(period - params.rate_hz) > SAME * params.rate_hz:
         return cause
     text = "create_timer takes the period in seconds, not the rate. The period is 1 divided by the rate."

@@ -30,7 +30,7 @@ CLOSE = 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class CallsService:
-    """A call to a simulator service with these fields. `after` names a service that must be called before it."""
+    """A call to a simulator service with these fields. `after` names a service that must be called before that."""
 
     service: str = string("the full name of a service", start="/", about="The service.")
     fields: tuple[tuple[str, Any], ...] = table(about="The relevant fields of the request, with their values.")
@@ -78,7 +78,10 @@ def calls_service(evidence: Evidence, params: CallsService) -> Finding:
 
 
 def _before_the_answer(call: Call, asked: Call) -> bool:
-    """Return whether the call came before the response to `asked`. Without a delay, both have the same time."""
+    """Return whether the call came before the response to `asked`.
+
+    If there was no delay, the call and the response have the same time.
+    """
     return asked.answered_s is not None and call.t_s < asked.answered_s - AT_ONCE_S
 
 

@@ -176,7 +176,10 @@ def _drives_on(evidence: Evidence, params: Square, sides: Sides, sign: float, ex
 
 
 def requested_square(evidence: Evidence, params: Square) -> Requested:
-    """Return the corners, ending with the first one again. If both directions are allowed, use the turtle's."""
+    """Return the corners, with the first corner again at the end.
+
+    If both directions are allowed, the corners follow the direction in which the turtle drove.
+    """
     begin = first_heading(evidence)
     turn = evidence.trajectory.turn[np.abs(evidence.trajectory.turn) > STRAIGHT_RAD]
     taken = -1.0 if len(turn) and turn[-1] < 0.0 else 1.0

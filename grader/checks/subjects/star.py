@@ -40,7 +40,7 @@ class Star:
 
 
 def star(evidence: Evidence, params: Star) -> Finding:
-    """The turtle drives a star: commands drive it, and goals turn it."""
+    """The turtle draws a star: velocity commands drive the turtle along the sides, and action goals turn it."""
     amount = int(params.sides)
     expected = (
         f"{amount} straight sides of {params.side_m:g} m, the first with a heading of {params.heading_deg:g} degrees, "
@@ -105,7 +105,7 @@ def _measured(evidence: Evidence, params: Star, sides: Sides, expected: str) -> 
 
 
 def requested_star(evidence: Evidence, params: Star) -> Requested:
-    """Return the corners, ending with the first one again."""
+    """Return the corners, with the first corner again at the end."""
     x, y = evidence.recording.start.x, evidence.recording.start.y
     corners = [(x, y)]
     for index in range(int(params.sides)):

@@ -1,4 +1,4 @@
-"""Checks of a student's tests when they run: they pass on the right node, and fail on broken ones."""
+"""Checks of a student's tests when they run: they pass on the correct node, and fail on broken nodes."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def found(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def pass_(evidence: Evidence, _: NoParams) -> Finding:
-    """All tests pass on the right node in every run."""
+    """All tests pass on the correct node in every run."""
     spec = evidence.trial.tests
     assert spec is not None
     runs, code = evidence.bench.right, code_of(evidence)

@@ -36,7 +36,7 @@ COMMANDS = Topic(topic="/turtle1/cmd_vel", type="geometry_msgs/msg/Twist")
 
 
 def publishes(evidence: Evidence, params: Topic) -> Finding:
-    """Messages of the type arrived on the topic before SIGINT."""
+    """Messages of the right type arrived on the topic before SIGINT."""
     recording = evidence.recording
     if _arrived(evidence, params):
         return passed(_expected(params))

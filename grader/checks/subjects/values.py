@@ -98,7 +98,7 @@ def _all_hold(bands: tuple[Band, ...], six: Six) -> bool:
 
 
 def _right_values(evidence: Evidence, wanted: Six, off: list[int]) -> tuple[Edit, ...]:
-    """Return the edits that assign the right value to each wrong field, where the assignment has a line to itself."""
+    """Return the edits that assign the right value to each wrong field, if its assignment is on a line of its own."""
     edits: list[Edit] = []
     sets: list[tuple[Where, str]] = []
     for index, field in enumerate(FIELDS):
