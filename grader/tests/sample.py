@@ -1,8 +1,9 @@
 """The sample of mistakes that `make test` grades.
 
-For each exercise, it covers every group of diagnoses. From each group, it also covers one diagnosis that no test of the
-checks expects. A test of the checks judges an invented recording, which takes milliseconds. A case takes one to three
-seconds, and at least ten if wall time judges it.
+It covers every group of diagnoses, and for each exercise a mistake that the files show and a mistake that only the
+behaviour shows. From each group, it also covers one diagnosis that no test of the checks expects. A test of the checks
+judges an invented recording, which takes milliseconds. A case takes one to three seconds, and at least ten if wall time
+judges it. `make test-all` grades all cases.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from grader.checks.diagnoses import GROUPS
+from grader.checks.diagnoses_of_files import OF_FILES
 from grader.tests.case import BASES
 from grader.tests.catalogue import SHOWN_BY_TESTS
 
@@ -44,11 +46,16 @@ def sample(cases: Sequence[Case]) -> frozenset[str]:
 
 
 def shows(case: Case) -> frozenset[object]:
-    """Return the (exercise, group) of the case's diagnoses, and those of its diagnoses that are in `without_test()`."""
+    """Return what a case adds to the sample.
+
+    That is: the groups of its diagnoses, its exercise with the place where the mistake shows ("files" or "behaviour"),
+    and those of its diagnoses that are in `without_test()`.
+    """
     exercise = case.exercise or (OF_BASES if (BASES / case.base).is_dir() else case.base)
     diagnoses = frozenset(case.diagnosis.values())
-    groups = {(exercise, group) for group, of_group in GROUPS.items() if diagnoses & of_group.keys()}
-    return (diagnoses & without_test()) | groups
+    groups = {group for group, of_group in GROUPS.items() if diagnoses & of_group.keys()}
+    places = {(exercise, "files" if group in OF_FILES else "behaviour") for group in groups}
+    return (diagnoses & without_test()) | groups | places
 
 
 def lives_in_wall_time(case: Case) -> bool:

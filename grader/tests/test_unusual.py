@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from grader.tests.case import Case
     from grader.tests.grading_here import Grade
 
-EVERY = 3
+EVERY = 4
 UNUSUAL = tuple(
     replace(case, sample=case.sample and number % EVERY == 0)
     for number, case in enumerate(read_cases(CASES.parent / "unusual"))

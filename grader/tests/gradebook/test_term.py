@@ -121,6 +121,7 @@ def term(tmp_path: Path) -> Term:
     return Term(tmp_path)
 
 
+@pytest.mark.exhaustive
 def test_a_short_term(term: Term) -> None:
     term.generate()
     term.hand_in("slow", too_slow)

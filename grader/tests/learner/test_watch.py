@@ -119,8 +119,15 @@ def test_causes_are_proved_after_the_verdict_unless_something_else_waits(package
     assert watched.rebuild.runs == 1
 
 
-@pytest.mark.parametrize("asked", [False, True], ids=["nothing else", "a list"])
-@pytest.mark.parametrize("terminal", [False, True], ids=["pipe", "terminal"])
+@pytest.mark.parametrize(
+    ("terminal", "asked"),
+    [
+        pytest.param(False, False, id="pipe-nothing else"),
+        pytest.param(True, True, id="terminal-a list"),
+        pytest.param(True, False, id="terminal-nothing else", marks=pytest.mark.exhaustive),
+        pytest.param(False, True, id="pipe-a list", marks=pytest.mark.exhaustive),
+    ],
+)
 def test_the_screen_shows_a_proof_when_it_is_there(package: Path, terminal: bool, asked: bool) -> None:
     change(node_of(package), "create_timer(0.5", "create_timer(0.05")
     console = Console(file=io.StringIO(), width=200, height=60, force_terminal=terminal, color_system=None)

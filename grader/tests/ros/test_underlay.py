@@ -56,6 +56,7 @@ def without(monkeypatch: pytest.MonkeyPatch, *programs: str) -> None:
     monkeypatch.setattr(shutil, "which", lambda name, path=None: None if name in programs else found(name, path=path))
 
 
+@pytest.mark.exhaustive
 def test_two_at_once_build_it_once_and_both_get_it(ros: installation.Ros, tmp_path: Path) -> None:
     """The current folder contains modules and programs with the names of real ones. The build must not use them."""
     traps = Traps(tmp_path / "current", tmp_path / "touched")

@@ -75,7 +75,7 @@ def numbers(folder: Path) -> list[int]:
     return [int.from_bytes(message.data[4:8], "little", signed=True) for _, _, message in found]
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.exhaustive)])
 def test_all_that_arrived_before_the_end_is_in_the_bag(quiet: World, number: signal.Signals) -> None:
     recorder = record(quiet, count=500)
     assert recorder.stop(number) == 0

@@ -158,6 +158,7 @@ COUNT = "() => { window.told = 0; const parse = JSON.parse; JSON.parse = text =>
 """Count the messages to the page from now on in `told`."""
 
 
+@pytest.mark.exhaustive
 def test_a_tab_that_slept_catches_up_at_once(page: Page, browser: Browser, system: World) -> None:
     asleep = opened(browser, address(system))
     for tab in (page, asleep):
