@@ -19,16 +19,21 @@ def bad_entry_point(point: EntryPoint) -> Finding:
     observed = f'setuptools cannot read the entry point "{shorten(point.text)}".'
     expected = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION."
     where = Where("setup.py", point.line)
-    why = Cause("entry-point-format", "Check it character by character: = and : must each appear once.")
+    why = Cause("entry-point-format", "Check the entry point character by character: = and : must each appear once.")
     if point.text.count("=") > 1:
         why = Cause("entry-point-comma", "A comma is missing between two strings, so Python joins them into one.")
     elif "/" in point.text:
-        why = Cause("entry-point-slash", "This is a file path. A module name has a dot between folder and file.")
+        why = Cause(
+            "entry-point-slash", "The entry point has a file path. A module name has a dot between folder and file."
+        )
         why = why.fixed_by(at(where, "/", "."))
     elif "(" in point.text:
-        why = Cause("entry-point-format", "It names the function without parentheses, because it does not call it.")
+        why = Cause(
+            "entry-point-format",
+            "An entry point names a function but does not call the function: leave out the parentheses.",
+        )
         why = why.fixed_by(at(where, point.text, point.text.partition("(")[0]))
     elif ":" not in point.text:
-        text = "It does not name a function. After the module, write a colon and the function name."
+        text = "The entry point does not name a function. After the module, write a colon and the function name."
         why = Cause("entry-point-no-function", text)
     return failed(observed, expected, why.at(where))

@@ -21,11 +21,11 @@ START = "Traceback (most recent call last):"
 IGNORED = "Exception ignored in"
 """Python prints this before the traceback of an exception that it ignores, such as one in a destructor."""
 PACKAGES = ("site-packages", "dist-packages")
-"""Folders of installed modules. A module next to setup.py is installed directly into one of them."""
+"""Folders of installed modules. A module next to setup.py is installed directly into such a folder."""
 FRAME = re.compile(r'\s*File "(?P<file>[^"]*)", line (?P<line>\d{1,7})(?:, in (?P<function>.*))?')
 ERROR = re.compile(r"(?P<type>[A-Za-z_][\w.]*)(?:: (?P<message>.*))?")
 GUESS = re.compile(r" \(/[^)]*\)$|\.? Did you mean: .*| The following argument types are supported:.*")
-"""Hints that differ between Python versions. They are removed, because the diagnosis makes its own suggestion."""
+"""Hints that differ between Python versions. They are removed, because a diagnosis has its own suggestion."""
 STOPS = frozenset({"KeyboardInterrupt", "ExternalShutdownException"})
 """The exceptions that Ctrl-C raises in a node written like the one in the tutorial."""
 
@@ -33,18 +33,18 @@ RCLPY_ERRORS = frozenset({"InvalidNodeNameException", "InvalidTopicNameException
 
 MEANINGS = {
     "AssertionError": "An assertion failed: something that the code or a message field requires was not true.",
-    "AttributeError": "The object has no attribute or method with that name. Compare it letter by letter.",
+    "AttributeError": "The object has no attribute or method with that name. Compare the name letter by letter.",
     "EOFError": "input() waits for the keyboard, but the grader does not type. A node must not ask for input.",
-    "ImportError": "That name cannot be imported from this module. Compare it letter by letter.",
+    "ImportError": "That name cannot be imported from this module. Compare the name letter by letter.",
     "IndentationError": "All lines of a block must have the same indentation.",
     "IndexError": "The list has fewer items than this index needs.",
     "InvalidNodeNameException": "A node name may contain only letters, digits and underscores.",
     "InvalidTopicNameException": "A topic name may contain only letters, digits, underscores and slashes.",
     "KeyError": "The dictionary has no such key.",
-    "ModuleNotFoundError": "No module with that name is installed. Compare it letter by letter.",
-    "NameError": "This name was never defined. It may be a typing error, or an import is missing.",
+    "ModuleNotFoundError": "No module with that name is installed. Compare the name letter by letter.",
+    "NameError": "This name was never defined. Check its spelling, and check whether an import is missing.",
     "NotInitializedException": "ROS 2 was used before rclpy.init or after rclpy.shutdown.",
-    "ParameterNotDeclaredException": "Declare a parameter with declare_parameter before you read it.",
+    "ParameterNotDeclaredException": "Declare a parameter with declare_parameter before you read the parameter.",
     "SyntaxError": "Python cannot read this line or the line before it.",
     "TabError": "The indentation mixes tabs and spaces.",
     "TypeError": "A function was called with the wrong number or type of arguments.",

@@ -45,7 +45,7 @@ def no_entry_point(evidence: Evidence) -> Finding:
         guess = nearest(executable, [other for other in others if not _is_another(evidence, other)])
         if guess is not None:
             where = next((Where("setup.py", point.line) for point in points if point.name == guess), line(evidence))
-            text = "Compare the two names letter by letter. The name is the part before the = sign."
+            text = "Compare the two names letter by letter. The name of an entry point is the part before the = sign."
             observed = f"There is no executable {executable}, but there is {shorten(guess)}."
             why = Cause("entry-point-name", text, where).fixed_by(at(where, guess, executable))
             return failed(observed, expected, why)
@@ -98,7 +98,7 @@ def _unread(evidence: Evidence, setup: SetupPy | None) -> Cause | None:
         group = line_of(source, rf"['\"]{re.escape(setup.groups[0])}['\"]")
         return Cause("entry-point-group", text, Where("setup.py", group) if group is not None else None)
     if stray is not None:
-        text = "The entry point is in another list. The list console_scripts ends before it."
+        text = "The entry point is in another list. The list console_scripts ends before the entry point."
         return Cause("entry-point-elsewhere", text, Where("setup.py", stray.line))
     return None
 

@@ -65,11 +65,11 @@ ROS_1 = frozenset({"rospy", "roslib", "tf", "catkin", "roscpp", "rosbag", "actio
 
 OF_ROS_1 = {
     "init_node": "The node gets its name in super().__init__.",
-    "is_shutdown": "The opposite in ROS 2 is rclpy.ok().",
-    "Publisher": "In ROS 2, the method create_publisher of the node creates one.",
-    "Subscriber": "In ROS 2, the method create_subscription of the node creates one.",
+    "is_shutdown": "In ROS 2, rclpy.ok() returns the opposite.",
+    "Publisher": "In ROS 2, the method create_publisher of the node creates a publisher.",
+    "Subscriber": "In ROS 2, the method create_subscription of the node creates a subscription.",
     "Rate": "In ROS 2, a node does regular work in the callback of a timer.",
-    "Timer": "In ROS 2, the method create_timer of the node creates one.",
+    "Timer": "In ROS 2, the method create_timer of the node creates a timer.",
     "sleep": "In ROS 2, a node does regular work in the callback of a timer.",
     "get_time": "In ROS 2, the node's clock gives the time: get_clock().now().",
     "get_param": "In ROS 2, a node has declare_parameter and get_parameter.",
@@ -122,7 +122,7 @@ OTHERS = {
     "Timer": ("cancel", "reset"),
     "RcutilsLogger": ("debug", "info", "warning", "warn", "error", "fatal"),
 }
-"""Other objects -> their methods."""
+"""Maps each other type of object to its methods."""
 
 SERVICES = (
     "/spawn",

@@ -26,7 +26,7 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
     (
         "inconsistent use of tabs",
         "tabs-and-spaces",
-        "Some lines start with tabs and others with spaces. They look the same but are not. Use spaces.",
+        "Some lines start with tabs, others with spaces. Tabs and spaces look alike but are different. Use spaces.",
     ),
     (
         "Missing parentheses in call to 'print'",
@@ -41,7 +41,7 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
     (
         r"was never closed",
         "bracket-open",
-        "This bracket is never closed. Python often reports this only at a later line.",
+        "This bracket is never closed. Python often reports an open bracket at a later line.",
     ),
     (
         r"unmatched|does not match opening",
@@ -79,7 +79,10 @@ OTHER_LANGUAGES = (
     (r".*(?:\+\+|--)\s*;?\s*", "Python has no ++ and no --. Write += 1 or -= 1."),
     (r"\s*(?:def|class|if|for|while)\b.*\{\s*", "In Python, a block begins with a colon, not with a brace."),
     (r"\s*//.*", "In Python, a comment begins with #."),
-    (r".*=\s*new\s+\w+.*", "Python has no keyword new. The name of a class with parentheses creates an object."),
+    (
+        r".*=\s*new\s+\w+.*",
+        "Python has no keyword new. To create an object, write the name of the class and parentheses.",
+    ),
     (r"\s*else\s*:.*", "An else needs an if, for, while or try before it, with the same indentation."),
 )
 """(pattern of a line that Python cannot read, cause): syntax of other languages, and an else without an if."""
@@ -94,7 +97,7 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
     conflict = line_of(data, CONFLICT)
     if conflict is not None:
         text = (
-            "Git left both versions in the file, between <<<<<<< and >>>>>>>. Keep one version and delete the markers."
+            "Git left two versions in the file, between <<<<<<< and >>>>>>>. Keep one version and delete the markers."
         )
         return Cause("merge-conflict", text)
     unquoted = _unquoted(unreadable, data)

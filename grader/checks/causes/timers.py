@@ -26,7 +26,7 @@ def timer_fault(evidence: Evidence) -> Cause | None:
         if _is_call(timer.argument(1, "callback")):
             text = (
                 "create_timer needs the method itself. "
-                "With () after its name, it gets only the return value of the method."
+                "With () after the name of the method, create_timer gets only the method's return value."
             )
             called = timer.argument(1, "callback")
             assert isinstance(called, ast.Call)

@@ -116,7 +116,7 @@ def _misspelt(scene: CrashScene, name: str, known: Iterable[str]) -> Cause | Non
     )
     if guess is None:
         return None
-    text = f"A similar name exists: {guess}. Compare the two letter by letter, including upper and lower case."
+    text = f"A similar name exists: {guess}. Compare the two names letter by letter, including upper and lower case."
     return Cause("attribute-misspelt", text).fixed_by(at(scene.crash.where, name, guess))
 
 
@@ -148,12 +148,15 @@ def _of_own_type(scene: CrashScene, owner: str, name: str) -> Cause:
     assert own is not None
     outside = next((each for each in scene.top_functions() if each.name == name), None)
     if outside is not None:
-        return Cause("method-outside-class", f"{name} is outside the class. Indent it like the other methods.").at(
+        return Cause("method-outside-class", f"{name} is outside the class. Indent {name} like the other methods.").at(
             scene.at(outside)
         )
     first = next((each for each in scene.top_functions() if "self" in [a.arg for a in each.args.args]), None)
     if first is not None and first.lineno > own.lineno:
-        text = f"{first.name} is not indented, so the class ends before it. Indent it like the other methods."
+        text = (
+            f"{first.name} is not indented, so the class ends above {first.name}. Indent {first.name} like the other "
+            "methods."
+        )
         return Cause("method-outside-class", text, scene.at(first))
     if name in {attribute for attribute, _ in attributes_set(own)} or name in ros_names.NODE:
         return _class_for_object(owner)
@@ -182,7 +185,9 @@ def _of_none(scene: CrashScene, name: str) -> Cause | None:
     for holder in filter(None, holders):
         values = [node for node in scene.nodes if isinstance(node, ast.Assign) and holder in map(dotted, node.targets)]
         if any(isinstance(each.value, ast.Constant) and each.value.value is None for each in values):
-            text = f"{shorten(holder)} is None until the first message arrives. Check for None before you use it."
+            text = (
+                f"{shorten(holder)} is None until the first message arrives. Check for None before you use the value."
+            )
             return Cause("none-before-message", text)
     if name == "executor":
         return _no_object(scene)
@@ -239,16 +244,18 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
         )
     local = [node for node in ast.walk(own) if isinstance(node, ast.Name) and _is_store(node) and node.id == name]
     if local:
-        text = f"Line {local[0].lineno} sets {name} without self, so it is not an attribute. Write self.{name} there."
+        text = (
+            f"Line {local[0].lineno} sets {name} without self, so {name} is not an attribute. Write self.{name} there."
+        )
         place = scene.at(local[0])
         return Cause("missing-self", text, place).fixed_by(at(place, name, f"self.{name}"))
     outside = next((each for each in scene.top_functions() if each.name == name), None)
     if outside is not None:
-        text = f"{name} is outside the class. Indent it like the other methods."
+        text = f"{name} is outside the class. Indent {name} like the other methods."
         return Cause("method-outside-class", text, scene.at(outside))
     inside = next((each for method in methods(own) for each in ast.walk(method) if _is_function(each, name)), None)
     if inside is not None:
-        text = f"{name} is indented too far. It is inside another method, so self.{name} does not exist."
+        text = f"{name} is indented too far. {name} is inside another method, so self.{name} does not exist."
         return Cause("method-in-method", text, scene.at(inside))
     if name in ros_names.OTHERS["RcutilsLogger"]:
         text = f"{name} is a method of the logger, and get_logger() returns the logger."

@@ -131,7 +131,9 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
     if "rclpy_resolve_name(): incompatible" in text:
         return Cause("crash", "A topic name must be a string in quotation marks, or a variable with a string in it.")
     if "'Parameter'" in text:
-        return Cause("parameter-itself", "get_parameter returns the parameter itself. Its content is in .value.")
+        return Cause(
+            "parameter-itself", "get_parameter returns the parameter itself. The value of the parameter is in .value."
+        )
     if "Expected QoSProfile or int" in text:
         return Cause("queue-size", "The last argument is the queue size, a whole number.")
     return None
@@ -141,7 +143,7 @@ def _with_init(scene: CrashScene) -> Cause | None:
     """Return the cause if a with statement on the line calls rclpy.init, else None."""
     for call in scene.calls_on_line("init"):
         if dotted(call.func) == "rclpy.init":
-            text = "Only newer distributions allow rclpy.init in a with statement. In Jazzy, it returns None."
+            text = "Only newer distributions allow rclpy.init in a with statement. In Jazzy, rclpy.init returns None."
             return Cause("crash", text, scene.at(call))
     return None
 
@@ -153,7 +155,7 @@ def _after_shutdown(scene: CrashScene) -> Cause | None:
     around = scene.function_around(ended[-1]) if ended else None
     if around is None or (around is not scene.function and around.name != "__init__"):
         return None
-    text = "This call of shutdown ends ROS 2 in the program. No later line can spin or publish."
+    text = "This call of shutdown ends ROS 2 in the program. No line after this call can spin or publish."
     return Cause("crash", text, scene.at(ended[-1]))
 
 
@@ -175,7 +177,7 @@ def _init_misspelt(scene: CrashScene) -> Cause | None:
         found = [name for name in names if name.strip("_") in ("init", "int", "inti") or name == "__intit__"]
         if "__init__" not in names and found:
             text = (
-                f"The class has a method {found[0]}, but Python only runs __init__ when it creates the object: "
+                f"The class has a method {found[0]}, but to create the object, Python runs only __init__: "
                 "init with two underscores on each side."
             )
             place = scene.at(names[found[0]])
@@ -217,7 +219,7 @@ def _not_callable(scene: CrashScene, kind: str) -> Cause | None:
         inside = [each for each in scene.functions("__call__") if each not in methods(made)]
         text = f"An object of {kind} can be called only if the class has a method __call__."
         if inside:
-            text = "__call__ is indented too far. It is inside another method, so the object cannot be called."
+            text = "__call__ is indented too far. __call__ is inside another method, so the object cannot be called."
             return Cause("method-in-method", text, scene.at(inside[0]))
         return Cause("not-callable", text)
     if kind == "NoneType":
@@ -227,7 +229,7 @@ def _not_callable(scene: CrashScene, kind: str) -> Cause | None:
                 if called and isinstance(call.args[place], ast.Call):
                     text = (
                         f"{name} needs the method itself. With () after its name, "
-                        "it gets only the return value of the method."
+                        f"{name} gets only the return value of the method."
                     )
                     return Cause("callback-called", text, scene.at(call))
     return Cause("not-callable", f"A value of type {shorten(kind)} is called like a function.")
@@ -240,7 +242,9 @@ def why_refused(scene: CrashScene) -> Cause | None:
         lines = [
             node.lineno for node in scene.nodes if isinstance(node, ast.Call) and dotted(node.func) == "rclpy.init"
         ]
-        more = f" It is called in lines {a_list([str(line) for line in sorted(lines)])}." if len(lines) > 1 else ""
+        more = (
+            f" rclpy.init is called in lines {a_list([str(line) for line in sorted(lines)])}." if len(lines) > 1 else ""
+        )
         return Cause("init-twice", f"Call rclpy.init only once.{more}")
     if "called for existing topic name" in text:
         return Cause(

@@ -55,7 +55,7 @@ def _why_undeclared(scene: CrashScene) -> Cause:
 def _why_value(scene: CrashScene) -> Cause | None:
     if "empty" not in scene.crash.message or not any(name in scene.crash.message for name in ("min()", "max()")):
         return None
-    return Cause("crash", "There was nothing to compare. Check first whether there is any value.")
+    return Cause("crash", "min or max had nothing to compare. Check first whether there is any value.")
 
 
 EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {

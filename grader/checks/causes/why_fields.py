@@ -71,7 +71,9 @@ def _why_no_float(field: str, value: ast.expr | None) -> Cause:
             f"The field {field} needs a Python float, not a NumPy number. Convert it with float(...).",
         )
     if isinstance(value, ast.Call) and names[0].endswith(("get_parameter", "declare_parameter")):
-        text = f"The field {field} is a float, but this is the parameter itself. Its content is in .value."
+        text = (
+            f"The field {field} is a float, but this is the parameter itself. The value of the parameter is in .value."
+        )
         return Cause("field-type", text)
     if names and names[0].rpartition(".")[2] in READS:
         return Cause(

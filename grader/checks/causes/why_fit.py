@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from grader.exercise.call_inputs import Arc
 
 ROUGH_M = 0.02
-"""The error of a mean or extreme of noisy points that is allowed in addition to the tolerance (m)."""
+"""The error (m) that the mean or an extreme of noisy points may have in addition to the tolerance."""
 
 
 @dataclass(frozen=True)
@@ -60,10 +60,12 @@ def why_fit(fit: Fit) -> Cause:
         return Cause("x-y-swapped", "The two coordinates of the centre are swapped.")
     if any(fit.is_like(other) for other in permutations(fit.truth)):
         return Cause(
-            "result-order", "The three numbers are right, but their order is wrong. Return centre x, centre y, radius."
+            "result-order",
+            "The three numbers are right, but their order is wrong. Return the centre's x, the centre's y and the "
+            "radius, in this order.",
         )
     if fit.is_like((0.5, 0.5)):
-        return Cause("wrong-fit", "You get this result if the right side is x + y instead of x² + y².")
+        return Cause("wrong-fit", "You get this result if the right side of the equations is x + y instead of x² + y².")
     found = _why_radius(fit) if fit.centre_right else _why_centre(fit)
     return Cause(*found) if found is not None else Cause("wrong-fit", _FIRST_TRY)
 
@@ -105,10 +107,13 @@ def _why_centre(fit: Fit) -> tuple[Diagnosis, str] | None:
         return "centre-sign", "The centre has the wrong sign. Check on which side of the equation each term is."
     if fit.is_like((float(xs.mean()), float(ys.mean())), ROUGH_M):
         return "mean-for-centre", (
-            "This is the mean of the points. It is the centre only if the points cover the whole circle."
+            "This is the mean of the points. The mean is the centre only if the points cover the whole circle."
         )
     middle = ((xs.min() + xs.max()) / 2.0, (ys.min() + ys.max()) / 2.0)
     if fit.is_like(middle, ROUGH_M + 3.0 * fit.arc.noise_m):
-        text = "This is the midpoint between the extreme points. The circle of an arc extends beyond them."
+        text = (
+            "This is the midpoint between the extreme points. The circle of an arc extends beyond the points of the "
+            "arc."
+        )
         return "extremes-for-centre", text
     return None

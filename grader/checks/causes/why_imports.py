@@ -39,13 +39,17 @@ def _no_module(scene: CrashScene, name: str) -> Cause:
     if top == "turtlesim_msgs":
         return Cause(
             "turtlesim-msgs",
-            "Newer ROS 2 distributions have these messages in turtlesim_msgs. In Jazzy they are in turtlesim.",
+            "Newer ROS 2 distributions have these messages in turtlesim_msgs. In Jazzy, these messages are in "
+            "turtlesim.",
         ).fixed_by(at(scene.crash.where, "turtlesim_msgs", "turtlesim"))
     if top in NOT_HERE:
-        return Cause("module-missing", f"{NOT_HERE[top]} This grader does not have it, so it cannot run this node.")
+        return Cause("module-missing", f"{NOT_HERE[top]} This grader does not have {top}, so it cannot run this node.")
     files = scene.evidence.submission.files
     if f"{top}.py" in files:
-        text = f"{top}.py is next to setup.py, so it is not installed. It belongs in the folder with the other modules."
+        text = (
+            f"{top}.py is next to setup.py, so it is not installed. {top}.py belongs in the folder with the other "
+            "modules."
+        )
         return Cause("sibling-import", text)
     beside = next((path for path in sorted(files) if path.endswith(f"/{top}.py")), None)
     if beside is not None:
@@ -65,7 +69,7 @@ def _no_name(scene: CrashScene, name: str, module: str) -> Cause:
     plain = {each.lower(): each for each in ros_names.MODULE_OF}
     known = plain.get(name.lower())
     if known is not None and ros_names.MODULE_OF[known] == module:
-        text = f"In this module it is called {known}. Upper and lower case matter."
+        text = f"In this module the name is {known}. Upper and lower case matter."
         return Cause("import-name", text).fixed_by(at(scene.crash.where, name, known))
     if known is not None:
         right = ros_names.MODULE_OF[known]

@@ -20,7 +20,7 @@ OF_AN_ACTION = re.compile(r"service type provided is not valid \(<class '\w+\.ac
 PARTS = {"Action": "Goal", "Service": "Request"}
 """Maps each kind of interface to the part of it that a client fills in, for example a service to its Request."""
 OF_A_TYPE = "_TYPE_SUPPORT"
-"""The attribute that rclpy requires of every type."""
+"""The attribute that rclpy looks up in every interface type."""
 
 
 def why_interface(scene: CrashScene) -> Cause | None:
@@ -39,7 +39,9 @@ def why_interface(scene: CrashScene) -> Cause | None:
     if owner == "str" and name == OF_A_TYPE:
         return Cause("arguments-swapped", "A string was passed instead of the type. The type comes before the name.")
     if owner == "Future":
-        text = f"This is a future. Its method result() returns the response, which may have {shorten(name)}."
+        text = (
+            f"This is a future. The method result() of a future returns the response, which may have {shorten(name)}."
+        )
         return Cause("future-for-answer", text)
     inner = next((field for ending, field in WRAPPED.items() if owner.endswith(ending)), None)
     if inner is None or name in OF_A_RESULT:

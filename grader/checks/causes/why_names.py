@@ -59,7 +59,7 @@ def why_no_name(scene: CrashScene) -> Cause | None:
 
 
 def _unknown(name: str) -> Cause:
-    text = "Nothing defines this name before this line. If it should be a string, it needs quotation marks."
+    text = "Nothing defines this name before this line. A string needs quotation marks."
     if name[:1].isupper():
         text = "Nothing defines this name before this line, and nothing imports it."
     return Cause("name-undefined", text)
@@ -102,7 +102,7 @@ def _of_import(scene: CrashScene, name: str) -> Cause | None:
             return Cause("import-wrong-place", text, scene.at(star)).fixed_by(
                 at(scene.at(star), f"from {star.module} ", f"from {module} ")
             )
-        text = f"The file does not import {name}. It is in the module {module}."
+        text = f"The file does not import {name}. {name} is in the module {module}."
         return Cause("missing-import", text).fixed_by(_import(scene, f"from {module} import {name}"))
     if name in WELL_KNOWN:
         text = f"The file does not import the module {name}."
@@ -113,7 +113,7 @@ def _of_import(scene: CrashScene, name: str) -> Cause | None:
                 text = f"{name} belongs to the module {module}. Write {module}.{name}."
                 return Cause("module-prefix", text).fixed_by(at(scene.crash.where, name, f"{module}.{name}"))
             if module != "rclpy":
-                text = f"The file does not import {name}. It is in the module {module}."
+                text = f"The file does not import {name}. {name} is in the module {module}."
                 return Cause("missing-import", text).fixed_by(_import(scene, f"from {module} import {name}"))
     return None
 
@@ -142,7 +142,10 @@ def _bound_elsewhere(scene: CrashScene, name: str) -> Cause | None:
         if function is None and line > scene.line:
             return Cause("name-too-early", f"{name} gets its value in line {line}, after this line.")
         if function is not None and function is not inside:
-            text = f"{name} is a local variable of {function.name} (line {line}). It does not exist in other functions."
+            text = (
+                f"{name} is a local variable of {function.name} (line {line}). A local variable does not exist in "
+                "other functions."
+            )
             return Cause("local-name", text)
     return None
 
@@ -158,7 +161,7 @@ def _stores(scene: CrashScene, name: str) -> Iterator[tuple[int, Function | None
 
 def _alike(scene: CrashScene, name: str) -> Cause | None:
     if name == "this":
-        text = "this belongs to other languages. In a Python method, the object is called self."
+        text = "Other languages have the name this. In a Python method, the object is called self."
         return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, "this", "self"))
     if name in CONSTANTS:
         text = f"Python spells it {CONSTANTS[name]}. Upper and lower case matter."
@@ -207,5 +210,5 @@ def why_unbound(scene: CrashScene) -> Cause:
     return Cause(
         "local-name",
         "A variable that a function assigns to is local to that function. "
-        "Store a value that must survive the call in self.",
+        "Store a value in self if later calls need the value.",
     )

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from grader.trial.observed import Track
 
 STILL_S = 3.0
-"""A turtle that has not moved for this long stands still (s)."""
+"""A turtle that has not moved for this time (s) counts as standing still."""
 STILL_M = 0.05
 NEAR_M = 1.0
-"""A turtle that stands still this close to a target has reached it (m)."""
+"""A turtle that stands still within this distance (m) of a target has reached the target."""
 CATCH = "/catch"
 OWN_POSE = "/turtle1/pose"
 
@@ -55,7 +55,7 @@ def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
     text = "The turtle was still driving at the end of the trial."
     if left:
         near_m, name = min((_nearest_m(evidence, track), track.turtle) for track in left)
-        text += f" It came as near as {near_m:.1f} m to {shorten(name)}."
+        text += f" The turtle came as near as {near_m:.1f} m to {shorten(name)}."
     return Cause("too-slow", text, evidence.place("publish"))
 
 
@@ -127,9 +127,9 @@ def loop_variable(evidence: Evidence) -> Cause | None:
             for made in ast.walk(loop):
                 if isinstance(made, ast.Lambda | ast.FunctionDef) and _uses(made, name):
                     text = (
-                        f"The function is created in a loop and uses {shorten(name)}, the loop variable. When it is "
-                        "called, the loop has ended, and the variable has its last value. Create the function in a "
-                        "method that takes the value as an argument."
+                        f"The function is created in a loop and uses {shorten(name)}, the loop variable. When the "
+                        "function is called, the loop has ended, and the variable has its last value. Create the "
+                        "function in a method that takes the value as an argument."
                     )
                     return Cause("loop-variable", text, Where(module.file, made.lineno))
     return None

@@ -33,7 +33,8 @@ def too_few(scene: CrashScene, function: str, names: str) -> Cause | None:
     inside = any(own[0] in methods(each) for each in scene.classes)
     if not inside:
         text = (
-            f"{function} is called without a value for {shorten(names)}. A parameter with a default value needs none."
+            f"{function} is called without a value for {shorten(names)}. A parameter with a default value needs no "
+            "argument."
         )
         return Cause("argument-missing", text, scene.at(own[0]))
     called = next(iter(scene.calls_on_line(function)), None)

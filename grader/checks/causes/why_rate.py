@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 OFTEN = 0.5
 """In a loop without a pause, the mean interval is less than this fraction of the expected period."""
 SEVERAL = 0.1
-"""Several calls in a row explain a rate if the number of messages per period differs by less than this share."""
+"""Several calls in a row explain a wrong rate if their number is that of the messages per period, up to this share."""
 FRAME_S = 0.016
 """The duration of a turtlesim frame (s). turtlesim publishes the pose once per frame."""
 
@@ -62,7 +62,7 @@ def why_publishers_grow(evidence: Evidence) -> Cause | None:
     if found is None:
         return None
     name, where = found
-    text = f"{name} creates a new publisher each time it is called. Create it once, in __init__."
+    text = f"{name} creates a new publisher each time it is called. Create the publisher once, in __init__."
     return Cause("publisher-in-callback", text, where)
 
 

@@ -49,10 +49,10 @@ def why_rejected(run: NodeRun, code: TestCode) -> Cause:
         )
         return Cause("fixture-missing", text, where)
     if TWICE.search(run.message):
-        text = "The previous test did not call rclpy.shutdown. In a fixture, the call belongs after the yield."
+        text = "The previous test did not call rclpy.shutdown. A fixture calls rclpy.shutdown after the yield."
         return Cause("not-shut-down", text, where)
     if NOT_YET.search(run.message):
-        text = "Call rclpy.init before you create a node. In a fixture, the call belongs before the yield."
+        text = "Call rclpy.init before you create a node. A fixture calls rclpy.init before the yield."
         return Cause("no-init", text, where)
     if OUTSIDE.search(run.message):
         text = "A test must also run without a display and without a network."

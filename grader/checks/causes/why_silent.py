@@ -33,7 +33,10 @@ def why_qos(evidence: Evidence) -> Cause | None:
     output = [recording.stderr.text, *(line.text for line in recording.log)]
     if not any(INCOMPATIBLE in text for text in output):
         return None
-    text = "The QoS settings are not compatible with those of turtlesim. A plain queue size is compatible."
+    text = (
+        "The QoS settings are not compatible with those of turtlesim. A queue size instead of a QoS profile is "
+        "compatible."
+    )
     return Cause("qos-mismatch", text, evidence.place("QoSProfile", "create_publisher", "create_subscription"))
 
 
@@ -146,7 +149,7 @@ def _only_waits(loop: ast.While) -> bool:
 
 
 WAITS = ("spin_until_future_complete", "send_goal", "cancel_goal", "get_result")
-"""Methods that wait for a response. Those for actions also exist with the ending _async."""
+"""Methods that wait for a response. The methods for actions also exist with the ending _async."""
 
 
 def waits_inside(node: ast.AST) -> bool:
@@ -171,7 +174,7 @@ def _never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
             for node in each.nodes
         )
         if called and not named and method.name != "__init__":
-            text = f"Nothing calls {shorten(method.name)}. It is not the callback of a timer or a subscription."
+            text = f"Nothing calls {shorten(method.name)}. The method is not the callback of a timer or a subscription."
             return Cause("method-never-called", text, Where(module.file, method.lineno))
     return None
 

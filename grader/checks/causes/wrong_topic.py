@@ -33,7 +33,8 @@ def why_topic(wanted: str, topic: str, evidence: Evidence) -> Cause:
     if topic.endswith(f"/{last}") and topic.count("/") == 2 and nearest(topic, [wanted]):
         return Cause("topic-other-turtle", "There is no turtle with that name.")
     return Cause(
-        "wrong-topic", "The topic name is the second argument of create_publisher. Compare it letter by letter."
+        "wrong-topic",
+        "The topic name is the second argument of create_publisher. Compare the topic name letter by letter.",
     )
 
 

@@ -241,7 +241,7 @@ def test_a_second_init_is_reported_with_all_its_lines() -> None:
     assert reported(once, error).cause == "Call rclpy.init only once."
     found = reported(f"rclpy.init()\nrclpy.spin(node)\n{once}", error)
     assert found.diagnosis == "init-twice"
-    assert found.cause.endswith(" It is called in lines 1 and 3.")
+    assert found.cause.endswith(" rclpy.init is called in lines 1 and 3.")
 
 
 NOT_CALLABLE = "RuntimeError: callback should be either be callable with one argument or two"

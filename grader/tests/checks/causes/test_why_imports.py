@@ -22,7 +22,7 @@ HELPER = {"my_robot_controller/helper.py": "", "my_robot_controller/unhelper.py"
         (
             "cannot import name 'twist' from 'geometry_msgs.msg' (unknown)",
             "import-name",
-            "In this module it is called Twist.",
+            "In this module the name is Twist.",
         ),
         (
             "cannot import name 'Twist' from 'turtlesim.msg'",
