@@ -16,7 +16,7 @@ class UsageError(GraderError):
 
 
 class UnreadableError(UsageError):
-    """A submission could not be read. This is the student's fault."""
+    """A submission could not be read, which is the student's fault."""
 
 
 class TooLargeError(UnreadableError):
@@ -24,7 +24,7 @@ class TooLargeError(UnreadableError):
 
 
 class MachineError(GraderError):
-    """The grader or the machine is broken. This is never the student's fault."""
+    """The grader or the machine is broken, which is never the student's fault."""
 
 
 class DiskError(MachineError):

@@ -1,4 +1,4 @@
-"""Measure `grader open`: the time from save to verdict relative to `grader watch`, the page's size and its idle CPU.
+"""Measure `grader open`: the time from save to verdict relative to `grader watch`, and the page's size and idle CPU.
 
     python -m grader.benchmarks.open_page [--times 5] [--idle 30]
 

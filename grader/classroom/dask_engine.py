@@ -1,9 +1,9 @@
 """An engine that grades with Dask workers on one or many machines.
 
-The machines need only this project. They receive submissions as bytes. Each thread of a Dask worker runs one of our
+The machines need only this project, and receive submissions as bytes. Each thread of a Dask worker runs one of our
 worker processes (worker.py), so a submission that kills that process does not kill the Dask worker. This module decides
 which Dask worker gets which submission. Each thread gets one submission at a time, without a queue. Therefore, the
-engine knows which submissions were lost with a machine and does not blame a submission for the fault of another one.
+engine knows which submissions were lost with a machine and does not blame one submission for the fault of another.
 """
 
 from __future__ import annotations

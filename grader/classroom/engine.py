@@ -39,7 +39,7 @@ Event = Progress | Finished | Died
 
 
 class Engine(Protocol):
-    """A context manager that runs tasks. Leaving the context stops all of them.
+    """A context manager that runs tasks. Leaving the context stops all tasks.
 
     with engine:
         while engine.has_room():
@@ -62,7 +62,7 @@ class Engine(Protocol):
         """Start a task. Call this only if `has_room` is true."""
 
     def events(self, timeout_s: float) -> list[Event]:
-        """Return the events since the last call. Wait at most `timeout_s` (s) for the first one.
+        """Return the events since the last call. Wait at most `timeout_s` (s) for the first event.
 
         Raises:
             MachineError: this machine can no longer grade any submission.

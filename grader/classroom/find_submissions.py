@@ -3,10 +3,9 @@
 Three layouts are supported and can be mixed: one folder or archive per student; nbgrader's submitted/STUDENT/EXERCISE;
 and a folder of classroom clones, each of which contains the course's exercises/EXERCISE.
 
-No student is omitted. Each folder and archive becomes a submission. If it cannot be graded, the submission contains
-the reason.
-This module uses os.path, whose functions return False for a path that cannot be accessed. The methods of pathlib raise
-an exception instead.
+No student is omitted. Each folder and archive becomes a submission. A submission that cannot be graded contains the
+reason. This module uses os.path, whose functions return False for a path that cannot be accessed. The methods of
+pathlib raise an exception instead.
 """
 
 # ruff: noqa: PTH110, PTH112, PTH114
@@ -74,7 +73,9 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
 
 
 def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
-    """Yield each submission with its exercise. Yield one without an exercise once for each exercise of the others.
+    """Yield each submission with its exercise.
+
+    Yield a submission that names no exercise once for each exercise that other submissions name.
 
     Raises:
         UsageError: the exercise cannot be determined.
@@ -98,7 +99,10 @@ def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
 
 
 def _one_of(alike: Sequence[Found]) -> Found:
-    """Return a student's only submission for an exercise, or one that states why none of several is graded."""
+    """Return a student's only submission for an exercise.
+
+    If the student handed in several, return a submission that states why none of them is graded.
+    """
     if len(alike) == 1:
         return alike[0]
     paths = a_list([shown(str(each.path)) for each in alike])
@@ -118,7 +122,7 @@ def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:
 
 
 def _entries(folder: Path) -> list[Path]:
-    """Return the entries of the folder in order. Raises UsageError if it cannot be opened."""
+    """Return the entries of the folder in order. Raises UsageError if the folder cannot be opened."""
     try:
         return sorted(folder.iterdir(), key=lambda each: sort_key(each.name))
     except OSError as error:

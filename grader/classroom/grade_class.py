@@ -51,7 +51,7 @@ class Request:
 
 
 def grade_class(request: Request, say: Callable[[str], None], tell: Callable[[str], None]) -> list[Result]:
-    """Grade each submission without a valid result, and write all files. Return all results, sorted by student.
+    """Grade each submission that has no valid result yet, and write all files. Return all results, sorted by student.
 
     Raises:
         UsageError: the command is wrong.
@@ -122,7 +122,10 @@ def exit_code(graded: Sequence[Result], fail_under: float | None) -> int:
 
 
 def _ros(*, local: bool, tell: Callable[[str], None]) -> str:
-    """Return the name of the ROS 2 that the results depend on. With Dask, all workers must have the same ROS 2."""
+    """Return the name of the ROS 2 installation that the results depend on.
+
+    With Dask, all workers must have the same ROS 2.
+    """
     try:
         ros = find_ros()
         if local:

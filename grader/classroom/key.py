@@ -1,4 +1,4 @@
-"""The key of a result: everything that the result depends on. If it changes, the submission is graded again."""
+"""The key of a result: everything that the result depends on. If the key changes, the submission is graded again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An engine with worker processes on this machine. Their number depends on the processors and memory."""
+"""An engine with worker processes on this machine. The number of processes depends on the processors and the memory."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class _Busy:
 
 
 class LocalEngine:
-    """Keeps worker processes, gives each one task at a time, and replaces those that die."""
+    """Keeps worker processes, gives each process one task at a time, and replaces processes that die."""
 
     def __init__(self, jobs: int) -> None:
         self._jobs = jobs

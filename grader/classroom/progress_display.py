@@ -56,7 +56,7 @@ def estimate(done: int, of: int, seconds: float) -> str:
 
 @contextmanager
 def screen(amount: int, *, several: bool) -> Iterator[Screen]:
-    """Yield a screen for this number of submissions. If `several` is true, it also shows the exercises."""
+    """Yield a screen for this number of submissions. If `several` is true, the screen also shows the exercises."""
     if not amount:
         yield Lines(amount, several=several)
     elif sys.stderr.isatty() and not os.environ.get("CI"):

@@ -72,7 +72,7 @@ class Results:
     folder: Path
 
     def load(self, student: str, exercise: str) -> Result | None:
-        """Return the complete result of a submission with any key, or None if none exists."""
+        """Return the complete result of a submission, whatever its key is, or None if there is no complete result."""
         name = file_name(student, exercise)
         file = self.folder / REPORTS / f"{name}.json"
         try:

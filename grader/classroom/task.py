@@ -1,4 +1,4 @@
-"""A task, which is one submission to grade as bytes for any worker process, and its result."""
+"""A task (one submission to grade, in a form that any worker process can receive) and its result."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ Pace = Literal["waits", "works"]
 
 @dataclass(frozen=True)
 class Task:
-    """A submission, its exercise, and how to grade it.
+    """A submission, its exercise, and the options for grading.
 
     `content` contains the files of the submission, or the reason why they are missing. `package` is the name of the
     package's folder. `grader` is the key of the grader that created the task. Only a worker with the same key may grade
@@ -60,7 +60,7 @@ class Task:
 
     @property
     def name(self) -> tuple[str, str]:
-        """The student and the exercise. The pair is unique in a run."""
+        """The student and the exercise. This pair of names is unique in a run."""
         return self.student, self.sources.id
 
 

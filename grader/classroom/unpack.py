@@ -1,9 +1,9 @@
 """Unpack an archive that a student handed in: `python -I -S unpack.py ARCHIVE FOLDER`.
 
-archives.py runs this script in a separate process with limits. It uses only the standard library. It creates
-only plain files and folders, only inside the folder, and never exceeds the limits below. It prints JSON: {"why": null}
-on success; otherwise, "why" completes a sentence that begins with the name of the archive. It exits with code 3 if the
-disk fails.
+archives.py runs this script in a separate process with limits. The script uses only the standard library, creates only
+plain files and folders inside the given folder, and never exceeds the limits below. The script prints JSON: {"why":
+null} on success; otherwise, "why" completes a sentence that begins with the name of the archive. The script exits with
+code 3 if the disk fails.
 """
 
 from __future__ import annotations
@@ -137,7 +137,7 @@ def _both(target: Path, folder: Path) -> str:
 
 
 def _write(content: IO[bytes], target: Path, folder: Path, mode: int, most: int) -> int:
-    """Write a file and return its size. As with unzip and tar, it replaces a file of the same name."""
+    """Write a file and return its size. As with unzip and tar, a file of the same name is replaced."""
     _make_folder(target.parent, folder)
     if target.is_dir():
         raise RefusedError(_both(target, folder))

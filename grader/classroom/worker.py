@@ -1,7 +1,8 @@
 """A worker process that grades one task after another, so that Python modules are imported only once.
 
-`python -m grader.classroom.worker DESCRIPTOR`. Student code does not run in this process, but in the cells that the
-worker starts. If the process that started the worker exits, the worker and everything that it started exit too.
+`python -m grader.classroom.worker DESCRIPTOR`. Student code does not run in the worker process, but in the sandbox
+cells that the worker starts. If the process that started the worker exits, the worker and everything that it started
+exit too.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ _LAST_WORDS = 1000
 
 
 class Worker:
-    """A worker process, from the owner's side.
+    """A worker process, as seen from the process that owns it.
 
     `connection` is readable when a message has arrived or the process has exited.
     """
@@ -108,7 +109,7 @@ def main(descriptor: int) -> None:
 
 
 def _import_all() -> None:
-    """Import the modules that grading would import on first use, before the time of the first task starts."""
+    """Import the modules that grading needs now, so that the time of the first task does not include the import."""
     import grader.report.html  # noqa: F401
 
     load_catkin_pkg()
@@ -116,7 +117,7 @@ def _import_all() -> None:
 
 
 def _end_with_owner(descriptor: int) -> None:
-    """Exit as soon as the owner has exited. Cells and rooms exit together with their parent process."""
+    """Exit as soon as the owner has exited. Every sandbox cell exits together with its parent process."""
     poll = select.poll()
     poll.register(descriptor, 0)  # POLLHUP is always reported
     while True:

@@ -1,10 +1,10 @@
-"""Run colcon in its cell. Each `python setup.py` that colcon starts becomes a fork of a prepared interpreter.
+"""Run colcon in its sandbox cell. Each `python setup.py` that colcon starts becomes a fork of a prepared interpreter.
 
 colcon runs the setup.py of a package three times, each time in a new interpreter that imports setuptools and reads the
-metadata of all installed packages again. This is most of the CPU time of a build. Here, one process does all this once,
-before the submission arrives, and forks for each run of setup.py. The fork gets the folder, environment, arguments and
-streams of the process that colcon started, and that process only waits for the exit code. If a fork might behave
-differently from a new interpreter, no fork is used (`Run.of`).
+metadata of all installed packages again. These imports take most of the CPU time of a build. Here, one process does
+this work once, before the submission arrives, and forks for each run of setup.py. The fork gets the folder,
+environment, arguments and streams of the process that colcon started, and the process that colcon started only waits
+for the exit code of the fork. If a fork might behave differently from a new interpreter, no fork is used (`Run.of`).
 
 This file runs as a separate script. Standard input is the submission, a tar stream that is unpacked into src.
 """
@@ -96,7 +96,7 @@ def _compiles(script: str) -> bool:
 
 
 class Forks:
-    """A process that has imported setuptools and forks for each Run. It exits with its parent."""
+    """A process that has imported setuptools and forks for each Run. The process exits when its parent exits."""
 
     def __init__(self) -> None:
         importlib.import_module("setuptools")
@@ -141,7 +141,7 @@ def _import_commands() -> None:
 
 
 def _next_run(requests: socket.socket) -> Run:
-    """Serve requests. In the parent process, this never returns; in a fork, it returns the run to execute."""
+    """Serve requests. In the parent process, this function never returns; in a fork, it returns the run to execute."""
     while True:
         request, received, _, _ = socket.recv_fds(requests, _MOST_REQUEST, 8)
         if not request:
@@ -206,10 +206,12 @@ def _main_of(run: Run) -> tuple[types.ModuleType, bytes]:
 
 
 class EntryPoints:
-    """`importlib.metadata.entry_points` with a cache. The original reads the metadata of every package on each call.
+    """`importlib.metadata.entry_points` with a cache.
 
-    setuptools calls it up to fifteen times per run. Here, the metadata of the machine is read once. The metadata in
-    other folders on sys.path, such as the folder of the submission, is read on each call.
+    The original function reads the metadata of every package on each call.
+
+    setuptools calls `entry_points` up to fifteen times per run. Here, the metadata of the machine is read once. The
+    metadata in other folders on sys.path, such as the folder of the submission, is read on each call.
     """
 
     def __init__(self) -> None:

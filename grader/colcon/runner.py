@@ -190,7 +190,7 @@ def _entry_points(files: dict[PurePosixPath, Member], tree: bytes) -> dict[str, 
 def read_entry_points(text: str) -> dict[str, str]:
     """Return the console_scripts in the text of an entry_points.txt.
 
-    This takes a single pass over the text. The regular expressions of configparser take quadratic time.
+    This function reads the text in a single pass. The regular expressions of configparser take quadratic time.
     """
     found: dict[str, str] = {}
     section = ""

@@ -1,11 +1,11 @@
-"""Command lines for Python that never import a module from the current folder, which may be a student's.
+"""Command lines for Python that never import a module from the current folder, which may belong to a student.
 
 `python -m` and `python -c` put the current folder first on sys.path, and an empty or relative entry of PYTHONPATH names
 the current folder too. A `numpy.py` or a package `grader` in the folder where a user typed a command would then run
-with that user's rights. So every command line for an interpreter is built here, and a test fails if one is built
-elsewhere.
+with that user's rights. So this module builds every command line for an interpreter, and a test fails if another module
+builds one.
 
-Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
+Like machine.py, this module runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
 
 import os
@@ -42,8 +42,8 @@ def interpreter(
     """Return the command that starts Python with `-m MODULE ...`, `-c CODE ...` or the absolute path of a script.
 
     `python` is the path of the interpreter; `env` defaults to the caller's environment. With `searches`, Python uses
-    PYTHONPATH, which programs that import rclpy need. Without it, the interpreter is isolated (-I). `root` is the
-    folder that contains the module's package, if the package is not installed yet.
+    PYTHONPATH, which programs that import rclpy need. Without `searches`, the interpreter is isolated (-I). `root` is
+    the folder that contains the module's package, if the package is not installed yet.
 
     Raises:
         ValueError: the script's path is relative.

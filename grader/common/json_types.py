@@ -10,22 +10,25 @@ MOST = 1e9
 
 
 def text(value: object) -> str:
-    """Return the value. Raises TypeError if it is not a string."""
+    """Return the value. Raises TypeError if the value is not a string."""
     return _is(str, value)
 
 
 def text_or_none(value: object) -> str | None:
-    """Return the value. Raises TypeError if it is neither a string nor None."""
+    """Return the value. Raises TypeError if the value is neither a string nor None."""
     return None if value is None else _is(str, value)
 
 
 def whole_or_none(value: object) -> int | None:
-    """Return the value. Raises TypeError if it is neither an integer nor None."""
+    """Return the value. Raises TypeError if the value is neither an integer nor None."""
     return None if value is None else _is(int, value)
 
 
 def number(value: object) -> float:
-    """Return the value. Raises TypeError if it is not a number, and ValueError if it is too large or NaN."""
+    """Return the value.
+
+    Raises TypeError if the value is not a number, and ValueError if the value is too large or NaN.
+    """
     if isinstance(value, int | float) and -MOST <= value <= MOST:  # false for NaN too
         return value
     message = f"{value!r:.40} is not a number that the grader writes"

@@ -1,11 +1,11 @@
-"""Import numpy and catkin_pkg when they are first used, because that takes 0.1 s and most commands do not need them.
+"""Import numpy and catkin_pkg on first use, because the import takes 0.1 s and most commands do not need them.
 
 Use `from grader.common.lazy import np` in modules that many commands import but only a few commands use. A module that
-is first used in a child process is imported again in each child. `load_numpy` and `load_catkin_pkg` import it before
-the fork.
+is first used in a child process is imported again in each child. To avoid that, `load_numpy` and `load_catkin_pkg`
+import the modules before the fork.
 
-A thread may be importing numpy while another one forks (grader/submission/reader.py). The child would then wait forever
-for an import that never finishes. So code that forks must hold `IMPORTING`.
+If one thread forks while another thread imports numpy, the child process waits forever for an import that never
+finishes (grader/submission/reader.py). So code that forks must hold the lock `IMPORTING`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ IMPORTING = threading.RLock()
 
 
 class _Lazy:
-    """A stand-in that imports a module on first use. It may be used from any thread."""
+    """A stand-in that imports a module on first use. Any thread can use the stand-in."""
 
     def __init__(self, name: str) -> None:
         self._name = name

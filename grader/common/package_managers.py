@@ -1,6 +1,6 @@
 """Package managers: their names for the packages that the course needs, and their commands.
 
-Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
+Like machine.py, this module runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
 
 import os
@@ -34,7 +34,7 @@ class Manager(NamedTuple):
     install: str
     quiet: str
     names: Mapping[str, str]
-    """Debian's name for a package -> this package manager's name for it, if the two differ."""
+    """Maps Debian's name for a package to this package manager's name for it, if the two names differ."""
     python: str = ""
     """A pattern for the package of a Python with venv, with the version as 3.12 (`dotted`) or 312 (`joined`)."""
     headers: str = ""
@@ -109,7 +109,10 @@ MANAGERS = (
 
 
 def find_manager(path: str) -> Optional[Manager]:
-    """Return the package manager of this system. If several are installed, prefer the usual one for this system."""
+    """Return the package manager of this system.
+
+    If several package managers are installed, prefer the usual one for this system.
+    """
     found = [manager for manager in MANAGERS if find_program(manager.program, path)]
     if len(found) > 1:
         own = _systems()
@@ -118,7 +121,7 @@ def find_manager(path: str) -> Optional[Manager]:
 
 
 def find_program(name: str, path: str) -> Optional[str]:
-    """Return the path of a system program. Folders such as /sbin are searched as well as `path`."""
+    """Return the path of a system program. Folders such as /sbin are searched in addition to `path`."""
     return shutil.which(name, path=os.pathsep.join([path, *SYSTEM_PATH]))
 
 

@@ -1,6 +1,6 @@
 """One sentence for each system error, saying what to do: no disk space, no memory, no more files or processes.
 
-Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
+Like machine.py, this module runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
 
 import errno

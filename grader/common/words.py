@@ -46,7 +46,10 @@ def a_list(items: Sequence[str], last: str = "and", *, most: int = 12) -> str:
 
 
 def number(value: float, unlike: float | None = None) -> str:
-    """Return the number with four digits, or more if it would look equal to `unlike`. Spell out NaN and infinity."""
+    """Return the number with four digits, or with more digits if it would look equal to `unlike`.
+
+    Spell out NaN and infinity.
+    """
     if math.isnan(value):
         return "NaN (not a number)"
     if math.isinf(value):

@@ -17,6 +17,9 @@ def state() -> Path:
 
 
 def _folder(variable: str, default: str) -> Path:
-    """Return the grader's folder inside the one named by `variable`. The specification ignores relative paths."""
+    """Return the grader's folder inside the folder that the environment variable names.
+
+    As the specification demands, relative paths are ignored.
+    """
     named = os.environ.get(variable, "")
     return (Path(named) if named.startswith("/") else Path.home() / default) / "grader"

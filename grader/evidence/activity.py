@@ -25,11 +25,11 @@ def end_s(recording: Recording) -> float:
 
 
 def ended_at_start(recording: Recording) -> bool:
-    """Return whether the node exited on its own before it ran.
+    """Return whether the node exited on its own before it could do anything.
 
-    A node that raised an exception inside rclpy's spin did run, no matter how soon it exited. This depends neither on
-    the clock nor on the time of the first observation. Without such an exception, a node that exits in the initial
-    period (START_S) did not run.
+    A node that raised an exception inside rclpy's spin did run, no matter how soon it exited. This rule depends neither
+    on the clock nor on the time of the first observation. Without an exception inside spin, a node that exits in the
+    initial period (START_S) did not run.
     """
     end = recording.end
     return end.by == "itself" and end.t_s <= START_S and not spun(recording)
@@ -43,8 +43,9 @@ def spun(recording: Recording) -> bool:
 def commands(recording: Recording) -> tuple[Command, ...]:
     """Return the commands that arrived before SIGINT, in the order of arrival.
 
-    If all of them arrived at the very start, return an empty tuple. Commands that are published before discovery is
-    over are usually lost. Their arrival depends on the machine, and a report must not depend on that.
+    If all commands arrived at the very start, return an empty tuple. Commands that are published before discovery is
+    over are usually lost. Whether such commands arrive depends on the machine, and a report must not depend on the
+    machine.
     """
     until = end_s(recording)
     found = tuple(command for command in recording.commands if command.t_s < until)

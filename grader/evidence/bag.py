@@ -21,7 +21,9 @@ _VERSION: Literal[9] = 9
 
 
 def write_bag(folder: Path, messages: Sequence[Message], prefixes: Iterable[Path]) -> None:
-    """Write the messages in order to a new folder. `prefixes` contain the .msg files of types unknown to rosbags.
+    """Write the messages in order to a new folder.
+
+    The folders in `prefixes` contain the .msg files of types that the library rosbags does not know.
 
     The timestamp is the arrival time on the trial's clock (ns), or 0 for messages from before the scenario. Messages
     that arrived at the same instant are a nanosecond apart, because readers sort by timestamp.

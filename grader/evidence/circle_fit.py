@@ -32,8 +32,8 @@ def fit_circle(x: Floats, y: Floats) -> Circle | None:
 
     `x` and `y` have the shape (N,). The result is None if a coordinate is NaN. The fit is algebraic, with Taubin's
     constraint, which does not shrink short arcs: G. Taubin, "Estimation of planar curves, surfaces and nonplanar space
-    curves defined by implicit equations", IEEE Trans. PAMI 13 (1991) 1115-1138. It is computed from singular values as
-    in N. Chernov, "Circular and Linear Regression" (2010), sections 5.9 and 5.10.
+    curves defined by implicit equations", IEEE Trans. PAMI 13 (1991) 1115-1138. The fit is computed from singular
+    values as in N. Chernov, "Circular and Linear Regression" (2010), sections 5.9 and 5.10.
     """
     if len(x) < 3 or not (np.isfinite(x).all() and np.isfinite(y).all()):
         return None

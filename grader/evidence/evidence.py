@@ -164,7 +164,7 @@ class Evidence:
 
     @cached_property
     def command_arrivals(self) -> Measured:
-        """The arrivals of these commands, and the intervals between them."""
+        """The arrivals of the commands before SIGINT, and the intervals between these arrivals."""
         return measure_arrivals(self.recording, (command.t_s for command in self.commands))
 
     @cached_property
@@ -184,7 +184,7 @@ class Evidence:
     def recording(self) -> Recording:
         """The recording of this trial.
 
-        Only checks of the stage "trial" may use it, since they are not judged without it.
+        Only checks of the stage "trial" may use the recording, since other checks are also judged without a recording.
         """
         if self.run.recording is None:
             message = "a check of a trial was judged without a recording"
@@ -194,7 +194,7 @@ class Evidence:
     def called(self, id_: str) -> Called:
         """Return the result of the call with this id.
 
-        Only checks of a trial without a simulator may use it.
+        Only checks of a trial without a simulator may use this result.
         """
         found = [each for each in self.run.called or () if each.id == id_]
         if not found:
@@ -204,7 +204,7 @@ class Evidence:
 
     @property
     def bench(self) -> BenchResult:
-        """The result of the student's tests. Only checks of a trial that runs tests may use it."""
+        """The result of the student's tests. Only checks of a trial that runs tests may use this."""
         if self.run.bench is None:
             message = "a check of tests was judged without their result"
             raise ValueError(message)
@@ -212,7 +212,7 @@ class Evidence:
 
     @property
     def built(self) -> Build:
-        """The build. Only checks of the stages "build" and "trial" may use it."""
+        """The result of the build. Only checks of the stages "build" and "trial" may use the result."""
         if self.build is None:
             message = "a check of a build was judged without a build"
             raise ValueError(message)
@@ -228,7 +228,10 @@ class Evidence:
 
 
 def _seen_by(spec: TrialSpec, run: Run, specs: tuple[TrialSpec, ...]) -> Run:
-    """Return the result of a trial from the viewpoint of one of its nodes. The other nodes count as the grader's."""
+    """Return the result of a trial from the viewpoint of one of its nodes.
+
+    The trial's other nodes count as nodes of the grader.
+    """
     recording = run.recording
     if recording is None:
         return run

@@ -1,4 +1,4 @@
-"""Whether something other than velocity commands moved the turtle, judged by its effect rather than its name.
+"""Find out from the movement itself whether something other than velocity commands moved the turtle.
 
 turtlesim moves a turtle in each frame by its velocities alone. A frame in which the turtle moved differently, or with a
 turning speed that no command set, shows a teleport, a reset or a rotate_absolute goal.
@@ -46,7 +46,7 @@ def first_driven(recording: Recording) -> int:
 
 
 def _moved(recording: Recording, first: int) -> bool:
-    """Return whether a frame from this one on shows a movement that the velocities or commands do not explain."""
+    """Return whether this frame or a later frame shows a movement that the velocities or commands do not explain."""
     frames = recording.frames
     stop = int(np.searchsorted(frames.t_s, activity.end_s(recording), side="right"))
     begin = recording.start if first == 0 else None

@@ -1,8 +1,8 @@
 """A node that crashed, but whose process took so long to exit that Ctrl-C was sent first.
 
 On a busy machine, a process may need longer to exit after an uncaught exception than a trial in simulated time lasts.
-The same submission must always get the same outcomes. So the outcome depends on the exception, not on the order of
-these events.
+The same submission must always get the same outcomes. So the outcome depends on the exception, not on whether the
+process exited before or after Ctrl-C.
 """
 
 from __future__ import annotations
@@ -20,7 +20,10 @@ TOP = re.compile(r'\s*File ".*", line \d+, in <module>')
 
 
 def with_crash_first(recording: Recording) -> Recording:
-    """Return the recording. After an uncaught exception before Ctrl-C, the node counts as having exited by itself."""
+    """Return the recording.
+
+    If it shows an uncaught exception before Ctrl-C, the node counts as having exited on its own.
+    """
     end, stderr = recording.end, recording.stderr
     if end.by == "itself" or end.out_of is not None:
         return recording

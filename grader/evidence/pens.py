@@ -22,7 +22,7 @@ class PenSpan:
 
 
 def pen_spans(recording: Recording, turtle: str = "turtle1") -> list[PenSpan]:
-    """Return the pens of a turtle in order. The first one is the pen with which turtlesim creates every turtle."""
+    """Return the pens of a turtle in order. The first pen is the pen with which turtlesim creates every turtle."""
     changes = [each for each in recording.pens if each.turtle == turtle]
     begins = [-math.inf, *(each.t_s for each in changes)]
     pens = [Pen(), *(Pen(each.color, each.width, each.down) for each in changes)]

@@ -135,7 +135,7 @@ def check_free(folder: Path) -> None:
 def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
     """Read an archive.
 
-    `read_exercise` is called with the path of its exercise.toml and returns the exercise to judge by.
+    `read_exercise` is called with the path of the archive's exercise.toml, and returns the exercise with its checks.
 
     Raises:
         UsageError: the folder is not an archive that this version of the grader can read.

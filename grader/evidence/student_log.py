@@ -22,7 +22,7 @@ class Format:
     text: str
 
     def pattern(self) -> re.Pattern[str]:
-        """Return the pattern that a whole line must match. Its groups capture the numbers."""
+        """Return the pattern that a whole line must match. The groups of the pattern capture the numbers."""
         parts, at = [], 0
         for match in FIELD.finditer(self.text):
             digits = match["digits"]

@@ -28,7 +28,7 @@ class Announcement:
 
     @property
     def names(self) -> list[str]:
-        """The words of the text."""
+        """The announced names, which are the words of the text."""
         return self.text.split()
 
 
@@ -43,7 +43,7 @@ def announcements(recording: Recording, topic: str) -> list[Announcement]:
 
 
 def _text(data: bytes) -> str:
-    """Return the characters of a serialized String. In CDR, its length includes a zero byte at the end."""
+    """Return the characters of a serialized String. In CDR, the length of a String includes a zero byte at the end."""
     if len(data) < HEADER:
         return ""
     (length,) = struct.unpack_from("<I", data, HEADER - 4)

@@ -25,8 +25,9 @@ STRAIGHT_RAD = 1e-9
 class Trajectory:
     """The trajectory up to SIGINT, with one step per frame.
 
-    `x` and `y` (m) have the shape (N + 1,) and begin with the start position. The others have the shape (N,): `t_s` is
-    the time (s), `turn` is the change of the heading (rad), and `wall` says whether the simulator clamped the position.
+    `x` and `y` (m) have the shape (N + 1,) and begin with the start position. The other arrays have the shape (N,):
+    `t_s` is the time (s), `turn` is the change of the heading (rad), and `wall` says whether the simulator had to keep
+    the turtle inside the canvas.
     """
 
     x: Floats
@@ -57,7 +58,7 @@ class Trajectory:
 
     @property
     def wall_s(self) -> float:
-        """The time at which the turtle first touched a wall (s). The turtle must have touched one."""
+        """The time at which the turtle first touched a wall (s). Call this only if the turtle touched a wall."""
         return float(self.t_s[int(self.wall.argmax())])
 
     @cached_property
@@ -76,7 +77,10 @@ class Trajectory:
 
     @property
     def turns(self) -> float:
-        """The number of turns about the centre of that circle, positive if counter-clockwise; 0 if there is none."""
+        """The number of turns about the centre of the fitted circle, positive if counter-clockwise.
+
+        Without a circle, the number is 0.
+        """
         return 0.0 if self.circle is None else turns_about(*self.points, self.circle.x, self.circle.y)
 
     @property
@@ -103,7 +107,10 @@ class Trajectory:
 
 
 def driven_from(recording: Recording) -> Pose:
-    """Return the pose of the turtle before the first command. Only a call by the submission can have changed it."""
+    """Return the pose of the turtle before the first command.
+
+    Only a call by the submission can have changed this pose.
+    """
     before, frames = _before_driving(recording), recording.frames
     if not before:
         return recording.start

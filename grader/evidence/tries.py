@@ -13,7 +13,7 @@ Result = Literal["passes", "further", "refuted"]
 class Try:
     """One try: the check and its diagnosis, the result, and the change that was tried.
 
-    `difference` is a unified diff. It is for instructors, because it gives the solution away.
+    `difference` is a unified diff for instructors only, because the diff gives the solution away.
     """
 
     check: str
@@ -24,9 +24,9 @@ class Try:
 
 @dataclass(frozen=True)
 class Tries:
-    """All tries of one submission. `behind` counts the causes that appeared only after others had been fixed.
+    """All tries of one submission. `behind` counts the causes that appeared only after other causes had been fixed.
 
-    `stopped` says why some changes were not tried. It is empty if all of them were.
+    `stopped` says why some changes were not tried. `stopped` is empty if all changes were tried.
     """
 
     made: tuple[Try, ...] = ()

@@ -44,8 +44,8 @@ class Arc:
     def deviations(self) -> tuple[float, float, float]:
         """Return the standard deviations of centre x, centre y and radius (m) of the best fit to such points.
 
-        They follow from the noise through the Cramér-Rao bound, as in N. Chernov, "Circular and Linear Regression"
-        (2010), section 7.2.
+        These deviations follow from the noise through the Cramér-Rao bound, as in N. Chernov, "Circular and Linear
+        Regression" (2010), section 7.2.
         """
         angle = self.angles()
         slopes = np.column_stack((np.cos(angle), np.sin(angle), np.ones_like(angle)))

@@ -1,4 +1,4 @@
-"""Shell completion of steps. It reads the names of the course's folders but parses no files."""
+"""Shell completion of steps. This module reads the names of the course's folders but parses no files."""
 
 from __future__ import annotations
 
@@ -12,5 +12,5 @@ def steps(incomplete: str) -> list[str]:
 
 
 def steps_or_next(incomplete: str) -> list[str]:
-    """Return the same steps, and "next", for `grader start`."""
+    """Return the steps that begin with the typed text, and "next", for `grader start`."""
     return [*steps(incomplete), *(["next"] if "next".startswith(incomplete) else [])]

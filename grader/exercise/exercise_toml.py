@@ -7,15 +7,15 @@ The keys in `schema = 2`:
   that exercises/ must fail).
 - `[numbers]` has file (the name of a TOML file in the package), and lists of possible values. Each student gets one
   value from each list. In a `[[check]]`, the value `{ own = "radius_m" }` stands for the student's own value.
-- `[[trial]]` has id, executable, node, duration_s, start, rename, pose_every, pose_from_s, answers_after_s, targets
-  and alone_s. A `[[trial]]` whose node runs in another trial has id, executable, node and beside. `[[trial.drive]]` has
+- `[[trial]]` has id, executable, node, duration_s, start, rename, pose_every, pose_from_s, answers_after_s, targets and
+  alone_s. A `[[trial]]` whose node runs in another trial has id, executable, node and beside. `[[trial.drive]]` has
   from_s, linear_x_m_s and angular_z_rad_s (one number, or the two limits of a random number). `[[trial.call]]` has
   at_s, service, type and request (a table with fields), `[[trial.set]]` has at_s, parameter, value and also.
   `[trial.parameters]` and `[trial.params_file]` map the names of parameters to their values.
-- A `[[trial]]` without a simulator has id and either function and `[[trial.points]]`, or executable and
-  `[[trial.bag]]` (calls_toml.py).
+- A `[[trial]]` without a simulator has id and either function and `[[trial.points]]`, or executable and `[[trial.bag]]`
+  (calls_toml.py).
 - `[[check]]` has id, kind, points, needs (ids), title, trial (the default is the first one), hidden, and the parameters
-  of its kind. It may have a preset instead (presets.py).
+  of its kind. A `[[check]]` may have a preset instead (presets.py).
 - `[[hint]]` has text, checks (the ids of the checks that it helps with) and part (a letter). The hints begin with a
   nudge and end with almost the whole answer.
 """
@@ -213,7 +213,10 @@ def _check(
 
 
 def _param(value: object, allowed: Allowed, numbers: NumbersSpec | None) -> Param | None:
-    """Return the value of a parameter, or None if it is not allowed. All possible student values must be allowed."""
+    """Return the value of a parameter, or None if it is not allowed.
+
+    All values that students can have must be allowed.
+    """
     if isinstance(value, dict) and "own" in value:
         options = numbers.options.get(value["own"], ()) if numbers is not None and len(value) == 1 else ()
         fits = bool(options) and all(allowed.accept(option) is not None for option in options)

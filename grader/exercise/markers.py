@@ -93,7 +93,7 @@ def solved(text: str, syntax: Syntax, name: str) -> str:
 class _Reader:
     """Reads a text line by line.
 
-    `self.inside` is the kind of the open block, and `self.since` is the line where it began.
+    `self.inside` is the kind of the open block, and `self.since` is the line where that block began.
     """
 
     def __init__(self, syntax: Syntax, name: str) -> None:

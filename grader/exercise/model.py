@@ -21,7 +21,7 @@ FILE_NAME = "exercise.toml"
 
 @dataclass(frozen=True)
 class CheckSpec:
-    """One `[[check]]`. `params` are its parameters. Their names contain their units (`rate_hz`, `radius_m`).
+    """One `[[check]]`. The names of the parameters `params` contain their units (`rate_hz`, `radius_m`).
 
     `trial` is the id of the trial that the check judges.
     """
@@ -97,8 +97,8 @@ class TrialSpec:
     Without an executable, the simulator runs alone. With `calls`, neither a simulator nor a node runs: the function or
     the executable is called once for each call listed. With `tests`, the student's tests run without a simulator.
 
-    If `beside` names another trial (an id), the node of this one runs there as an additional node, and the scenario is
-    the same. The checks of this trial judge the other one from the viewpoint of the additional node.
+    If `beside` names another trial (an id), the node of this trial runs in that trial as an additional node, with the
+    same scenario. The checks of this trial judge that trial from the viewpoint of the additional node.
     """
 
     id: str
@@ -146,7 +146,7 @@ class Exercise:
     """Whether the package has a separate workspace because it is not the package that grows from step to step."""
 
     def trial(self, id_: str) -> TrialSpec:
-        """Return the trial with this id. Raises KeyError if there is none."""
+        """Return the trial with this id. Raises KeyError if no trial has this id."""
         return {trial.id: trial for trial in self.trials}[id_]
 
     def beside(self, id_: str) -> tuple[TrialSpec, ...]:
@@ -157,7 +157,7 @@ class Exercise:
 def course_folder() -> Path:
     """Return the folder course/: next to the package in a checkout, or inside the package in an installed wheel.
 
-    Raises MachineError if there is none.
+    Raises MachineError if the folder course/ does not exist.
     """
     package = Path(__file__).resolve().parents[1]
     for folder in (package.parent / "course", package / "course"):
@@ -168,6 +168,9 @@ def course_folder() -> Path:
 
 
 def catalogue(course: Path | None = None) -> dict[str, Path]:
-    """Return all exercises of the course (id -> exercise.toml) in the order of the lessons. No file is parsed."""
+    """Map the id of each exercise of the course to its exercise.toml, in the order of the lessons.
+
+    No file is parsed.
+    """
     folder = course_folder() if course is None else course
     return {file.parent.name: file for file in sorted(folder.glob(f"*/{FILE_NAME}"))}

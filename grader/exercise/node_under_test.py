@@ -1,7 +1,7 @@
-"""A node under test, which the student's tests must accept (the right node) or reject (a broken node).
+"""A node under test, which the student's tests must accept (the correct node) or reject (a broken node).
 
 The node reads the turtle's pose, and publishes velocity commands that keep the turtle away from the walls. A broken
-node differs from the right one in at least one field.
+node differs from the correct node in at least one field.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ SIDE_M = 11.0
 
 @dataclass(frozen=True, kw_only=True)
 class Behaviour:
-    """The behaviour of a node. The defaults are those of the right node."""
+    """The behaviour of a node. The defaults are the behaviour of the correct node."""
 
     topic: str = "/turtle1/cmd_vel"
     type: str = MESSAGES[0]
@@ -54,10 +54,10 @@ class NodeUnderTest:
 
 @dataclass(frozen=True)
 class TestsSpec:
-    """The table `[trial.tests]`: the student's tests run on the right node and on every broken node.
+    """The table `[trial.tests]`: the student's tests run on the correct node and on every broken node.
 
-    The tests import the class `name` from `module`. They run `right_runs` times on the right node. `duration_s` (s) is
-    the maximum duration of one run.
+    The tests import the class `name` from `module`. The tests run `right_runs` times on the correct node. `duration_s`
+    (s) is the maximum duration of one run.
     """
 
     __test__ = False  # keeps pytest from collecting this class

@@ -1,8 +1,8 @@
 """Students' own numbers: the values of an exercise that differ between students, derived from the student's id.
 
 The table `[numbers]` in exercise.toml lists the possible values. `grader start` writes the student's own values to a
-TOML file in the package. They depend only on the id, so a check can detect numbers that were changed. If a parameter of
-a check is `{ own = "radius_m" }`, it gets the student's own value.
+TOML file in the package. The values depend only on the student's id, so a check can detect values that were changed. If
+a parameter of a check is `{ own = "radius_m" }`, it gets the student's own value.
 """
 
 from __future__ import annotations
@@ -51,15 +51,18 @@ class OwnNumbers:
 def normal_id(student: str) -> str:
     """Return the normal form of an id, which ignores case, character width and extra spaces.
 
-    This form is used for comparing ids and for drawing numbers. Otherwise, students could try different spellings of
-    their ids until they get the same numbers as a friend.
+    The normal form is used for comparing ids and for choosing the numbers. Without this form, students could try
+    different spellings of their ids until they get the same numbers as a friend.
     """
     folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", student).casefold())
     return " ".join(folded.split())
 
 
 def draw_numbers(spec: NumbersSpec, student: str) -> OwnNumbers:
-    """Return the numbers of a student. They are the same on every machine and for every spelling (see `normal_id`)."""
+    """Return the numbers of a student.
+
+    The numbers are the same on every machine and for every spelling of the student's id (see `normal_id`).
+    """
     drawn = hashlib.sha256(f"{spec.step} {normal_id(student)}".encode("utf-8", "surrogatepass")).digest()
     values = {
         name: options[byte % len(options)] for byte, (name, options) in zip(drawn, spec.options.items(), strict=False)

@@ -51,7 +51,10 @@ PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
         "stop": {"kind": "stops", "title": "The node stops on Ctrl-C", "needs": ["{trial}start"], "within_s": 3.0},
     },
 }
-"""Name -> the name of each check -> the keys of the check. Points are 0 unless exercise.toml sets them."""
+"""Maps the name of a preset to the names of its checks, and each check to its keys.
+
+Points are 0 unless exercise.toml sets them.
+"""
 
 _KEYS = ("preset", "trial", "title")
 
@@ -69,7 +72,10 @@ def expand(checks: object, trials: object) -> Any:  # noqa: ANN401 - TOML, not y
 
 
 def problem_of(table: Mapping[str, Any], trials: Sequence[Mapping[str, Any]]) -> str | None:
-    """Describe the mistake in a preset; empty if there is no mistake, None if the check is not a preset."""
+    """Describe the mistake in a preset.
+
+    Return an empty string if there is no mistake, and None if the check is not a preset.
+    """
     if "preset" not in table:
         return None
     name = table["preset"]

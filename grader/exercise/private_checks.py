@@ -59,7 +59,7 @@ def sources_of(ids: set[str], checks: Path | None) -> dict[str, Sources]:
     """Return the files of the exercises with these ids. `checks` is the folder of private checks.
 
     Raises:
-        UsageError: the folder has no checks, none for these exercises, or some for an unknown exercise.
+        UsageError: the folder has no checks, no checks for these exercises, or checks for an unknown exercise.
     """
     files = catalogue()
     private = _private_files(checks, files) if checks else {}

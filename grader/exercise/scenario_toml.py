@@ -26,12 +26,12 @@ PARAMETER_TYPES = (
     (float, 3, "double_value"),
     (str, 4, "string_value"),
 )
-"""Type of a parameter -> its number in rcl_interfaces/msg/ParameterType, and the field that contains its value."""
+"""Maps the type of a parameter to its number in rcl_interfaces/msg/ParameterType and the field for its value."""
 CALLS = ("function", "points", "bag")
 """The keys of a `[[trial]]` without a simulator."""
 MAX_DURATION_S = 600.0
 MOST_TARGETS = 5
-"""The canvas has no room for more turtles in an unambiguous order (grader/trial/target_places.py)."""
+"""The maximum number of targets, since more would have no unambiguous order on the canvas (target_places.py)."""
 MAX_SPEED = 10.0
 """The maximum speed (m/s, rad/s)."""
 
@@ -62,7 +62,7 @@ def _trial(table: Table, package: str) -> TrialSpec:
 
 
 def _with_scenario(table: Table, trial: TrialSpec, trials: tuple[TrialSpec, ...]) -> TrialSpec:
-    """Return the trial with the scenario of the trial that it is `beside`, if there is one."""
+    """Return the trial. If its key `beside` names another trial, it gets the scenario of that trial."""
     if not trial.beside:
         return trial
     ids = [each.id for each in trials if each.node and not each.beside and each.tests is None]

@@ -23,7 +23,7 @@ SETTING = (bool, int, float, str)
 
 
 def read_toml(data: bytes, name: str) -> dict[str, Any]:
-    """Return the tables of a TOML file. Raises UsageError if it is not TOML."""
+    """Return the tables of a TOML file. Raises UsageError if the file is not TOML."""
     try:
         return tomllib.loads(data.decode("utf-8"))
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
@@ -45,7 +45,10 @@ class Table:
         self.problems.append(f"{self.place}: {text}" if self.place else text)
 
     def _get(self, key: str, allowed: str, good: Callable[[object], bool], *, default: Any) -> Any:  # noqa: ANN401 (any value that `good` accepts)
-        """Return the value of the key if `good(value)`. Otherwise, record the mistake and return the default."""
+        """Return the value of the key if `good(value)` is true.
+
+        Otherwise, record the mistake and return the default.
+        """
         self.known.append(key)
         if key not in self.values:
             if default is None:
@@ -81,7 +84,7 @@ class Table:
     def limits(self, key: str, most: float) -> tuple[float, float]:
         """Return two finite numbers from -most to most, in ascending order.
 
-        A single number in the file counts as both.
+        A single number in the file counts as both limits.
         """
 
         def good(value: object) -> bool:

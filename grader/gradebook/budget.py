@@ -2,7 +2,7 @@
 
 nbgrader keeps every message in memory: as text, as Python objects, and in the notebook that it writes. Therefore, the
 budget limits the number of messages, their size in bytes, and the number of values in their JSON. For example,
-`[[],[],[]]` takes 30 times as much space in memory as it does as text.
+`[[],[],[]]` takes 30 times as much space in memory as in the message.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Budget:
 
 @dataclass
 class Account:
-    """The total of the messages from a kernel so far. `key` is the key that signs its messages."""
+    """The total of the messages from a kernel so far. `key` is the key that signs the kernel's messages."""
 
     key: bytes
     budget: Budget = Budget()
@@ -115,7 +115,7 @@ def _refuse(what: str = "data that is not a message of a kernel") -> NoReturn:
 
 
 def _writable(text: str) -> bool:
-    """Return whether the text can be encoded. This is not possible for half of a surrogate pair."""
+    """Return whether the text can be encoded, which is not possible for half of a surrogate pair."""
     try:
         text.encode()
     except UnicodeEncodeError:

@@ -24,7 +24,7 @@ def mark(cell: NotebookNode, why: str) -> None:
 def honest(cell: NotebookNode) -> None:
     """Replace the result of a graded cell with an error if the result is not a valid number.
 
-    Without this, nbgrader would give full marks to a cell that has no output.
+    Without this replacement, nbgrader would give full marks to a cell that has no output.
     """
     about = cell.get("metadata", {}).get("nbgrader", {})
     if not about.get("grade") or cell.cell_type != "code" or ".points(" not in cell.source:

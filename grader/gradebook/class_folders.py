@@ -27,7 +27,7 @@ HANDED_IN = "handed-in"
 
 @dataclass(frozen=True)
 class ClassFolders:
-    """The folders of a class: nbgrader's course directory, and the grader's folders in it."""
+    """The folders of a class: nbgrader's course directory, and the grader's folders inside that directory."""
 
     course: Any
     config: Any
@@ -42,11 +42,11 @@ class ClassFolders:
         return Path(self.course.format_path(self.course.submitted_directory, student, step))
 
     def handed_in(self, student: str, step: str) -> Path:
-        """Return the folder of the same submission with the files from its notebook added."""
+        """Return the folder of a submission to which the files from its notebook have been added."""
         return Path(self.course.root) / CLASS / HANDED_IN / student / step
 
     def autograded(self, student: str, step: str) -> Path:
-        """Return the path of the notebook that autograde ran. The file may not exist."""
+        """Return the path of the notebook that autograde ran. It is possible that no such file exists."""
         return Path(self.course.format_path(self.course.autograded_directory, student, step)) / f"{step}.ipynb"
 
     def submissions(self, steps: Sequence[str]) -> list[tuple[str, str]]:

@@ -1,8 +1,9 @@
-"""The kernels of autograde. Each one runs in a cell (grader.sandbox), behind a relay with a budget (relay.py).
+"""The kernels of autograde.
 
-The cells of a notebook are student code. A sandbox cell has only a loopback network and separate disks, so the
-relay communicates with the kernel through pipes. Interrupts are sent as messages, because a signal would go to the
-relay.
+Each kernel runs in a sandbox cell (grader.sandbox), behind a relay with a budget (relay.py).
+
+The cells of a notebook are student code. A sandbox cell has only a loopback network and separate disks, so the relay
+communicates with the kernel through pipes. Interrupts are sent as messages, because a signal would go to the relay.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ SHOWN = ("stream", "display_data", "execute_result", "error", "update_display_da
 
 
 class ConfinedKernelManager(AsyncKernelManager):
-    """Starts a kernel in a cell. The kernel gets a copy of the folder `submission`."""
+    """Starts a kernel in a sandbox cell. The kernel gets a copy of the folder `submission`."""
 
     submission = Unicode("")
     trusted = Bool(default_value=False)
@@ -103,7 +104,10 @@ class ConfinedKernelManager(AsyncKernelManager):
 
 
 class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
-    """Runs a submitted notebook in a cell. If the kernel dies, the remaining cells of the notebook get an error."""
+    """Runs a submitted notebook in a sandbox cell.
+
+    If the kernel dies, the remaining cells of the notebook get an error.
+    """
 
     trust_submissions = Bool(
         default_value=False,
@@ -151,7 +155,7 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
         return self.km
 
     def preprocess_cell(self, cell: NotebookNode, resources: Any, index: int) -> tuple[NotebookNode, Any]:  # noqa: ANN401
-        """Run one cell if the kernel is still alive and time is left."""
+        """Run one notebook cell if the kernel is still alive and time is left."""
         if time.monotonic() >= self._until:
             self._end(f"The cells of the notebook took longer than {self.notebook_s} s.")
         if self._ended:

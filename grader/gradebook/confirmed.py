@@ -1,9 +1,9 @@
 """The scores that count in nbgrader's gradebook: manual grades, and scores that the grader has confirmed.
 
 The output of an autograded cell comes from a kernel that runs student code, so its score is provisional. For these
-cells, `autograde` writes 0 points and "needs manual grade" (unconfirmed.py). `grader gradebook sync` replaces them
-with the grader's scores. A score without a result from the grader is withheld: it becomes 0 points, and a person has
-to review it. Manual grades, extra credit and assignments of other courses stay unchanged.
+cells, `autograde` writes 0 points and "needs manual grade" (unconfirmed.py). `grader gradebook sync` replaces these 0
+points with the grader's scores. A score without a result from the grader is withheld: it becomes 0 points, and a person
+has to review it. Manual grades, extra credit and assignments of other courses stay unchanged.
 """
 
 from __future__ import annotations
@@ -54,7 +54,10 @@ def withhold_unconfirmed(
     steps: Collection[str] = (),
     unread: Collection[Name] = (),
 ) -> list[Unconfirmed]:
-    """Withhold every score that is not confirmed. Return the cells that are now worth 0 points, as in `unconfirmed`."""
+    """Withhold every score that is not confirmed.
+
+    Return the cells that are now worth 0 points, in the form of `unconfirmed`.
+    """
     for _, _, grade, _ in _doubts(gradebook, results, steps, unread):
         if grade.auto_score != 0.0 or grade.manual_score is None:
             withhold(grade)
@@ -70,8 +73,8 @@ def unconfirmed(
 ) -> list[Unconfirmed]:
     """Return the cells that no grader result confirms, by exercise and student, except those graded manually.
 
-    `steps` selects the exercises; if it is empty, all are used. `unread` are submissions that could not be read this
-    time, so their stored results do not count.
+    `steps` selects the exercises; if `steps` is empty, all exercises are used. `unread` are submissions that could not
+    be read this time, so their stored results do not count.
     """
     names: dict[tuple[str, str, str], list[str]] = {}
     for student, step, grade, why in _doubts(gradebook, results, steps, unread):
@@ -86,7 +89,7 @@ def _doubts(
     steps: Collection[str],
     unread: Collection[Name],
 ) -> Iterator[tuple[str, str, Any, str]]:
-    """Yield (student, exercise, nbgrader's grade, why it is not confirmed)."""
+    """Yield (student, exercise, nbgrader's grade, the reason why the grade is not confirmed)."""
     for student, step, submission in submissions_of(gradebook, steps):
         kept = None if (student, step) in unread else results.load(student, step)
         for grade in provisional_grades(submission):
@@ -108,7 +111,7 @@ def submissions_of(gradebook: Any, steps: Collection[str]) -> Iterator[tuple[str
 def provisional_grades(submission: Any) -> list[Any]:  # noqa: ANN401 - nbgrader's SubmittedAssignment
     """Return the grades that autograde reads from the output of a kernel: those of code cells without a solution.
 
-    The grades of the exercise's own notebook are first.
+    The grades of the exercise's own notebook come first.
     """
     step = submission.assignment.name
     grades = []

@@ -56,7 +56,7 @@ class BoundedAutograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore
     """Autograde, with `_Copying` as the base class that copies."""
 
     def init_destination(self, assignment_id: str, student_id: str) -> bool:
-        """Initialize the destination as in Autograde. An invalid time makes only this submission fail."""
+        """Initialize the destination as in Autograde. An invalid submission time makes only this submission fail."""
         read(readable.time_of, Path(self._format_source(assignment_id, student_id)))
         return bool(super().init_destination(assignment_id, student_id))
 
@@ -107,7 +107,7 @@ class BoundedCollect(ExchangeCollect):  # type: ignore[misc, unused-ignore]
         super().copy_files()
 
     def do_copy(self, src: str, dest: str, log: Any = None) -> None:  # noqa: ANN401 - as the base class
-        """Copy one submission. If this fails, log a warning and continue with the others."""
+        """Copy one submission. If this fails, log a warning and continue with the other submissions."""
         with tempfile.TemporaryDirectory(prefix="collect-") as folder:
             safe = Path(folder, "submission")
             try:

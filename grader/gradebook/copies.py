@@ -16,7 +16,10 @@ MOST_REPORTED = 20
 
 
 def copy_of(submission: Path, copy: Path, *, notebooks: bool = True) -> tuple[str, ...]:
-    """Copy the regular files of a submission to `copy`, which may exist. Return why other entries were omitted."""
+    """Copy the regular files of a submission to `copy`, which may already exist.
+
+    Return the reasons why other entries were omitted.
+    """
     found = read(tree.read_folder, submission)
     files = {path: data for path, data in found.files.items() if notebooks or not path.endswith(".ipynb")}
     for path in files if copy.exists() else ():

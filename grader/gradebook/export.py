@@ -1,4 +1,4 @@
-"""`nbgrader export`: export only confirmed scores, and report the others."""
+"""`nbgrader export`: export only confirmed scores, and report the unconfirmed ones."""
 
 from __future__ import annotations
 

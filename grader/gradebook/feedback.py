@@ -23,11 +23,11 @@ Resources = dict[str, Any]
 
 
 class HideHiddenTests(ClearHiddenTests):  # type: ignore[misc, unused-ignore]
-    """Removes hidden tests from the feedback: their lines, and all outputs of a kernel that has run them.
+    """Removes from the feedback the lines of hidden tests, and all outputs of a kernel that has run hidden tests.
 
-    Student code in the kernel can store the source of a hidden test and print it below any cell: below a
-    later cell, below an instructor's cell with a hook, below an earlier cell by updating its display, or in a widget.
-    Therefore, the outputs of a notebook with hidden tests are not shown.
+    Student code in the kernel can store the source of a hidden test and print it below any cell: below a later cell,
+    below an instructor's cell with a hook, below an earlier cell by updating its display, or in a widget. Therefore,
+    the outputs of a notebook with hidden tests are not shown.
     """
 
     def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:
@@ -66,7 +66,7 @@ def _points(cell: NotebookNode) -> str:
 
 
 class GraderReasons(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
-    """After a sync, replaces the kernel's output below cells with checks with the grader's reasons."""
+    """After a sync, replaces the kernel's output below each cell that contains a check by the grader's reasons."""
 
     def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:
         """Replace the outputs if the submission was synced."""

@@ -1,4 +1,4 @@
-"""`grader class new DIR`: create a course folder in which nbgrader's commands work as in its manual."""
+"""`grader class new DIR`: create a course folder in which nbgrader's commands work as its manual describes."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ def _together(exercise: Exercise, submitted: Path) -> Submission | None:
 
 
 def _worked_on(exercise: Exercise, notebook: bytes) -> list[Part]:
-    """Return the files that the notebook's cells write, except those that are still the starting point."""
+    """Return the files that the notebook's cells write, except files that are still as in the starting point."""
     try:
         cells = json.loads(notebook)["cells"]
         sources = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
@@ -71,7 +71,7 @@ def _start(exercise: Exercise, path: str) -> str | None:
 
 
 def _with(exercise: Exercise, files: Mapping[str, bytes], parts: list[Part]) -> dict[str, bytes] | None:
-    """Return the files with the parts that count, or None if no part counts."""
+    """Return the files, completed by the notebook's parts that count, or None if no part counts."""
     whole = {path: data for path, data in files.items() if not path.endswith(".ipynb")}
     if parts and exercise.package and not any(path.rpartition("/")[2] in PACKAGE_FILES for path in whole):
         start = tree.read_folder(starting_point(exercise)).files

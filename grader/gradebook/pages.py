@@ -1,7 +1,7 @@
 """Limit nbgrader's pages to the text and pictures of a student's notebook, without scripts or styles.
 
-nbgrader shows feedback and the formgrader in the browser of an instructor, who is logged in to Jupyter. Its
-templates insert HTML from Markdown and outputs into these pages without escaping it.
+nbgrader shows feedback and the formgrader in the browser of an instructor, who is logged in to Jupyter. nbgrader's
+templates insert HTML from Markdown and outputs into these pages without escaping the HTML.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ ATTRIBUTES = {**bleach.sanitizer.ALLOWED_ATTRIBUTES, "span": ["class"], "div": [
 
 
 def safe_html(markdown: str) -> str:
-    """Render Markdown as HTML with only the tags and attributes above."""
+    """Render Markdown as HTML with only the allowed tags and attributes."""
     return str(bleach.clean(markdown2html(markdown), tags=TAGS, attributes=ATTRIBUTES, strip=True))
 
 

@@ -3,9 +3,9 @@
     python -m grader.gradebook.relay FOLDER
 
 FOLDER contains `order.json` (the command to start) and nbgrader's connection file. The relay creates its sockets there.
-Only the caller has access to this folder. It is not visible in the cell. Messages from the kernel arrive through a pipe
-(grader.notebook.bridge). If a budget or a limit is exceeded, the relay stops the cell, writes the reason to `why`, and
-exits. It also exits when its standard input is closed, which happens when nbgrader exits.
+Only the caller has access to this folder. The folder is not visible in the cell. Messages from the kernel arrive
+through a pipe (grader.notebook.bridge). If a budget or a limit is exceeded, the relay stops the cell, writes the reason
+to `why`, and exits. The relay also exits when its standard input is closed, which happens when nbgrader exits.
 """
 
 from __future__ import annotations
@@ -153,7 +153,7 @@ class Relay:
 
 
 def run(order: Order, info: Mapping[str, Any]) -> str:
-    """Run the cell until it exits. Return the reason why it was stopped, or an empty string."""
+    """Run the cell until it exits. Return the reason why the cell was stopped, or an empty string."""
     limits = Limits()
     over: list[str] = []
     with ExitStack() as stack:

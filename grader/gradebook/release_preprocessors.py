@@ -1,6 +1,6 @@
 """Additional steps of `nbgrader generate_assignment`: starting points instead of "YOUR CODE HERE", and stripped files.
 
-Both steps raise an error if something is wrong. nbgrader then removes its output, so that no solution is released.
+Both steps raise an error if something is wrong, so that nbgrader removes its output and no solution is released.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ class StripSolutions(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
     def preprocess_cell(
         self, cell: NotebookNode, resources: Resources, cell_index: int
     ) -> tuple[NotebookNode, Resources]:
-        """Strip a cell. Raises UsageError if its markers are wrong."""
+        """Strip the solution from a cell. Raises UsageError if the markers in the cell are wrong."""
         name = f"{resources['nbgrader']['notebook']}.ipynb, cell {cell_index + 1}"
         cell.source = solved_away(cell.source, cell.cell_type, solution=utils.is_solution(cell), name=name)
         return cell, resources
 
 
 class ReleaseFiles(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
-    """Strips the other files of the step, which nbgrader has copied unchanged."""
+    """Strips the solutions from the other files of the step, which nbgrader has copied unchanged."""
 
     def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:
         """Create the same release folder as `grader release`. nbgrader writes the notebook afterwards."""

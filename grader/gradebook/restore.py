@@ -1,7 +1,8 @@
 """Restore the instructor's cells of a submitted notebook before it is graded.
 
-nbgrader trusts the metadata of a submission and stops if it is invalid. This step uses only the id of a cell. The
-gradebook determines the points and whether the cell is locked. Missing locked cells are added again.
+nbgrader trusts the metadata of a submission, and stops if the metadata is invalid. Of this metadata, the step uses only
+the id of each cell. The gradebook determines the points and whether the cell is locked. Missing locked cells are added
+again.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""`grader gradebook sync` and `compare`: the scores that count, and kernel scores that differ from them.
+"""`grader gradebook sync` and `compare`: write the scores that count, and list kernel scores that differ.
 
-Scores from a kernel are provisional. These functions grade the submitted package in the sandbox and write the scores
-to nbgrader's gradebook through its API. A check that the grader cannot judge is worth 0 points and needs a
-manual grade (confirmed.py). A manual grade is never changed.
+Scores from a kernel are provisional. These functions grade the submitted package in the sandbox and write the scores to
+nbgrader's gradebook through its API. A check that the grader cannot judge is worth 0 points and needs a manual grade
+(confirmed.py). A manual grade is never changed.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class Difference:
     """A check on which the kernel and the grader disagree.
 
     `kernel` is None if the notebook has no score for the check. `grader` is None if the grader has not confirmed a
-    score. The check is then worth 0 points, for the reason `why`.
+    score. A check without a confirmed score is worth 0 points, for the reason `why`.
     """
 
     student: str
@@ -154,7 +154,7 @@ def compare(folders: ClassFolders, steps: Sequence[str]) -> list[Difference]:
 def _put_together(
     folders: ClassFolders, submissions: Sequence[tuple[str, str]]
 ) -> tuple[tuple[Found, ...], dict[tuple[str, str], str]]:
-    """Return the submissions to grade, and the reasons why others could not be read."""
+    """Return the submissions to grade, and the reasons why other submissions could not be read."""
     found: list[Found] = []
     why: dict[tuple[str, str], str] = {}
     for student, step in submissions:
@@ -181,7 +181,7 @@ def _of_the_machine(error: BaseException | None) -> bool:
 
 
 def _in_words(error: BaseException) -> str:
-    """Return the error on one line, with its cause if it has one."""
+    """Return the error on one line, together with the error's cause, if any."""
     cause = error.__cause__ or error
     text = (cause.strerror if isinstance(cause, OSError) else str(cause)) or type(cause).__name__
     return shorten(text.rstrip("."), 120)

@@ -29,7 +29,9 @@ _SPEED_M_S = 1.0
 def call(
     spec: TrialSpec, ros: Ros, package: str, tree: bytes, *, seed: int | None, in_cell: bool
 ) -> tuple[Called, ...]:
-    """Make the calls of this trial with the package in this install tree (a tar stream). `seed` draws the noise.
+    """Make the calls of this trial with the package in this install tree (a tar stream).
+
+    The random noise depends on `seed`.
 
     Raises:
         MachineError: the sandbox does not work.

@@ -42,7 +42,7 @@ WALL_TRIALS = 3
 
 @dataclass(frozen=True)
 class Clock:
-    """The clock of a trial. `why` is the reason that the report gives."""
+    """The clock of a trial. `why` is the reason for this clock in the report."""
 
     name: ClockName
     why: str
@@ -90,22 +90,22 @@ def first_clock(choice: ClockChoice, evidence: Evidence) -> Clock:
 
 
 def stops_at_doubt(choice: ClockChoice) -> bool:
-    """Return whether a trial in simulated time stops as soon as the node may follow wall time (rule 3)."""
+    """Return whether a trial in simulated time stops at the first sign that the node follows wall time (rule 3)."""
     return choice == "auto"
 
 
 def repeats(doubt: WallTimeNeeded) -> bool:
-    """Return whether a trial is repeated in simulated time if this doubt was the first to stop it (rule 3)."""
+    """Return whether a trial that was stopped for this reason is first repeated in simulated time (rule 3)."""
     return doubt.by_chance
 
 
 def after_doubt(doubt: WallTimeNeeded) -> Clock:
-    """Return the clock for repeating a trial that a doubt stopped (rule 3)."""
+    """Return the clock for repeating a trial that stopped because the node seemed to follow wall time (rule 3)."""
     return Clock("wall", str(doubt))
 
 
 def after_simulated(choice: ClockChoice, attempt: Attempt) -> Clock | None:
-    """Return the clock for repeating a trial in simulated time (rule 4), or None if that trial counts."""
+    """Return the clock for repeating a trial that ran in simulated time (rule 4), or None if that trial counts."""
     if choice == "simulated" or not any(outcome.finding.near_edge for outcome in attempt.outcomes):
         return None
     return Clock("wall", "a measured value is near the edge of its tolerance, where wall time decides")

@@ -1,7 +1,7 @@
 """Prove causes: change a copy of the submission at the place named by a failed check, and run it again.
 
-A fixed cause stays fixed while the next one is tried. This also reveals mistakes that were hidden by other mistakes.
-The copy is built and run in the cell, like the submission itself, and in simulated time.
+Each fix stays in the copy while the next cause is tried, which also reveals mistakes that were hidden by other
+mistakes. Like the submission itself, the copy is built and run in the sandbox. It runs in simulated time.
 """
 
 from __future__ import annotations
@@ -46,13 +46,13 @@ def explain(
 ) -> Tries:
     """Try to fix the causes of the failed outcomes. `build_s` is the duration of the build (s).
 
-    `give_up` is called before each try. No more changes are tried once it returns true.
+    `give_up` is called before each try. Once `give_up` returns true, no more changes are tried.
     """
     return _Explaining(evidence, outcomes, MOST_F * (build_s + BARE_NODE_S), regrade, give_up).run()
 
 
 def part_of(exercise: Exercise, check: str) -> Exercise:
-    """Return the exercise with only the checks of this check's trial, all checks that they need, and their trials."""
+    """Return the exercise with only the checks of this check's trial, all checks that these need, and their trials."""
     specs = {spec.id: spec for spec in exercise.checks}
     trial = specs[check].trial
     wanted: dict[str, CheckSpec] = {}
@@ -116,7 +116,7 @@ class _Explaining:
         return Tries(tuple(self.made), len(self.behind), stopped)
 
     def _share(self, target: Outcome, found: Mapping[str, Outcome], diff: str) -> set[Key]:
-        """Record the result for other checks with the same cause. Return the keys that need no separate try."""
+        """Record the result of a try for other checks with the same cause. Return the keys of these checks."""
         same = [
             each
             for each in self.outcomes

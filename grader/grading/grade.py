@@ -1,4 +1,7 @@
-"""Grade one submission: build it, run it, and judge what was observed. This module connects all the other parts."""
+"""Grade one submission: build it, run it, and judge what was observed.
+
+This module connects all other parts of the grader.
+"""
 
 from __future__ import annotations
 
@@ -89,9 +92,10 @@ def explained(
     trial: Callable[..., Trial] = Trial,
     give_up: Callable[[], bool] = lambda: False,
 ) -> Graded:
-    """Return the graded submission, with its causes proved, if possible, by trying to fix them.
+    """Return the graded submission. If possible, each cause is proved by fixing it in a copy.
 
-    `give_up` is called before each try. No more changes are tried once it returns true. `build` holds the last build.
+    `give_up` is called before each try. Once `give_up` returns true, no more changes are tried. `build` holds the last
+    build.
     """
     report, evidence = graded.report, graded.evidence
     if not can_be_explained(graded):
@@ -103,7 +107,7 @@ def explained(
         return grade(exercise, submission, again, build=build, trial=in_simulated_time).report.outcomes
 
     def in_simulated_time(plan: Plan, *rest: Any, **more: Any) -> Trial:  # noqa: ANN401 - the arguments of Trial
-        """Create a trial in simulated time. If the fixed node may follow wall time, the try is inconclusive."""
+        """Create a trial in simulated time. If the fixed node seems to follow wall time, the try is inconclusive."""
         if plan.clock == "wall":
             raise MachineError("A try is made in simulated time only.")  # noqa: EM101
         return trial(dataclasses.replace(plan, stop_at_doubt=True), *rest, **more)
@@ -211,7 +215,10 @@ class _Grading:
 
 
 def _longest_first(evidence: Evidence) -> list[Evidence]:
-    """Return a view of the evidence per trial of a node, longest first, so that no processor is idle at the end."""
+    """Return the evidence from the viewpoint of each trial with a node.
+
+    The longest trial comes first, so that no processor is idle at the end.
+    """
     specs = evidence.exercise.trials
     views = [evidence.from_trial(spec.id) for spec in specs if spec.tests is None and not spec.beside]
     return sorted(views, key=lambda view: -view.trial.scenario.duration_s)

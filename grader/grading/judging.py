@@ -1,6 +1,6 @@
 """Judging: judge a submission while it is being graded: first the files, then the build, then each trial.
 
-All of this reads files that a student wrote, so it runs in a child process (submission/reader.py). If that process
+Judging reads files that a student wrote, so it runs in a child process (submission/reader.py). If the child process
 exceeds its limits, the submission is at fault: every check becomes `unreadable`, and nothing more is read.
 """
 
@@ -64,7 +64,10 @@ class Judging:
         return judge_so_far(self.known(evidence), {})
 
     def first_clock(self, evidence: Evidence) -> Clock:
-        """Return the clock with which this trial starts. After the build, it depends on the installed entry point."""
+        """Return the clock with which this trial starts.
+
+        After the build, the clock depends on the installed entry point.
+        """
         return self._clocks.get(evidence.trial.id, UNREAD)
 
     def known(self, evidence: Evidence) -> Evidence:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 class Options:
     """How to grade a submission. `in_cell` confines the student's code (grader.sandbox).
 
-    `trials_at_once` is the number of trials of an exercise that run at the same time. Set it to 1 if other
+    `trials_at_once` is the number of trials of an exercise that run at the same time. Set this number to 1 if other
     submissions are graded at the same time.
     """
 

@@ -1,4 +1,4 @@
-"""The plan of a trial: its clock, start and inputs (drawn from the seed), and the topics that the checks need."""
+"""The plan of a trial: its clock, start and inputs (based on the seed), and the topics that the checks need."""
 
 from __future__ import annotations
 
@@ -46,6 +46,6 @@ def plan_of(evidence: Evidence, clock: ClockName, *, choice: ClockChoice, seed: 
 
 
 def _topics(checks: Sequence[CheckSpec]) -> tuple[str, ...]:
-    """Return the topics that these checks need: every parameter that begins with a slash, since it may be a topic."""
+    """Return the topics that these checks need: every parameter that begins with a slash, since this may be a topic."""
     names = {value for check in checks for value in check.params.values() if isinstance(value, str)}
     return tuple(sorted(name for name in names if name.startswith("/")))

@@ -1,4 +1,4 @@
-"""Run the student's tests during the build, on the right node and on the broken ones."""
+"""Run the student's tests during the build, on the correct node and on the broken nodes."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Tests:
             bench.close()
 
     def start(self, views: Iterable[Evidence]) -> None:
-        """Start the tests of each of these trials. They need no build."""
+        """Start the tests of each of these trials, which do not need the build."""
         for view in views:
             spec = view.trial.tests
             assert spec is not None
@@ -62,7 +62,9 @@ class Tests:
             bench.start()
 
     def run(self, evidence: Evidence, settled: Mapping[str, Finding]) -> Attempt:
-        """Wait for the runs of this trial. Return the evidence with their result, judged after the `settled` findings.
+        """Wait for the test runs of this trial. Return the evidence with the test results, and the judgement.
+
+        Checks whose findings are `settled` are not judged again.
 
         Raises:
             MachineError: the sandbox, pytest or rclpy does not work.

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class Trials:
-    """Creates and runs the trials of one submission. `tree` is its install tree (a tar stream)."""
+    """Creates and runs the trials of one submission. `tree` is the submission's install tree (a tar stream)."""
 
     def __init__(
         self,
@@ -68,7 +68,9 @@ class Trials:
                 self._ahead.run(view.trial.id, _package(view), view.trial.executable, self.tree)
 
     def run(self, evidence: Evidence, settled: Mapping[str, Finding]) -> Attempt:
-        """Run this trial. Return the evidence with the recording that counts, judged after the `settled` findings.
+        """Run this trial. Return the evidence with the recording that counts, and the judgement.
+
+        Checks whose findings are `settled` are not judged again.
 
         If the simulator fails once, the machine may be at fault. If it fails twice, the node is the cause. A node that
         kept the simulator busy for minutes does not get a second trial, because a class would have to wait too long.
@@ -105,7 +107,7 @@ class Trials:
         return self._attempt(evidence.with_run(Run(dataclasses.replace(recording, why=ALONE.why))), {})
 
     def _begun(self, evidence: Evidence) -> Runs | None:
-        """Return the trial that was started during the build, or None if there is none with the right clock."""
+        """Return the trial that was started during the build, or None if no trial with the right clock was started."""
         fits = self._started.get(evidence.trial.id) == self._judging.first_clock(evidence).name
         return self._ahead.trial(evidence.trial.id) if fits else None
 
@@ -134,7 +136,7 @@ class Trials:
         return policy.that_counts(attempts)
 
     def _run_simulated(self, evidence: Evidence, trial: Runs, clock: Clock, settled: Mapping[str, Finding]) -> Attempt:
-        """Run the trial in simulated time, and once more if the doubt that stopped it may be due to chance.
+        """Run the trial in simulated time, and once more if the trial may have been stopped by chance.
 
         Raises:
             WallTimeNeeded: wall time must decide.

@@ -1,8 +1,8 @@
 """Turns: graders share the machine, but a trial that is repeated in wall time has the machine to itself.
 
-This applies only to the grader processes of one user. The locks use flock(2), so the kernel releases them when a
-process is killed. A grader that needs the machine to itself holds a second lock, the turnstile, while it waits. Later
-graders stop there, so it does not wait forever.
+Only grader processes of the same user take turns. The locks use flock(2), so the kernel releases them when a process is
+killed. A grader that needs the machine to itself holds a second lock, the turnstile, while it waits. Graders that
+arrive later stop at the turnstile, so the waiting grader does not wait forever.
 """
 
 from __future__ import annotations

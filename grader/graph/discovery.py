@@ -1,4 +1,4 @@
-"""Create a node for one verb, and wait until it has discovered the whole graph, up to a deadline."""
+"""Create a node for one verb of `ros2`, and wait until it has discovered the whole graph, up to a deadline."""
 
 from __future__ import annotations
 
@@ -88,7 +88,10 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
 
 
 def _leave_shared_memory_out(profile: Path) -> None:
-    """Set the variables for the profile. loopback.xml explains why these nodes avoid the shared memory of LOCALHOST."""
+    """Set the variables for the profile.
+
+    The file loopback.xml explains why these nodes do not use LOCALHOST with its shared memory.
+    """
     if os.environ.get(_RANGE) == "LOCALHOST" and os.environ.get(_PROFILE) == str(FASTDDS_PROFILE):
         os.environ.update({_RANGE: "SYSTEM_DEFAULT", _PROFILE: str(profile)})
 
@@ -101,7 +104,8 @@ def _this_machine_only() -> bool:
 def _leave_generator_out() -> None:
     """Import rosidl_generator_py without its templates and parser, which take a seventh of a verb's start-up time.
 
-    Message modules need only one small function from it. The package itself omits the rest if `em` is not installed.
+    Message modules need only one small function of rosidl_generator_py, which itself omits the rest if `em` is not
+    installed.
     """
     if "em" not in sys.modules:
         sys.modules["em"] = None  # type: ignore[assignment]
@@ -189,7 +193,8 @@ def _graph(node: Node) -> object:
 def _complete(node: Node, waited_s: float, named_s: float | None = None) -> bool:
     """Return whether all participants on this machine have been discovered, including the names of their nodes.
 
-    Participants on other machines cannot be counted. The time to wait for them is `named_s`, if the user chose one.
+    Participants on other machines cannot be counted. The time to wait for such participants is `named_s`, if the user
+    set this time.
     """
     expected = _participants(node.context.get_domain_id())
     endpoints: list[Any] = []

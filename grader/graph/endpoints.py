@@ -28,7 +28,10 @@ class Observed:
 
 
 def observe(node: Node) -> Observed:
-    """Return the part that `node` has discovered so far; call `discovery.settle` first to get the whole graph."""
+    """Return the part of the graph that `node` has discovered so far.
+
+    To get the whole graph, call `discovery.settle` first.
+    """
     own = node.get_fully_qualified_name()
     names = [_full(name, namespace) for name, namespace in node.get_node_names_and_namespaces()]
     ends = []

@@ -29,11 +29,11 @@ class Endpoint(Protocol):
 
     @property
     def node(self) -> str:
-        """The full name of its node, such as "/draw_circle"."""
+        """The full name of the endpoint's node, such as "/draw_circle"."""
 
     @property
     def topic(self) -> str:
-        """The full name of its topic, such as "/turtle1/cmd_vel"."""
+        """The full name of the endpoint's topic, such as "/turtle1/cmd_vel"."""
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,7 @@ _BOX = 'shape=box, fillcolor="#fff8e1", color="#ef6c00"'
 
 
 def to_dot(drawn: Picture) -> str:
-    """Return the graph in DOT, the language of Graphviz. Each node and each topic gets a unique name in it."""
+    """Return the graph in DOT, the language of Graphviz. Each node and each topic gets a unique name in DOT."""
     names = {node.name for node in drawn.nodes}
     lines = []
     for node in drawn.nodes:

@@ -1,4 +1,4 @@
-"""A snapshot of the graph: nodes, topics, services and actions as plain data. It does not need rclpy."""
+"""A snapshot of the graph: nodes, topics, services and actions as plain data. This module does not need rclpy."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class NodeLook:
 
 @dataclass(frozen=True)
 class EndpointLook:
-    """A publisher or a subscription. `text` is the output of `topic info --verbose` for it."""
+    """A publisher or a subscription. `text` is the output of `topic info --verbose` for this endpoint."""
 
     topic: str
     publishes: bool
@@ -51,7 +51,7 @@ class Look:
     actions: tuple[Named, ...] = ()
 
     def node_names(self, *, all_of_them: bool = False) -> list[str]:
-        """The full names of all nodes, sorted. If several nodes have the same name, it appears several times."""
+        """The full names of all nodes, sorted. A name that several nodes have appears several times."""
         return [node.name for node in self.nodes if all_of_them or not _hidden_node(node.name)]
 
     def topic_names(self, *, all_of_them: bool = False) -> list[str]:
@@ -67,7 +67,7 @@ class Look:
         return [end for end in self.endpoints if end.topic == topic and end.publishes == publishes]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the look as data that can be written as JSON."""
+        """Return the snapshot as data that can be written as JSON."""
         return asdict(self)
 
 
@@ -82,7 +82,7 @@ def types_of(found: tuple[Named, ...], name: str) -> tuple[str, ...]:
 
 
 def from_dict(data: dict[str, Any]) -> Look:
-    """Return the look that `to_dict` converted to data."""
+    """Return the snapshot that `to_dict` converted to data."""
     return Look(
         nodes=tuple(
             NodeLook(node.pop("name"), **{key: _named(value) for key, value in node.items()}) for node in data["nodes"]

@@ -20,11 +20,14 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 WIDE = 120
-"""The number of columns that a terminal needs to show both files side by side. Below it, a unified diff is shown."""
+"""The number of columns that a terminal needs to show both files side by side.
+
+On a narrower terminal, a unified diff is shown.
+"""
 
 
 def print_solution(step: str, folder: Path | None, console: Console) -> None:
-    """Print where the learner's files differ from the solution, and the answers to "To think about".
+    """Print where the learner's files differ from the solution, and answer the questions under "To think about".
 
     Raises:
         UsageError: the step has not passed yet.

@@ -15,7 +15,10 @@ if TYPE_CHECKING:
 
 @contextmanager
 def single_keys() -> Iterator[Callable[[], str] | None]:
-    """Yield a function that waits for a key and returns it ("" at the end of input), or None without a terminal."""
+    """Yield a function that waits for a key and returns it ("" at the end of input).
+
+    If there is no terminal, yield None.
+    """
     if not sys.stdin.isatty():
         yield None
         return

@@ -1,6 +1,6 @@
 """The progress of a learner in the steps of the course.
 
-It is stored outside the package, so that deleting the package does not delete it.
+The progress is stored outside the package, so that deleting the package does not delete the progress.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ DEFAULT_WORKSPACE = Path("~/ros2_ws")
 
 @dataclass(frozen=True)
 class StepProgress:
-    """The progress in one step: the best points so far, the maximum of that report, and whether the step has passed."""
+    """The progress in one step: the best points so far, the points possible, and whether the step has passed."""
 
     points: float = 0.0
     max: float = 0.0
@@ -52,7 +52,7 @@ class Progress:
     steps: dict[str, StepProgress] = field(default_factory=dict)
 
     def step(self, name: str) -> StepProgress:
-        """Return the progress in a step. It is empty for a step that was not started."""
+        """Return the progress in a step. The progress is empty for a step that was not started."""
         return self.steps.get(name, StepProgress())
 
     def with_step(self, name: str, step: StepProgress) -> Progress:
@@ -90,7 +90,7 @@ def state_file() -> Path:
 
 
 def load(workspace: Path) -> Progress:
-    """Return the progress in a workspace. It is empty at first.
+    """Return the progress in a workspace. At first, the progress is empty.
 
     Raises:
         MachineError: the file is damaged or cannot be read.

@@ -39,7 +39,7 @@ class Program:
 
 
 def program_of(step: str | None, executable: str | None, workspace: Path | None) -> Program:
-    """Return the program to run. By default, this is the program of the current step.
+    """Return the program to run. The default is the program of the current step.
 
     Raises:
         UsageError: the step has no node, was not started, or does not run this executable.
@@ -67,8 +67,9 @@ def executables(exercise: Exercise) -> list[str]:
 def run(program: Program, *, view: bool) -> int:
     """Build the package, and run the program with a turtlesim until Ctrl-C. Return the exit code for the user.
 
-    `view` shows the turtle on a page. If a turtlesim is already running, the program drives its turtle. The exit code
-    is 0 after Ctrl-C, and 1 if the build failed or the node exited with an error. Their output is on the terminal.
+    `view` shows the turtle on a page. If a turtlesim is already running, the program drives the turtle of that
+    turtlesim. The exit code is 0 after Ctrl-C, and 1 if the build failed or the node exited with an error. The output
+    of the build and the node appears on the terminal.
     """
     from grader.ros import shell
 
@@ -159,7 +160,7 @@ def _turtlesim(env: Mapping[str, str], *, view: bool) -> Iterator[None]:
     """Run turtlesim, and stop it at the end of the `with` block.
 
     Raises:
-        MachineError: it did not start; it has printed the reason.
+        MachineError: turtlesim did not start; it has printed the reason.
     """
     options = ["--view"] if view else []
     with tempfile.TemporaryDirectory(prefix="grader-run-") as place:

@@ -38,7 +38,7 @@ class Begun:
 
 
 def start(step: str, folder: Path | None, *, student: str | None = None, fresh: bool = False) -> Begun:
-    """Start a step, or the next one ("next"), in the workspace.
+    """Start a step in the workspace. The name "next" stands for the step after the current one.
 
     Raises:
         UsageError: the step does not exist, or `step` is "next" and the current step has not passed yet.
@@ -203,7 +203,7 @@ def _next(known: progress.Progress) -> Exercise:
 
 
 def _waiting(known: progress.Progress) -> list[str]:
-    """Return the steps after the current one that have not passed yet, or all of them if they have all passed."""
+    """Return the steps after the current one that have not passed yet, or all these steps if all have passed."""
     names = list(catalogue())
     later = names[names.index(known.current or names[0]) + 1 :]
     return [name for name in later if not known.step(name).passed] or later

@@ -1,4 +1,4 @@
-"""Watch a folder and grade it after every save.
+"""Watch a folder, and grade the submission in it after every save.
 
 While the learner edits, the simulator and the launcher of the next trial are already waiting, and the last build is
 kept. Therefore, the verdict after a save takes little longer than the trial itself.
@@ -89,7 +89,7 @@ class Events:
             yield happened
 
     def waiting(self) -> bool:
-        """Return whether an event has not been yielded yet."""
+        """Return whether there is an event that has not been yielded yet."""
         return not self._queue.empty()
 
     def press(self, key: str) -> None:
@@ -102,14 +102,14 @@ class Events:
         self._queue.put(Happened("end"))
 
     def _watch(self, folder: Path, stop: Event) -> None:
-        """Watch the folder at this path. If it is replaced, watch the new folder at this path."""
+        """Watch the folder at this path. If the folder is replaced, watch the new folder at this path."""
         while not stop.is_set():
             watched = _identity(folder)
             if watched is None or not self._watch_one(folder, watched, stop):
                 stop.wait(_LOOK_MS / 1000)
 
     def _watch_one(self, folder: Path, watched: tuple[int, int], stop: Event) -> bool:
-        """Watch the folder until the path leads to another one. Return False if it could not be watched."""
+        """Watch the folder until the path leads to another folder. Return False if the folder could not be watched."""
         begins = True
         try:
             for changes in watch(
@@ -192,7 +192,10 @@ class Watched:
         return graded
 
     def prepare(self) -> None:
-        """Start the simulator and the launcher of the next trial. This keeps two processors busy for half a second."""
+        """Start the simulator and the launcher of the next trial.
+
+        The start keeps two processors busy for half a second.
+        """
         if self._warm is None and self._wanted is not None:
             plan, ros = self._wanted
             trial = Trial(plan, ros, in_cell=self._options.in_cell)
@@ -212,8 +215,9 @@ class Watched:
     def prove(self, tell: Callable[[str], None], give_up: Callable[[], bool]) -> Graded | None:
         """Prove the causes of the last report by trying to fix them in a copy (see `grader.grading.explain`).
 
-        Before each attempt, `give_up` returns whether other work must be done first. If so, the next call starts again.
-        Return the report with the results of the attempts, or None if they have changed nothing.
+        Before each attempt, `give_up` returns whether other work must be done first. If other work must be done first,
+        the next call of `prove` starts again. Return the report with the results of the attempts, or None if the
+        attempts have changed nothing.
         """
         if self._unproved is None or give_up():
             return None

@@ -69,9 +69,9 @@ class _Screen:
         """Whether a key has printed text since the last report, which must stay on the screen."""
 
     def show(self, events: Events, notice: str) -> steps.Begun | None:
-        """Show reports until the learner quits or starts another step. Return this step, or None to quit.
+        """Show reports until the learner quits or starts another step. Return the other step, or None to quit.
 
-        The first report clears the screen. `notice` is printed below it.
+        The first report clears the screen. `notice` is printed below that report.
         """
         self._grade(notice)
         self._prove(events)
@@ -115,7 +115,7 @@ class _Screen:
         self.watched.prepare()
 
     def _prove(self, events: Events) -> None:
-        """Try the causes of the last report while no event waits, and show the results."""
+        """Try to fix the causes of the last report while no event waits, and show the results."""
         if not self.watched.unproved:
             return
         with self._working() as tell:

@@ -83,11 +83,11 @@ def work_folder(exercise: Exercise, workspace: Path) -> Path:
 def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = False) -> Started:
     """Add the files of the step that are missing in the workspace. With `fresh`, older work is moved away first.
 
-    If the numbers of the step differ for each student, those of `student` are written.
+    If the numbers of the step differ for each student, the numbers of `student` are written.
 
     Raises:
         UsageError: the workspace is not a folder.
-        MachineError: it cannot be written.
+        MachineError: the workspace cannot be written.
     """
     source = starting_point(exercise)
     if exercise.package:
@@ -160,7 +160,7 @@ def _tasks(theirs: Path, mine: Path) -> tuple[str, ...]:
 
 
 def _ignored(folder: Path) -> Path:
-    """Create a folder in the workspace that colcon ignores, for packages that it must not build with the learner's."""
+    """Create a folder in the workspace that colcon ignores, for packages other than the learner's."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / IGNORE_MARKER).touch()
     return folder

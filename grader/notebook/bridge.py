@@ -1,4 +1,4 @@
-"""Start the kernel in its cell, and forward its messages through the cell's standard input and output.
+"""Start the kernel in its sandbox cell, and forward messages through the cell's standard input and output.
 
     python -m grader.notebook.bridge FOLDER WORKSPACE
 

@@ -91,7 +91,7 @@ def ended(text: str) -> str:
 
 
 def counts(file: str | None, start: str | None) -> Literal["cell", "file"]:
-    """Return the text that counts: the file's if the student has changed the file, or else the cell's.
+    """Return the text that counts: that of the file if the student has changed the file, or else that of the cell.
 
     `file` is the text of the file, and `start` is its text in the starting point. Both are None for a missing file.
     """
@@ -101,7 +101,7 @@ def counts(file: str | None, start: str | None) -> Literal["cell", "file"]:
 
 
 def starting_text(exercise: Exercise, path: str) -> str | None:
-    """Return the text of a file in the step's starting point, or None if the file is not part of it."""
+    """Return the text of a file in the step's starting point, or None if the file is not part of that."""
     file = workspace.starting_point(exercise) / path
     try:
         return file.read_text("utf-8")
@@ -112,8 +112,8 @@ def starting_text(exercise: Exercise, path: str) -> str | None:
 def begin(exercise: Exercise, folder: Path, *, alone: bool = False) -> tuple[str, ...]:
     """Add the step's files that are missing in `folder`, next to the notebook. Return the paths that were written.
 
-    A missing package is copied from the learner's workspace, or else from the starting point. With
-    `alone`, it is always copied from the starting point. Files of the student are never overwritten.
+    A missing package is copied from the learner's workspace, or else from the starting point. With `alone`, the package
+    is always copied from the starting point. Files of the student are never overwritten.
     """
     source, target = workspace.starting_point(exercise), folder
     if not exercise.package:
@@ -131,7 +131,7 @@ def begin(exercise: Exercise, folder: Path, *, alone: bool = False) -> tuple[str
 
 
 def _own_numbers(spec: NumbersSpec, source: Path, target: Path) -> tuple[str, ...]:
-    """Write the student's individual numbers if the file still has those of the starting point."""
+    """Write the student's individual numbers if the file still contains the numbers of the starting point."""
     file = target / spec.file
     if file.read_bytes() != (source / spec.file).read_bytes():
         return ()

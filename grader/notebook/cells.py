@@ -45,7 +45,10 @@ class Cells:
                 print(f"Added next to this notebook: {a_list(written)}.")
 
     def lesson(self, line: str) -> None:
-        """`%lesson`: show the lesson of this notebook's step. `%lesson 03-circle-publisher`: of that step."""
+        """`%lesson`: show the lesson of this notebook's step.
+
+        `%lesson 03-circle-publisher`: show the lesson of that step.
+        """
         exercise = find_exercise(line.strip()) if line.strip() else self.current()
         if not grading():
             lesson.show(exercise.folder / "lesson.md")
@@ -71,7 +74,7 @@ class Cells:
             run_below([str(Path(sys.prefix, "bin", "ros2")), *shlex.split(line)])
 
     def current(self) -> Exercise:
-        """Return the step of this notebook. Raises UsageError before `%step`."""
+        """Return the step of this notebook. Raises UsageError if `%step` has not been run."""
         if self.exercise is None:
             message = "The notebook's step is not set. Run the first cell, for example `%step 03-circle-publisher`."
             raise UsageError(message)

@@ -35,7 +35,7 @@ GRACE_S = 5.0
 
 @dataclass(frozen=True)
 class Verdict:
-    """The verdict. Jupyter shows it as a table with pictures, and other programs as text."""
+    """The verdict, which Jupyter shows as a table with pictures, and other programs show as text."""
 
     exercise: str
     text: str
@@ -45,7 +45,10 @@ class Verdict:
     reasons: Mapping[str, str]
 
     def points(self, check: str) -> float:
-        """Return the points of a check and print its reason. Raises UsageError if the check does not exist."""
+        """Return the points of a check, and print the reason for them.
+
+        Raises UsageError if the check does not exist.
+        """
         if check not in self.all_points:
             message = f"{self.exercise} has no check {check!r}. Its checks are {', '.join(self.all_points)}."
             raise UsageError(message)
@@ -67,7 +70,7 @@ class Checking:
         self._known: dict[tuple[str, str], Verdict] = {}
 
     def check(self, step: str | None = None) -> Verdict:
-        """Grade the package (or the answers) next to this notebook. The default is the step of the notebook.
+        """Grade the package (or the answers) next to this notebook. The default exercise is the step of the notebook.
 
             check("03-circle-publisher").points("circle")
 

@@ -1,4 +1,4 @@
-"""A kernel in a cell (grader.sandbox), for `nbgrader autograde`.
+"""A Jupyter kernel in a sandbox cell (grader.sandbox), for `nbgrader autograde`.
 
     python -m grader.notebook.confined_kernel FOLDER WORKSPACE -f CONNECTION_FILE     what bridge.py starts
 

@@ -25,7 +25,7 @@ _SIZE = 4
 
 
 class FrameError(ValueError):
-    """The data is not a frame, or the frame is too large. The message states which."""
+    """The data is not a frame, or the frame is too large. The error message states which of the two happened."""
 
 
 def packed(channel: int, parts: Sequence[bytes]) -> bytes:

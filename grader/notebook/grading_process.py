@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 def opened(exercise: Exercise, folder: Path) -> Submission:
-    """Open the submission next to the notebook in `folder`. Raises UsageError if the folder has none."""
+    """Open the submission next to the notebook in `folder`. Raises UsageError if there is no submission."""
     if not exercise.package:
         return open_answers(folder)
     own = folder / exercise.package

@@ -15,7 +15,7 @@ _LOCAL_LINK = re.compile(r"(?<!!)\[([^\]]+)\]\((?!https?://|#)[^)\s]+\)")
 def pieces(lesson: Path) -> list[str | Path]:
     """Return the lesson as a sequence of Markdown texts and image files. Links to other files become plain text.
 
-    A notebook may be copied without other files, so links to them could be broken.
+    If a notebook is copied without other files, links to those files no longer work.
     """
     # Every second part is the text of the group.
     split = _IMAGE.split(lesson.read_text(encoding="utf-8"))

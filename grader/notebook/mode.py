@@ -1,11 +1,11 @@
-"""Whether a notebook is executed by nbgrader or inside a cell, which changes the behaviour of the magics."""
+"""Find out whether nbgrader executes the notebook, and whether the kernel runs inside a sandbox cell."""
 
 from __future__ import annotations
 
 import os
 
 CONFINED = "GRADER_CONFINED"
-"""Set in a kernel that runs inside a cell (grader.sandbox), where another cell cannot be started."""
+"""Set in a kernel that runs inside a sandbox cell (grader.sandbox), where another sandbox cell cannot be started."""
 
 
 def grading() -> bool:
@@ -14,5 +14,5 @@ def grading() -> bool:
 
 
 def confined() -> bool:
-    """Return whether this kernel runs inside a cell."""
+    """Return whether this kernel runs inside a sandbox cell."""
     return bool(os.environ.get(CONFINED))

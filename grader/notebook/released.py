@@ -106,7 +106,7 @@ def _release(cell: Cell, name: str) -> None:
 
 
 def _checksum(source: str, kind: str, about: dict[str, Any]) -> str:
-    """Return nbgrader's checksum. It shows whether a cell was changed, but it does not protect a secret."""
+    """Return nbgrader's checksum. The checksum shows whether a cell was changed, but it is not secret."""
     locked = not about["solution"] and (about["grade"] or about["locked"])
     parts = [source, kind, str(about["grade"]), str(about["solution"]), str(locked), about["grade_id"]]
     if about["grade"]:

@@ -35,7 +35,7 @@ START_S = 30.0
 
 
 class Simulator:
-    """A running turtlesim that is shown below the cell. Nothing is run under nbgrader."""
+    """A running turtlesim that is shown below the cell. Nothing is run when nbgrader executes the notebook."""
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
@@ -185,7 +185,7 @@ def _command(executable: str) -> tuple[list[str], Path]:
 
 
 def environment() -> dict[str, str]:
-    """Return the kernel's environment with ROS 2, which kernels other than the course's kernel do not have."""
+    """Return the kernel's environment, with ROS 2 added if the kernel is not the kernel of the course."""
     from grader.ros.installation import find_ros, users_environment
     from grader.ros.underlay import with_turtlesim
 

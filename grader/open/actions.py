@@ -1,4 +1,4 @@
-"""The actions that a page can request. Each is a method with the JSON of the request as its argument."""
+"""The actions that a page can request. Each action is a method with the JSON of the request as its argument."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Actions:
-    """The actions of a page. Each returns data for JSON, or raises GraderError with a message for the page.
+    """The actions of a page. Each action returns data for JSON, or raises GraderError with a message for the page.
 
     `tell` sends a command of grading.py to the process that grades.
     """
@@ -40,7 +40,7 @@ class Actions:
         return {**threaded, "turtlesim": self.turtlesim, "node": self.node}
 
     def start(self, request: Request) -> object:
-        """Start a step, or the next one. Files of the learner are not overwritten."""
+        """Start a step, or the step after the current one. Files of the learner are not overwritten."""
         step = request.get("step")
         if not isinstance(step, str) or (step != "next" and step not in catalogue()):
             message = "The step does not exist."
@@ -55,7 +55,7 @@ class Actions:
         return {"text": hints.hint(None, self.workspace)}
 
     def rerun(self, _: Request) -> object:
-        """Request another grading."""
+        """Ask the grader to grade once more."""
         self.tell(RERUN)
         return {}
 

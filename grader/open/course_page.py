@@ -67,7 +67,10 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
 
 @contextmanager
 def _page(place: Place, workspace: Path | None, *, opens: bool) -> Iterator[socket.socket]:
-    """Start the process that serves the page, and yield the connection to it. Closing the connection stops it."""
+    """Start the process that serves the page, and yield the connection to it.
+
+    Closing the connection stops the process.
+    """
     ours, theirs = socket.socketpair()
     with ours, theirs:
         given = {

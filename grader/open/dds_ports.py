@@ -1,4 +1,4 @@
-"""The UDP ports of DDS participants on this machine: the ports of a node in a cell, and those that it may reach.
+"""The UDP ports of DDS participants on this machine: the ports of a node in a cell, and the ports that it may reach.
 
 A participant has two ports that depend on the domain and on its number (DDSI-RTPS, 9.6.1.1). In addition, the reader
 that rmw_fastrtps has for ros_discovery_info gets the first free port from 7000 on, in every domain.
@@ -31,7 +31,8 @@ def participant_ports(domain: int, number: int) -> tuple[int, int]:
 class Ports:
     """`own` contains the sockets outside the cell for data to the node. `others` contains the ports of other nodes.
 
-    Inside the cell, `others` are in use. Therefore, the node gets the same ports there as `own`.
+    Inside the cell, the ports `others` are in use. Therefore, the node gets the same port numbers inside the cell as
+    `own` has outside.
     """
 
     own: tuple[socket.socket, ...]
@@ -41,8 +42,8 @@ class Ports:
 def reserve(domain: int) -> Ports:
     """Bind the ports of one participant on this machine, and return them.
 
-    The numbers are high, because nodes use the lowest free ports. A second participant of the same program cannot
-    be reached, but hardly any program has one.
+    The port numbers are high, because nodes use the lowest free ports. A second participant of the same program cannot
+    be reached, but hardly any program has a second participant.
 
     Raises:
         MachineError: all ports are in use.

@@ -30,7 +30,7 @@ _HERE = socket.inet_aton(HOST)
 
 
 class Relay:
-    """Forwards datagrams while `selector` is served: call the data of each ready key.
+    """Forwards datagrams while the caller serves `selector`: it must call the data of each ready key.
 
     `inside` contains sockets in the cell's network, bound to `ports.others` in this order.
     """

@@ -1,7 +1,7 @@
 """The server of the page: lessons, verdict, updates and actions, protected by the view's guard.
 
-Lessons are public. The learner's data needs the token: in a header, which no other site can send, or in
-the address of the connection for updates, whose Origin the guard checks.
+Lessons are public. A request for the learner's data must contain the token: in a header, which no other site can send,
+or in the address of the connection for updates, whose Origin the guard checks.
 """
 
 from __future__ import annotations
@@ -138,7 +138,10 @@ def _refused() -> Response:
 
 
 async def _wanted(request: Request) -> dict[str, Any]:
-    """Return the JSON object in the body. Raises OverflowError if it is too large, or ValueError for other data."""
+    """Return the JSON object in the body.
+
+    Raises OverflowError if the body is too large, or ValueError for other data.
+    """
     body = b""
     async for chunk in request.stream():
         body += chunk

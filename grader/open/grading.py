@@ -41,7 +41,7 @@ def run(desk: Desk, events: Events, workspace: Path | None) -> None:
 
 
 def _await_step(events: Events) -> bool:
-    """Wait until a step may have been started. Return False at the end of the events."""
+    """Wait for an event that may mean that a step was started. Return False at the end of the events."""
     return any(happened.key == STEP for happened in events)
 
 
@@ -73,7 +73,7 @@ def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
 
 
 def _prove(desk: Desk, events: Events, watched: Watched) -> None:
-    """Try the causes of the verdict while no event waits, and show the results."""
+    """Try to fix the causes of the verdict while no event waits, and show the results."""
     proved = watched.prove(desk.tell, events.waiting)
     if proved is not None:
         desk.judged(proved.report)

@@ -23,7 +23,7 @@ OWN = Path(__file__).parent / "assets"
 
 
 class LessonPages:
-    """Finds the content for the path of a request. A path never refers to a path on the disk."""
+    """Finds the content for the path of a request. The path of a request is never used as a path on the disk."""
 
     def __init__(self) -> None:
         self._read: tuple[object, list[Lesson]] = (None, [])
@@ -47,7 +47,7 @@ class LessonPages:
         return pictures(among).get(path)
 
     def _lessons(self) -> list[Lesson]:
-        """Return the lessons. Read them again if a file has changed."""
+        """Return the lessons, which are read again if a file has changed."""
         files = [file.parent / LESSON for file in catalogue().values()]
         stamp = [(file, file.stat().st_mtime_ns) for file in files if file.is_file()]
         if stamp != self._read[0]:

@@ -1,4 +1,4 @@
-"""A cell in which a node can run, with a relay to the other nodes of this machine (dds_relay.py)."""
+"""A sandbox cell in which a node can run, with a relay to the other nodes of this machine (dds_relay.py)."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def environment(ros: Ros, domain: int, overlays: Sequence[Path] = ()) -> dict[st
 
 @contextmanager
 def linked_cell(ros: Ros, domain: int) -> Iterator[LinkedCell]:
-    """Start the launcher of trials in a cell, with a relay to this ROS domain. The context stops the cell.
+    """Start the launcher of trials in a cell, with a relay to this ROS domain. Leaving the context stops the cell.
 
     Raises:
         MachineError: the cell could not be started, or all ports are in use.

@@ -1,7 +1,7 @@
-"""`python -m grader.open.node_in_cell SETTINGS`: build a package and run one of its programs, both in a cell.
+"""`python -m grader.open.node_in_cell SETTINGS`: build a package and run one of its programs in the sandbox.
 
-The program can reach the turtlesim of this machine (linked_cell.py). It is stopped by Ctrl-C, or when standard input
-closes because the process that started this one has exited.
+The program can reach the turtlesim of this machine (linked_cell.py). The program is stopped by Ctrl-C, or when standard
+input closes because the process that started node_in_cell has exited.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """The process that serves the page, and its connection to the process that grades.
 
 The grading process forks to read a learner's files, which is safe only without other busy threads. Therefore, the
-server is a separate process. It receives the content of the page as lines of JSON, and sends commands of grading.py.
+server is a separate process. The server receives the content of the page as lines of JSON, and sends commands of
+grading.py.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ class PageProcess:
         self._programs = Programs(self._tell, workspace)
 
     async def serve(self) -> None:
-        """Serve until the other process has exited."""
+        """Serve the page until the grading process has exited."""
         loop = asyncio.get_running_loop()
         # Only the grading process handles Ctrl-C. This process exits when the grading process has exited.
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -75,7 +76,7 @@ class PageProcess:
             await self._programs.stop()
 
     async def _follow(self, reader: asyncio.StreamReader, ended: asyncio.Event) -> None:
-        """Show each received content until the other process has exited."""
+        """Show each received content until the grading process has exited."""
         try:
             with suppress(ConnectionError):
                 while line := await reader.readline():

@@ -57,7 +57,9 @@ class Program:
         return self._process is not None
 
     async def start(self, *arguments: str, says: str = "", held: bool = False) -> None:
-        """Start `python ARGUMENTS` unless the program is already running. `says` is a line that precedes its output.
+        """Start `python ARGUMENTS` unless the program is already running.
+
+        `says` is a line that precedes the program's output.
 
         If the program is `held`, its standard input is a pipe that closes when this process ends for any reason.
         """
@@ -121,7 +123,7 @@ class Programs:
         self._workspace = workspace
 
     def address(self) -> Address | None:
-        """Return the address of turtlesim's view, whether it was started here or in a terminal."""
+        """Return the address of turtlesim's view, whether turtlesim was started here or in a terminal."""
         for line in self.turtlesim.lines:
             found = _ADDRESS.search(line)
             if found:
@@ -129,7 +131,10 @@ class Programs:
         return remembered("turtlesim")
 
     async def beside_another(self) -> bool:
-        """Return whether a turtlesim is running that was not started here. A second one would get the same commands."""
+        """Return whether a turtlesim is running that was not started here.
+
+        A second turtlesim would get the same commands.
+        """
         return not self.turtlesim.running and await asyncio.to_thread(_turtle_is_there)
 
     async def start_turtlesim(self) -> None:

@@ -142,7 +142,7 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
 
 
 def _overwritten(evidence: Evidence) -> Cause | None:
-    """Return the cause if a method replaces the last pose before it calculates the step from it, else None."""
+    """Return the cause if a method replaces the last pose before it calculates the distance from there, else None."""
     for module in evidence.code.modules:
         for method in (node for node in module.nodes if isinstance(node, ast.FunctionDef)):
             given = {argument.arg for argument in method.args.args} - {"self"}

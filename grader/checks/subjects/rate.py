@@ -84,7 +84,7 @@ COMMAND = Subject("command", "publish")
 
 
 def rate(evidence: Evidence, params: Rate) -> Finding:
-    """The commands arrive at the rate: on average and in each interval, from soon after the start until the end."""
+    """The commands arrive at the required rate, on average and in each interval, from the start until the end."""
     return rate_of(evidence, params, COMMAND, evidence.command_arrivals)
 
 
