@@ -11,10 +11,11 @@ import subprocess
 import tempfile
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
 from grader.common.interpreter import interpreter
 from grader.errors import DiskError
+from grader.submission import tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -45,7 +46,7 @@ def stem(name: str) -> str | None:
 
 @contextmanager
 def unpacked(archive: Path) -> Iterator[Path]:
-    """Yield a temporary folder with the content of the archive.
+    """Yield a temporary folder with the content of the archive. Its absolute path must not contain a link.
 
     Raises:
         NotUnpackedError: the archive cannot be unpacked, or is larger than a submission may be.
@@ -54,30 +55,37 @@ def unpacked(archive: Path) -> Iterator[Path]:
     if not archive.name.lower().endswith(ENDINGS):
         message = "is not a supported archive: hand in a .zip or a .tar.gz"
         raise NotUnpackedError(message)
-    if not os.access(archive, os.R_OK):
-        message = "cannot be read (its because of its permissions)"
-        raise NotUnpackedError(message)
-    if archive.stat().st_size > MOST_PACKED:
-        message = f"is larger than {MOST_PACKED // _MIB} MiB"
-        raise NotUnpackedError(message)
-    with tempfile.TemporaryDirectory(prefix="grader-unpacked-") as folder:
-        # Use a separate process, so that an archive that takes too much time or memory stops only that process.
-        start = interpreter("-S", str(_SCRIPT), str(archive.absolute()), folder)
-        try:
-            done = subprocess.run(
-                [*_LIMITS, *start.argv],
-                env=start.env,
-                stdin=subprocess.DEVNULL,
-                capture_output=True,
-                timeout=_TIMEOUT_S,
-                check=False,
-            )
-        except subprocess.TimeoutExpired:
-            done = None
+    with tempfile.TemporaryDirectory(prefix="grader-unpacked-") as named:
+        folder = os.path.realpath(named)
+        with _open(archive) as file:
+            done = _run(file, folder)
         why = _why(done)
         if why is not None:
             raise NotUnpackedError(why)
         yield Path(folder)
+
+
+def _open(archive: Path) -> IO[bytes]:
+    try:
+        file = tree.open_file(archive, at=archive)
+    except OSError as error:
+        raise NotUnpackedError(tree.reason(error, archive.name)) from error
+    if os.fstat(file.fileno()).st_size <= MOST_PACKED:
+        return file
+    file.close()
+    message = f"is larger than {MOST_PACKED // _MIB} MiB"
+    raise NotUnpackedError(message)
+
+
+def _run(archive: IO[bytes], folder: str) -> subprocess.CompletedProcess[bytes] | None:
+    """Run the script in a separate process, so that an archive that takes too much time or memory stops only that."""
+    start = interpreter("-S", str(_SCRIPT), "/dev/stdin", folder)
+    try:
+        return subprocess.run(
+            [*_LIMITS, *start.argv], env=start.env, stdin=archive, capture_output=True, timeout=_TIMEOUT_S, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return None
 
 
 def _why(done: subprocess.CompletedProcess[bytes] | None) -> str | None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from grader.classroom import archives
 from grader.errors import DiskError, MachineError, UsageError
-from grader.submission import reader
+from grader.submission import reader, tree
 from grader.submission.package import ANSWERS, Submission, open_answers, open_submission
 from grader.submission.tree import shown
 
@@ -84,12 +84,12 @@ def fingerprint(found: Found, exercise: Exercise) -> str:
 def _of_archive(archive: Path) -> str:
     whole = hashlib.sha256(archive.name.encode("utf-8", "surrogateescape") + b"\0")
     try:
-        with archive.open("rb") as file:
+        with tree.open_file(archive, at=archive) as file:
             # If the archive is too large to be unpacked, hashing this part of it is enough.
             while file.tell() <= archives.MOST_PACKED and (data := file.read(1024 * 1024)):
                 whole.update(data)
-    except OSError as error:
-        whole.update(f"cannot be read: {error.errno}".encode())  # `read` reports it
+    except (OSError, ValueError) as error:
+        whole.update(f"cannot be read: {error}".encode())  # `read` reports it
     return whole.hexdigest()
 
 
@@ -118,10 +118,10 @@ def _archive(path: Path) -> Path | None:
 
 def _open(folder: Path, exercise: Exercise) -> Submission:
     if exercise.package:
-        return open_submission(folder)
+        return open_submission(folder, exactly=True)
     for _ in range(MOST_DEEP):
         below = list(islice((entry for entry in folder.iterdir() if not entry.name.startswith((".", "__"))), 2))
         if len(below) != 1 or below[0].is_symlink() or not below[0].is_dir() or (folder / ANSWERS).exists():
             break
         folder = below[0]
-    return open_answers(folder)
+    return open_answers(folder, exactly=True)

@@ -42,6 +42,7 @@ class Found:
     student: str
     exercise: str
     path: Path
+    """An absolute path without links. A path with a link is not read: a student has replaced a folder."""
     refused: str = ""
     """Why the submission cannot be graded, if this is already known."""
 
@@ -145,9 +146,9 @@ def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
         if name is None:
             message = f"{shown(str(path))} is neither a folder nor an archive (.zip, .tar.gz)."
             raise UsageError(message)
-        yield from _of_student(name, path, wanted)
+        yield from _of_student(name, absolute, wanted)
         return
-    for entry in _entries(path):
+    for entry in _entries(absolute):
         name = _student(entry)
         if name is not None and not _same(entry, leave_out):
             yield from _of_student(name, entry, wanted)

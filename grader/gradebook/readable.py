@@ -7,7 +7,6 @@ nbgrader only the results of these functions: a notebook of limited size and dep
 from __future__ import annotations
 
 import os
-import stat
 from typing import TYPE_CHECKING
 
 from grader.errors import TooLargeError, UnreadableError
@@ -82,17 +81,15 @@ def _require_small(read: object) -> None:
 
 
 def _content(path: Path, most: int) -> bytes:
-    """Return the content of a regular file. Never wait for a pipe or follow a link."""
+    """Return the content of a regular file."""
     try:
-        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+        with tree.open_file(path) as file:
+            data = file.read(most + 1)
     except OSError as error:
         message = f"{path.name} {tree.reason(error, path.name)}"
         raise UnreadableError(message) from error
-    with os.fdopen(descriptor, "rb") as file:
-        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-            message = f"{path.name} is not a regular file"
-            raise UnreadableError(message)
-        data = file.read(most + 1)
+    except ValueError as error:
+        raise UnreadableError(str(error)) from error
     if len(data) > most:
         message = f"{path.name} has more than the maximum of {most} bytes"
         raise TooLargeError(message)

@@ -161,7 +161,7 @@ def _put_together(
         exercise, submitted = find_exercise(step), folders.submitted(student, step)
         try:
             graded = graded_folder(exercise, submitted, folders.handed_in(student, step))
-            found.append(Found(student, step, graded))
+            found.append(Found(student, step, graded.parent.resolve() / graded.name))
         except Exception as error:
             # An error in a student's files must not stop the grading of others.
             if _of_the_machine(error):

@@ -6,6 +6,7 @@ import errno
 import hashlib
 import os
 import posixpath
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,7 +18,7 @@ from grader.submission.search import find_package, why_not_opened
 from grader.submission.tree import shown
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
 ANSWERS = "answers.toml"
 """The file that contains the answers to an exercise."""
@@ -49,26 +50,26 @@ class Submission:
     """The student, if known (when a class is graded)."""
 
 
-def open_submission(path: str | os.PathLike[str]) -> Submission:
-    """Read the package in this folder, or the only package below it.
+def open_submission(path: str | os.PathLike[str], *, exactly: bool = False) -> Submission:
+    """Read the package in this folder, or the only package below it. With `exactly`, the path must not contain a link.
 
     Raises UsageError if there is no such folder or if it does not contain exactly one package, and MachineError if the
     disk or the system fails. Every other problem is the student's fault and is named in `rejected`.
     """
-    return _read(_submission, os.fspath(path))
+    return _read(_submission, os.fspath(path), exactly)
 
 
-def _read(function: Callable[[str], Submission], name: str) -> Submission:
+def _read(function: Callable[[str, bool], Submission], name: str, exactly: bool) -> Submission:
     try:
-        return read(function, name)
+        return read(function, name, exactly)
     except UnreadableError as error:
         message = f"{shown(name)} cannot be opened: {error}."
         raise UnreadableError(message) from error
 
 
-def _submission(name: str) -> Submission:
+def _submission(name: str, exactly: bool) -> Submission:
     try:
-        with tree.open_folder(name) as root:
+        with _opened(name, exactly) as root:
             package = find_package(root, name)
             with tree.open_below(root, package) as folder:
                 found = tree.read_tree(folder)
@@ -85,17 +86,25 @@ def _submission(name: str) -> Submission:
     )
 
 
-def open_answers(path: str | os.PathLike[str]) -> Submission:
-    """Read only answers.toml in this folder, for an exercise without a package.
+@contextmanager
+def _opened(name: str, exactly: bool) -> Iterator[int]:
+    with tree.open_folder(name) as folder:
+        if exactly:
+            tree.require_path(folder, Path(name))
+        yield folder
+
+
+def open_answers(path: str | os.PathLike[str], *, exactly: bool = False) -> Submission:
+    """Read only answers.toml in this folder, for an exercise without a package. `exactly` is as in `open_submission`.
 
     Raises UsageError if there is no such folder or file, and MachineError if the disk fails.
     """
-    return _read(_answers, os.fspath(path))
+    return _read(_answers, os.fspath(path), exactly)
 
 
-def _answers(name: str) -> Submission:
+def _answers(name: str, exactly: bool) -> Submission:
     try:
-        with tree.open_folder(name) as root:
+        with _opened(name, exactly) as root:
             found = tree.read_tree(root)
     except OSError as error:
         message = why_not_opened(error, name)

@@ -12,7 +12,8 @@ import posixpath
 import stat
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import IO, TYPE_CHECKING
 
 from grader.errors import MachineError
 
@@ -90,6 +91,34 @@ def open_folder(name: str, parent: int | None = None) -> Iterator[int]:
         yield descriptor
     finally:
         os.close(descriptor)
+
+
+def open_file(path: Path, *, at: Path | None = None) -> IO[bytes]:
+    """Open a regular file. Never follow a link to it, and never wait for a pipe. `at` is as in `require_path`.
+
+    Raises:
+        OSError: the file cannot be opened.
+        ValueError: it is not a regular file.
+    """
+    with ExitStack() as stack:
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+        file = stack.enter_context(os.fdopen(descriptor, "rb"))
+        if at is not None:
+            require_path(descriptor, at)
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            message = f"{path.name} is not a regular file"
+            raise ValueError(message)
+        stack.pop_all()
+        return file
+
+
+def require_path(descriptor: int, path: Path) -> None:
+    """Raise OSError if an opened file or folder is not at this absolute path.
+
+    A student can replace a folder in the path by a link after the path was chosen. The link is then followed.
+    """
+    if Path("/proc/self/fd", str(descriptor)).readlink() != path:
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP))
 
 
 @contextmanager
