@@ -28,8 +28,7 @@ if TYPE_CHECKING:
 
 MOST_TRIES = 6
 MOST_F = 1.5
-"""The maximum time for all tries of a submission, as a multiple of the time for building its package and running a bare
-node."""
+"""The maximum time for all tries of a submission, relative to the time for a build and the run of a bare node."""
 BARE_NODE_S = 0.35
 """The time for running a minimal process with one node (s)."""
 ENOUGH = f"only {MOST_TRIES} changes are tried"

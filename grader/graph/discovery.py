@@ -88,7 +88,7 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
 
 
 def _leave_shared_memory_out(profile: Path) -> None:
-    """Set the variables for the profile.
+    """Set the environment variables for the Fast DDS profile.
 
     The file loopback.xml explains why these nodes do not use LOCALHOST with its shared memory.
     """

@@ -33,7 +33,7 @@ def _sentence(begin: str, names: list[str]) -> str:
 
 
 def _parts(text: str) -> dict[str, str] | None:
-    """Return the functions and methods of a Python file without comments and docstrings, or None if it has an error."""
+    """Return the functions and methods of a Python file without comments and docstrings, or None if it has errors."""
     try:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError):

@@ -158,8 +158,8 @@ def _s(seconds: float) -> str:
 def values(evidence: Evidence, name: str = "values", bins: int = BINS) -> Chart | None:
     """Draw the values of the commands over time.
 
-    There is one row for each field that the exercise requires or that was not always 0, and always one for linear.x and
-    one for angular.z.
+    There is one row for each field that the exercise requires or that was not always 0, and always a row for linear.x
+    and a row for angular.z.
     """
     commands = evidence.commands
     if not commands:
@@ -218,7 +218,7 @@ def _steps(series: Series, wanted: float | None, label: str, end_s: float, where
 
 
 def _in_words(series: Series, field: str, unit: str, wanted: float | None) -> str:
-    """Describe one field in words."""
+    """Describe one field of the commands in words."""
     found = [value for _, value in series]
     wrong = sum(not math.isfinite(value) for value in found)
     finite = [value for value in found if math.isfinite(value)]

@@ -1,8 +1,9 @@
 """A report for GitHub Actions: the step's summary in Markdown, and annotations as workflow commands.
 
-Both contain text from a student. It must never be interpreted as Markdown or as a command. In the summary it is always
-plain text. In a command it is escaped as described in GitHub's documentation ("Workflow commands for GitHub Actions")
-and as implemented by `escapeData` and `escapeProperty` in GitHub's toolkit. Hidden checks are left out.
+The summary and the annotations contain text from a student, which must never be interpreted as Markdown or as a
+command. In the summary, this text is always plain text. In a command, the text is escaped as described in GitHub's
+documentation ("Workflow commands for GitHub Actions") and as implemented by `escapeData` and `escapeProperty` in
+GitHub's toolkit. Hidden checks are left out.
 """
 
 from __future__ import annotations
@@ -82,7 +83,8 @@ def _text(text: str) -> str:
 def to_annotations(rows: Iterable[tuple[str, Report]], folder: str = "") -> str:
     """Return workflow commands, one per line: errors for failed checks, and warnings for checks that were not judged.
 
-    `folder` is the path of the package in the repository. GitHub needs it to show an annotation next to the line.
+    `folder` is the path of the package in the repository. GitHub needs this path to show an annotation next to the
+    line.
     """
     errors: list[str] = []
     warnings: list[str] = []

@@ -1,6 +1,6 @@
 """A report as Gradescope's results.json (see "Autograder Specifications", "Output Format" in its documentation).
 
-Students may see it. For a hidden check, they see only whether it passed.
+Students can see results.json. For a hidden check, results.json contains only whether the check passed.
 """
 
 from __future__ import annotations

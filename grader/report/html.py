@@ -47,12 +47,12 @@ class ShownCheck:
 
     @property
     def title(self) -> str:
-        """The title of the check. The title of a hidden check does not reveal what it is about."""
+        """The title of the check. The title of a hidden check does not reveal what is checked."""
         return "Hidden check" if self.outcome.hidden else self.outcome.title
 
     @property
     def observed(self) -> str:
-        """What was observed; empty if it is hidden or only repeats the title."""
+        """What was observed; empty if the check is hidden or if this text only repeats the title."""
         text = self.outcome.finding.observed
         return "" if self.outcome.hidden or text.rstrip(".") == self.outcome.title else text
 

@@ -1,6 +1,7 @@
 """The page of a class, made from its reports: points, the most common failures with their causes, machine errors.
 
-The reports are the JSON files below a folder. If there is a page with the same name next to a report, it is linked.
+The reports are the JSON files below a folder. If there is a page with the same name next to a report, the class page
+links to that page.
 """
 
 from __future__ import annotations
@@ -117,7 +118,7 @@ class ClassReports:
 
 
 def read_class(folder: Path) -> ClassReports:
-    """Read every report below the folder, sorted by name. Raises UsageError if there is none."""
+    """Read every report below the folder, sorted by name. Raises UsageError if there is no report."""
     if not folder.is_dir():
         message = f"There is no folder {folder}: name the folder with the reports (from `grader check --json`)."
         raise UsageError(message)

@@ -1,7 +1,7 @@
 """The verdict as HTML for the output of a notebook cell: a table with reasons, and then the charts of each run.
 
-The HTML has no script, and its style sheet affects nothing outside it. Every id begins with a key for this verdict,
-because one notebook may show many verdicts.
+The HTML has no script, and its style sheet affects nothing else on the page. Every id begins with a key for this
+verdict, because one notebook may show many verdicts.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ TEMPLATE = "notebook.html"
 
 
 def html_fragment(evidence: Evidence, report: Report) -> str:
-    """Return the HTML. It has no drawings if the output of the submission cannot be drawn."""
+    """Return the verdict as HTML, without drawings if the output of the submission cannot be drawn."""
     compiled(TEMPLATE)
     try:
         return read(_fragment, evidence, report)

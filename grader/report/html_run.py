@@ -45,7 +45,7 @@ class Run:
     """A trial, ready for the template.
 
     `data` is the input of the player. `end` describes how the node's process exited. `idle` is true if no command
-    arrived although the exercise requires some.
+    arrived although the exercise requires commands.
     """
 
     key: str
@@ -67,7 +67,10 @@ class Run:
 
 
 def runs_of(evidences: Sequence[Evidence], key: str = "run") -> list[Run]:
-    """Return the trials that ran, in order. Each has a title if there are several. `key` is the prefix of all ids."""
+    """Return the trials that ran, in order. Each trial has a title if there are several.
+
+    `key` is the prefix of all ids.
+    """
     several = len(evidences) > 1
     drawn = [evidence for evidence in evidences if not evidence.trial.beside]
     tried = [(number, evidence) for number, evidence in enumerate(drawn) if evidence.run.recording is not None]

@@ -1,6 +1,6 @@
 """A class as JUnit XML for Jenkins, GitLab and others: one test suite per submission, one test case per check.
 
-Students may see it, so hidden checks are left out. Advice is not a test case.
+Students can see this XML, so hidden checks are left out. Advice is not a test case.
 """
 
 from __future__ import annotations
@@ -75,5 +75,5 @@ def _case(suite: ET.Element, student: str, report: Report, outcome: Outcome) -> 
 
 
 def _text(text: str) -> str:
-    """Keep only printable characters. XML 1.0 cannot represent most others."""
+    """Keep only printable characters, because XML 1.0 cannot represent most other characters."""
     return printable(text)

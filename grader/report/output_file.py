@@ -12,7 +12,10 @@ if TYPE_CHECKING:
 
 
 def check_writable(file: Path | None) -> None:
-    """Check that a file can be written before any time is spent on its content. Raises UsageError if it cannot."""
+    """Check that a file can be written, before time is spent on its content.
+
+    Raises UsageError if writing is impossible.
+    """
     if file is not None and not file.absolute().parent.is_dir():
         message = f"There is no folder {file.absolute().parent} to write {file.name} to."
         raise UsageError(message)

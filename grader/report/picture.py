@@ -47,7 +47,7 @@ class Panel:
 
 
 def save_picture(evidence: Evidence, report: Report, file: Path) -> None:
-    """Write the picture as a PNG file. Raises the error that `not_written` returns if that is not possible."""
+    """Write the picture as a PNG file. Raises the error that `not_written` returns if the file cannot be written."""
     image = read(_png, evidence, report)
     try:
         file.write_bytes(image)
@@ -82,7 +82,7 @@ def draw_picture(evidence: Evidence, report: Report) -> Image.Image:
 
 
 def _panels(count: int) -> list[Panel]:
-    """Return one large canvas, or a grid of smaller ones."""
+    """Return one large canvas, or a grid of smaller canvases."""
     if count == 1:
         return [Panel(LEFT, TOP, SIDE_PX)]
     wide, high = LEFT + SMALL_PX + RIGHT, HEADING + SMALL_PX + BOTTOM

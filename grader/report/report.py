@@ -47,7 +47,8 @@ class Report:
     def max(self) -> float:
         """The maximum points of all checks together, including those that the machine could not judge.
 
-        If these were left out, a submission could get full marks by keeping the checks that it fails from being judged.
+        If checks that could not be judged were left out, a submission could get full marks by keeping the checks that
+        it fails from being judged.
         """
         return sum(outcome.max for outcome in self.outcomes)
 
@@ -64,7 +65,7 @@ class Report:
 
     @property
     def exit_code(self) -> int:
-        """0 if all passed, 1 if a check with points did not pass, 3 if the grader or the machine is broken."""
+        """0 if all checks passed, 1 if a check with points did not pass, 3 if the grader or the machine is broken."""
         if self.with_status(Status.ERROR):
             return 3
         missing = self.with_status(Status.FAILED) or self.with_status(Status.SKIPPED)
@@ -99,7 +100,7 @@ REFUTED = "The supposed cause was changed in a copy, but the check still failed.
 
 
 def _with_try(outcome: Outcome, evidence: Evidence) -> Outcome:
-    """Return the outcome with the result of changing its cause in a copy. A refuted cause is left out."""
+    """Return the outcome with the result of fixing its cause in a copy. A refuted cause is left out."""
     finding, tries = outcome.finding, evidence.tries
     if outcome.status is not Status.FAILED:
         return outcome
@@ -125,7 +126,7 @@ def _in_one_line(difference: str) -> str:
 
 
 def _why_this_clock(evidence: Evidence) -> str:
-    """Return the reason for the first trial's clock, and for that of each trial judged on the other clock."""
+    """Return the reason for the first trial's clock, and for the clock of each trial judged on the other one."""
     first = evidence.run.recording
     if first is None and evidence.run.called is not None:
         return "No node was run. Your code was called, without a simulator."

@@ -1,4 +1,4 @@
-"""Scene: the drawing of a run on the turtle's canvas, as pure data in metres. picture.py and svg.py paint it.
+"""Scene: the drawing of a run on the turtle's canvas, as pure data in metres. picture.py and svg.py paint the scene.
 
 The PNG, the page and the notebooks use the same scene, so they always show the same drawing.
 """
@@ -36,7 +36,7 @@ TICK_M = 0.11
 class Scene:
     """The content of a drawing: `shapes` from bottom to top, the meaning of each role, and facts with numbers.
 
-    `notice` says why there is no trajectory to draw; it is empty if there is one.
+    `notice` says why there is no trajectory to draw; it is empty if there is a trajectory.
     """
 
     shapes: tuple[Line | Ring | Arrow, ...] = ()
@@ -107,7 +107,10 @@ def _without_recording(evidence: Evidence) -> Scene:
 
 
 def _bag_scene(evidence: Evidence) -> Scene | None:
-    """Return the scene of a step in which students record a bag: the path in the bag. Return None for other steps."""
+    """For a step in which students record a bag, return a scene with the turtle's path that the bag contains.
+
+    Return None for other steps.
+    """
     folder = next((str(spec.params["bag"]) for spec in evidence.exercise.checks if "bag" in spec.params), None)
     if folder is None:
         return None
@@ -128,7 +131,10 @@ def _goals(recording: Recording) -> list[str]:
 
 
 def _drawn(evidence: Evidence, points: list[Point]) -> list[Line]:
-    """Return the trajectory as one line per pen. Parts with the pen up have the look of another turtle's path."""
+    """Return the trajectory as one line per pen.
+
+    Parts that were driven with the pen up look like another turtle's path.
+    """
     trajectory, spans = evidence.trajectory, pen_spans(evidence.recording)
     if len(spans) == 1 or not trajectory.finite:
         return [Line("trajectory", tuple(points))]
@@ -158,7 +164,7 @@ def _others(recording: Recording) -> Iterator[tuple[list[Line | Ring | Arrow], s
 
 
 def finite_points(trajectory: Trajectory) -> list[Point]:
-    """Return the points of the trajectory (m) before the first that is not finite, without consecutive duplicates."""
+    """Return the points of the trajectory (m) up to the first infinite or NaN value, without consecutive duplicates."""
     points: list[Point] = []
     for x, y in zip(trajectory.x.tolist(), trajectory.y.tolist(), strict=True):
         if not (math.isfinite(x) and math.isfinite(y)):

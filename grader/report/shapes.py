@@ -38,7 +38,7 @@ LOOKS: dict[Role, Look] = {
 
 @dataclass(frozen=True)
 class Line:
-    """A line through points (m), in the colour of its role or in another one."""
+    """A line through points (m), in the colour of its role or in another colour."""
 
     role: Role
     points: tuple[Point, ...]

@@ -1,7 +1,7 @@
 """Find submissions that an instructor should look at, because the grader could not judge or read them.
 
-Machine faults affect submissions at random. If the grader repeatedly fails to judge a submission but can judge
-the others, the submission may have been designed to break the grader.
+Machine faults affect submissions at random. If the grader repeatedly fails to judge a submission but can judge all
+other submissions, the submission may have been designed to break the grader.
 """
 
 from __future__ import annotations

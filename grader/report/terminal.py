@@ -73,7 +73,10 @@ def early(outcomes: Sequence[Outcome]) -> list[str]:
 
 
 def changes(tries: Tries, console: Console) -> None:
-    """Print the changes that were made in copies of the submission to test supposed causes. They reveal solutions."""
+    """Print the changes that were made in copies of the submission to test supposed causes.
+
+    The changes reveal solutions.
+    """
     if tries.made or tries.stopped:
         console.print()
     for each in tries.made:
@@ -161,5 +164,5 @@ def _points(points: float) -> str:
 
 
 def _line(console: Console, text: Text) -> None:
-    """Print one line. It is not wrapped if the output goes to a pipe."""
+    """Print one line, which is not wrapped if the output goes to a pipe."""
     console.print(text, soft_wrap=not console.is_terminal, highlight=False, markup=False)

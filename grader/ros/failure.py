@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Ros2Error(GraderError):
-    """A verb failed. Only the message is printed, or nothing if it is empty."""
+    """A verb failed. Only the message is printed, or nothing if the message is empty."""
 
     exit_code = 1
 

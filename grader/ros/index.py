@@ -95,7 +95,7 @@ def all_interfaces(kind: str | None = None) -> list[str]:
 
 
 def interface_file(name: str) -> Path:
-    """Return the file that defines an interface: "geometry_msgs/msg/Twist" -> .../geometry_msgs/msg/Twist.msg.
+    """Return the file that defines an interface: .../geometry_msgs/msg/Twist.msg for "geometry_msgs/msg/Twist".
 
     Raises:
         Ros2Error: no installed interface has this name.
@@ -120,7 +120,7 @@ def interface_file(name: str) -> Path:
 
 
 def _meant(name: str) -> list[str]:
-    """Return the full names for a short name: "Twist" or "geometry_msgs/Twist" -> "geometry_msgs/msg/Twist"."""
+    """Return the full names (such as "geometry_msgs/msg/Twist") for a short name: "Twist" or "geometry_msgs/Twist"."""
     package, _, last = name.rpartition("/")
     found = [full for full in all_interfaces() if full.endswith(f"/{last}") and full.startswith(package)]
     return found or all_interfaces()

@@ -1,7 +1,8 @@
 """Find the ROS 2 installation, and create the environment that child processes need for it.
 
-If a ROS 2 Jazzy is sourced, it is used. Otherwise, the wheels in this Python's environment are used. The grader's own
-process never imports rclpy. All ROS 2 code runs in child processes, with the environment that this module creates.
+If a ROS 2 Jazzy is sourced, the grader uses this installation. Otherwise, the wheels in this Python's environment are
+used. The grader's own process never imports rclpy. All ROS 2 code runs in child processes, with the environment that
+this module creates.
 """
 
 from __future__ import annotations
@@ -75,7 +76,7 @@ def find_ros(env: Mapping[str, str] = os.environ) -> Ros:
     """Return the ROS 2 Jazzy to use: the sourced installation, or else the wheels in this Python environment.
 
     Raises:
-        MachineError: neither exists.
+        MachineError: no ROS 2 Jazzy is sourced, and the wheels are not installed.
     """
     ros = _sourced(env) or _wheels(Path(sys.prefix))
     if ros is None:
@@ -112,7 +113,8 @@ def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: 
     """Return the complete environment of a child process. Nothing is inherited from the caller's environment.
 
     `overlays` are install folders of packages (install/<package>), and are searched first. `home` must be writable,
-    since HOME and ROS_LOG_DIR are inside it. `domain` is None in a room (grader.sandbox), which has its own network.
+    since HOME and ROS_LOG_DIR are inside it. `domain` is None in a sandbox room (grader.sandbox), because a room has
+    its own network.
     """
     local = [*overlays, *([ros.underlay] if ros.underlay else [])]
     env = {
@@ -162,10 +164,11 @@ def domain_of(uid: int) -> int:
 def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int | None = None) -> dict[str, str]:
     """Return the environment of a node that a user starts: the user's environment with the variables of ROS 2 added.
 
-    The user's settings are kept, and workspaces that the user sourced are searched first. The domain is `domain`
-    if it is not None, or else the domain that the user has set. If neither is set, each user gets a separate domain,
-    so that classmates on one machine do not drive each other's turtles. With a sourced ROS 2, the domain is 0 instead,
-    the default of ROS 2, so that nodes in this environment reach nodes in terminals that only source that ROS 2.
+    The user's settings are kept, and workspaces that the user sourced are searched first. The domain is `domain` if it
+    is not None, or else the domain that the user has set. If neither is set, each user gets a separate domain, so that
+    classmates on one machine do not drive each other's turtles. If the ROS 2 installation was sourced, however, the
+    domain is 0, as usual in ROS 2, so that these nodes reach nodes in terminals where the user only sourced the
+    installation.
     """
     home = Path(env.get("HOME", "/"))
     own = 0 if ros.kind == "sourced" else domain_of(os.getuid())
@@ -199,7 +202,7 @@ def who_hears(env: Mapping[str, str]) -> str:
 
 
 def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str:
-    """Return a search path that starts with the user's entries, without those of another ROS 2 or an older underlay."""
+    """Return a search path that starts with the user's entries, without entries of another ROS 2 or older underlay."""
     ours = [entry for entry in needed.get(name, "").split(os.pathsep) if entry]
     prefixes = [Path(entry) for entry in env.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
     current = needed["AMENT_PREFIX_PATH"].split(os.pathsep)
@@ -210,7 +213,7 @@ def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str
 
 
 def _users_path(ros: Ros, env: Mapping[str, str]) -> str:
-    """Return PATH with our commands: last if a ROS 2 is sourced, or else first, so that `python3` has rclpy."""
+    """Return PATH with our commands: at the end if a ROS 2 is sourced, or else first, so that `python3` has rclpy."""
     path = env.get("PATH", "/usr/local/bin:/usr/bin:/bin")
     ours = str(Path(sys.prefix, "bin"))
     if ours in path.split(os.pathsep):
@@ -261,7 +264,7 @@ def _has(prefix: Path, package: str) -> bool:
 
 
 def has_turtlesim(ros: Ros) -> bool:
-    """Return whether this ROS 2 includes turtlesim. If it does, the interfaces do not have to be built."""
+    """Return whether this ROS 2 includes turtlesim. If it does, its interfaces need not be built."""
     return any(_has(prefix, "turtlesim") for prefix in ros.prefixes)
 
 

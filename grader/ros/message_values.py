@@ -19,7 +19,9 @@ Stamper = Callable[[Any], None]
 
 
 def load_type(name: str, kind: str, what: str = "message type", text: str = "") -> Any:  # noqa: ANN401
-    """Return the Python class of an interface such as "geometry_msgs/msg/Twist". The middle part is optional.
+    """Return the Python class of an interface such as "geometry_msgs/msg/Twist".
+
+    The middle part of the name is optional.
 
     Raises:
         Ros2Error: the interface is not installed. The message is `text`, or contains `what` if `text` is empty.
@@ -76,7 +78,7 @@ def fill(message: Any, values: Any, stamps: list[Stamper] | None = None) -> Any:
     """Set the fields of a message that are in `values`, and return the message. Other fields keep their values.
 
     If `stamps` is given, a header may be "auto" and a time may be "now". The functions that set these fields are
-    appended to this list.
+    appended to the list `stamps`.
 
     Raises:
         MisfitError: the message has no such field, or the value does not match the type of the field.

@@ -37,7 +37,7 @@ def users_environment(
 
 
 def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sourced: bool = False) -> str:
-    """Return code for bash, zsh and sh that turns `env` into `wanted` and sets up completion for our commands.
+    """Return code for bash, zsh and sh that changes the environment `env` to `wanted` and completes our commands.
 
     `sourced` is True if the ROS 2 installation is a sourced one, which may have its own rqt_graph.
     """
@@ -62,7 +62,10 @@ def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sour
 
 
 def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -> None:
-    """Replace this process with the user's shell. After its start-up files, the shell adds the ROS 2 of `wanted`."""
+    """Replace this process with the user's shell.
+
+    After reading its start-up files, the shell adds the ROS 2 of `wanted`.
+    """
     shell = env.get("SHELL") or "/bin/bash"
     argv, variables = [shell, "-i"], {}
     # Run our code after the start-up files, because they may set PATH or source a ROS 2.

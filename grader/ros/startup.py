@@ -1,4 +1,4 @@
-"""The start-up of our commands: replace them with the real ones where possible, and add ROS 2 to the environment."""
+"""Start commands such as `ros2`: run the real command instead if there is one, and add ROS 2 to the environment."""
 
 from __future__ import annotations
 

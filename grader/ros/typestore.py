@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def jazzy_types() -> Typestore:
-    """Return the types that rosbags includes for ROS 2 Jazzy. turtlesim is not among them."""
+    """Return the types that rosbags includes for ROS 2 Jazzy, which are not those of turtlesim."""
     return get_typestore(Stores.ROS2_JAZZY)
 
 

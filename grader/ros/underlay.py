@@ -1,4 +1,4 @@
-"""The underlay: our turtlesim package for a ROS 2 that has no turtlesim. It is built once and then kept."""
+"""The underlay: our turtlesim package for a ROS 2 that has no turtlesim. The underlay is built once and then kept."""
 
 from __future__ import annotations
 
@@ -44,7 +44,9 @@ def with_turtlesim(ros: installation.Ros, tell: Callable[[str], None] = _report_
 
 
 def ensure(ros: installation.Ros, tell: Callable[[str], None] = _report_nothing) -> Path | None:
-    """Return the prefix of our turtlesim, or None if this ROS 2 has its own. Build our turtlesim first if necessary.
+    """Return the prefix of our turtlesim, or None if this ROS 2 has its own turtlesim.
+
+    Build our turtlesim first if necessary.
 
     A build takes about ten seconds and passes each line of its progress to `tell`. If a build exists already, this
     function takes about a millisecond.
@@ -76,7 +78,7 @@ def ensure(ros: installation.Ros, tell: Callable[[str], None] = _report_nothing)
 
 
 def _name(ros: installation.Ros, compiler: Path | None) -> str:
-    """Return a name for the build that depends on all its inputs. No process is started for it."""
+    """Return a name for the build that depends on all its inputs. No process is started to find the name."""
     return f"turtlesim-{_key_of_sources(ros)}-{_key_of_compiler(compiler)}"
 
 

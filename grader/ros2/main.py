@@ -1,4 +1,4 @@
-"""The command `ros2`: run the `ros2` of a sourced ROS 2 if it has one, and otherwise one of our verbs.
+"""The command `ros2`: run the `ros2` of a sourced ROS 2 if there is one, and otherwise one of our verbs.
 
 This module imports few modules. A verb imports parts of rclpy only when it runs.
 """

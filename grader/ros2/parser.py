@@ -67,7 +67,7 @@ def _add_words(
     chosen: str | None,
     add: Callable[[argparse.ArgumentParser, str], None],
 ) -> None:
-    """Add the words that may follow, and call `add` to add the arguments of the chosen word."""
+    """Add the words that may come next, and call `add` to add the arguments of the chosen word."""
     width = max(map(len, about))
     words = parser.add_subparsers(
         title="Commands",

@@ -1,4 +1,4 @@
-"""Verbs of `ros2` that need a full ROS 2. They print a message with an alternative."""
+"""Verbs of `ros2` that need a full ROS 2. Each of these verbs prints a message with an alternative."""
 
 from __future__ import annotations
 

@@ -1,12 +1,12 @@
-"""Run untrusted commands. All student code is started here.
+"""Run untrusted commands. This module starts all student code.
 
 bubblewrap creates two kinds of containers:
 
-- a **room** contains our processes for one trial (the simulator). They run as an ordinary user,
-  with separate pid and network namespaces, and only the loopback interface. They receive a student node's messages,
+- a **room** contains the grader's own processes for one trial (the simulator). These processes run as an ordinary user,
+  with separate pid and network namespaces, and only the loopback interface. They read the messages of a student's node
   with libraries that may have security holes;
 - a **cell** contains a student's process. It has its own user, pid, ipc, uts, cgroup and mount namespaces, no network
-  but the room's, no files from the disk except those in `View`, a system call filter (system_calls.py), and
+  except that of the room, no files from the disk except those in `View`, a system call filter (system_calls.py), and
   limits on memory, processes, files, CPU and disk. usage.py watches totals that the kernel does not limit.
 
 These functions only return command lines. The caller starts and stops the process. Input and output use pipes.
@@ -68,7 +68,9 @@ def program() -> str | None:
 def room(
     argv: Sequence[str], view: View, *, env: Mapping[str, str], user: int | None, cwd: Path | None = None
 ) -> list[str]:
-    """Return the command that runs `argv` as an ordinary user in a separate network. It is for our processes.
+    """Return the command that runs `argv` as an ordinary user in a separate network.
+
+    A room is for the grader's own processes.
 
     `user` comes from user.cell_user(): the user id to switch to if the caller is root, or None.
     """
@@ -93,11 +95,13 @@ def cell(
     info_fd: int | None = None,
     filter_fd: int | None = None,
 ) -> list[str]:
-    """Return the command that runs `argv` in a cell. With `network`, the cell uses the caller's network (a room's).
+    """Return the command that runs `argv` in a cell.
 
-    `filter_fd` is the system call filter from system_calls.call_filter(). The process must inherit it. A root
-    caller must put the cell into a room, in which it is an ordinary user, because the limit on processes does not apply
-    to root. bubblewrap writes JSON with the pid of the cell's first process to `info_fd`.
+    With `network`, the cell shares the network of the room in which the caller runs.
+
+    `filter_fd` is the system call filter from system_calls.call_filter(). The process must inherit this descriptor. A
+    root caller must put the cell into a room, in which it is an ordinary user, because the limit on processes does not
+    apply to root. bubblewrap writes JSON with the pid of the cell's first process to `info_fd`.
     """
     command = [_bwrap(), "--unshare-user", "--disable-userns", "--unshare-pid", "--unshare-ipc", "--unshare-uts"]
     command += ["--unshare-cgroup-try", "--uid", "1000", "--gid", "1000", "--hostname", "robot"]
@@ -122,7 +126,7 @@ def lone_cell(
     user: int | None,
     filter_fd: int | None = None,
 ) -> list[str]:
-    """Return the command that runs `argv` in a cell with a separate network. `user` is as for a room.
+    """Return the command that runs `argv` in a cell with a separate network. `user` has the same meaning as in `room`.
 
     with call_filter() as filter_fd, cell_user() as user:
         command = lone_cell(["colcon", "build"], view, env=env, limits=Limits(), user=user, filter_fd=filter_fd)
@@ -133,7 +137,7 @@ def lone_cell(
 
 
 def usable() -> bool:
-    """Return whether cells work here. The test takes a few milliseconds."""
+    """Return whether sandbox cells work on this machine. The test takes a few milliseconds."""
     return why_unavailable() is None
 
 
@@ -156,7 +160,7 @@ def require(*, trusted: bool = False) -> bool:
 
 
 def why_unavailable() -> str | None:
-    """Try a cell. Return None if it works, and otherwise the reason and a remedy."""
+    """Try to start a cell. Return None if this works, and otherwise the reason and a remedy."""
     if program() is None:
         return _not_installed()
     view = View(read_only=())

@@ -1,11 +1,12 @@
 """Control groups: the kernel limits the total resource use of a cell, if the grader may create groups.
 
-Root may create them nearly everywhere. An ordinary user may if systemd has delegated a part of the tree and the
-grader runs in it. The limit of the group is `ABOVE` higher than that of usage.py, so that usage.py stops a cell first
-and records the reason. The group stops processes that grow too fast for usage.py, and limits socket and pipe memory.
+Root can create control groups nearly everywhere. An ordinary user can create them if systemd has delegated a part of
+the tree and the grader runs in that part. The limit of the group is higher by `ABOVE` than the limit in usage.py, so
+that usage.py stops a cell first and records the reason. The group stops processes that grow too fast for usage.py, and
+limits socket and pipe memory.
 
-Both versions are supported. In version 2, a group is a folder in one tree; in version 1, a folder in each controller's
-tree (https://docs.kernel.org/admin-guide/cgroup-v2.html and cgroup-v1/).
+Versions 1 and 2 of control groups are supported. In version 2, a group is a folder in one tree; in version 1, a folder
+in each controller's tree (https://docs.kernel.org/admin-guide/cgroup-v2.html and cgroup-v1/).
 """
 
 from __future__ import annotations
@@ -64,7 +65,7 @@ class ControlGroup:
 
 @contextmanager
 def control_group(limits: Limits) -> Iterator[ControlGroup]:
-    """Yield a new group for a cell with these limits, or an empty one if groups are not possible.
+    """Yield a new group for a cell with these limits, or an empty group if groups are not possible.
 
     with control_group(limits) as group:
         subprocess.run(group.joined(command), check=True)
@@ -131,7 +132,7 @@ def _own() -> Iterator[tuple[str, str]]:
 
 
 def _remove(folder: Path) -> None:
-    """Remove a group. The kernel refuses this until all processes in the group have exited."""
+    """Remove a group. The kernel refuses to remove a group whose processes have not all exited."""
     until = time.monotonic() + GONE_S
     while folder.is_dir() and time.monotonic() < until:
         with suppress(OSError):

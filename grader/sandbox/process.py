@@ -25,8 +25,8 @@ _CHUNK = 1024 * 1024
 class Finished:
     """The result of a child process.
 
-    `too_much` is True if it was stopped because it wrote too much standard output. `out_of` is the limit of `watch`
-    that it exceeded.
+    `too_much` is True if the process was stopped because it wrote too much standard output. `out_of` is the limit of
+    `watch` that the process exceeded.
     """
 
     exit_code: int
@@ -90,7 +90,7 @@ class _Pump:
     def serve(self, deadline: float, stopped: Callable[[], bool]) -> bool:
         """Serve until the child has closed its pipes or written too much. Return False at the deadline (monotonic, s).
 
-        `stopped` is called several times per second. Serving also ends if it returns True.
+        `stopped` is called several times per second. Serving also ends if `stopped` returns True.
         """
         with self._selector:
             while self._selector.get_map() and not self.too_much:

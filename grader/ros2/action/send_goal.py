@@ -37,7 +37,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Send the goal. Return 0 regardless of its result.
+    """Send the goal. Return 0 regardless of the goal's result.
 
     Raises:
         Ros2Error: the type is not installed, or the goal does not match the type.

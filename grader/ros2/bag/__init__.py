@@ -1,1 +1,1 @@
-"""The verbs of `ros2 bag`, one module each. They use the library rosbags to read and write the files."""
+"""The verbs of `ros2 bag`, one module each. The verbs use the library rosbags to read and write bags."""

@@ -1,4 +1,4 @@
-"""The node that plays a bag. It publishes the messages at their recorded rate."""
+"""The node that plays a bag. The node publishes the messages at their recorded rate."""
 
 from __future__ import annotations
 
@@ -161,7 +161,7 @@ class Clock:
         self._last = 0.0
 
     def publish(self, stamp_ns: int) -> None:
-        """Publish a time (ns), unless less than one period has passed since the last one."""
+        """Publish a time (ns), unless less than one period has passed since the last message."""
         if time.monotonic() - self._last < self.period_s:
             return
         self._last = time.monotonic()

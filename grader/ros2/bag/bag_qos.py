@@ -23,7 +23,7 @@ def offered(publishers: Sequence[Any]) -> list[Qos]:
 
 
 def adapted(publishers: Sequence[Any]) -> QoSProfile:
-    """Return a profile that is compatible with every publisher: as strict as the least strict one."""
+    """Return a profile that is compatible with every publisher: as strict as the least strict publisher."""
     profiles = [publisher.qos_profile for publisher in publishers]
     return _common(
         [profile.reliability == QoSReliabilityPolicy.RELIABLE for profile in profiles],

@@ -1,4 +1,4 @@
-"""The node that records a bag. It subscribes to topics as they appear, and writes the messages unchanged."""
+"""The node that records a bag. The node subscribes to topics as they appear, and writes the messages unchanged."""
 
 from __future__ import annotations
 
@@ -144,8 +144,8 @@ class Recorder:
     def _drain(self) -> None:
         """Write the messages that arrived before recording ended but have not been handled.
 
-        They are read directly from the subscriptions, since an executor handles ready callbacks in any order. The
-        depth of the queue limits the number of waiting messages.
+        These messages are read directly from the subscriptions, since an executor handles ready callbacks in any order.
+        The depth of the queue limits the number of waiting messages.
         """
         for subscription in self._node.subscriptions:
             for _ in range(bag_qos.DEPTH):

@@ -66,7 +66,8 @@ class BagWriter:
     def add_topic(self, topic: str, kind: str, offered: Sequence[Qos] = (), definition: str | None = None) -> None:
         """Add a topic, so that its messages can be written.
 
-        `definition` is the definition of the type in another bag, used if the type is not installed. It may be empty.
+        `definition` is the definition of the type in another bag, used if the type is not installed. This text may be
+        empty.
 
         Raises:
             Ros2Error: the type of the topic is not installed, and `definition` is None.
@@ -131,7 +132,7 @@ class BagWriter:
 def _as_rosbag2_names_it(folder: Path, ending: str) -> None:
     """Rename the file and the distribution as in rosbag2: bag/bag_0.mcap, jazzy.
 
-    The metadata is replaced last. If it is missing, `ros2 bag reindex` restores it.
+    The metadata is replaced last. If the metadata is missing, `ros2 bag reindex` restores it.
     """
     metadata = folder / "metadata.yaml"
     data = yaml.safe_load(metadata.read_text("utf-8"))

@@ -76,7 +76,7 @@ def absolute(names: Iterable[str]) -> list[str]:
 
 
 def contains(topic: str, pattern: str) -> bool:
-    """Return whether a regular expression matches any part of a topic's name. An empty one matches no topic.
+    """Return whether a regular expression matches any part of a topic's name. An empty expression matches no topic.
 
     Raises:
         Ros2Error: the pattern is not a regular expression.

@@ -81,7 +81,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def play(args: argparse.Namespace, *, burst: float = 0) -> int:
-    """Play the bag with these options. The first `burst` messages are published without waiting, even when paused.
+    """Play the bag with these options. The first `burst` messages are published without waiting, even while paused.
 
     Raises:
         Ros2Error: the path is not a bag, the bag is damaged, or none of its topics can be published.

@@ -36,10 +36,10 @@ class Saved(NamedTuple):
 def recover(folder: Path) -> None:
     """Replace the files of a bag with a complete bag that contains all readable messages in order.
 
-    The old files are kept until the new ones are complete.
+    The old files are kept until the new files are complete.
 
     Raises:
-        Ros2Error: the folder contains no bag files, or they cannot be read.
+        Ros2Error: the folder contains no bag files, or the files cannot be read.
     """
     # The last file of a split bag is in a separate folder until it is complete (split_writer.py).
     part = f"{glob.escape(folder.resolve().name)}_[0-9]*"

@@ -56,12 +56,12 @@ class SplitWriter:
         self._begun_ns: int | None = None
 
     def add_topic(self, topic: str, kind: str, offered: Sequence[Qos] = ()) -> None:
-        """Add a topic to this file and the following ones, as `BagWriter.add_topic` does."""
+        """Add a topic to this file and the following files, as `BagWriter.add_topic` does."""
         self._part.add_topic(topic, kind, offered)
         self._topics.append((topic, kind, offered))
 
     def write(self, topic: str, kind: str, stamp_ns: int, data: bytes) -> None:
-        """Write a message to this file, or to a new one if this file is full. See `BagWriter.write`."""
+        """Write a message to this file, or to a new file if this one is full. See `BagWriter.write`."""
         size = len(data) + _RECORD_BYTES
         begun_ns = stamp_ns if self._begun_ns is None else self._begun_ns
         large = self._most_bytes and self._bytes and self._bytes + size > self._most_bytes
@@ -113,7 +113,7 @@ class SplitWriter:
 
 
 def joined(earlier: dict[str, Any], later: dict[str, Any]) -> dict[str, Any]:
-    """Return the metadata of a bag that combines the files of two others. `earlier` may be empty."""
+    """Return the metadata of a bag that combines the files of two other bags. `earlier` may be empty."""
     if not earlier:
         return later
     both = [one for one in (earlier, later) if one["message_count"]] or [later]

@@ -1,1 +1,1 @@
-"""The verbs of `ros2 component` that only read, one module each."""
+"""The verbs of `ros2 component` that change nothing, one module each."""

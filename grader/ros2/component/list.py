@@ -1,4 +1,4 @@
-"""The verb `component list`: print the running containers. Only a full ROS 2 can list their components."""
+"""The verb `component list`: print the running containers. Only a full ROS 2 can list the components in a container."""
 
 from __future__ import annotations
 

@@ -45,7 +45,10 @@ def is_running() -> bool:
 
 
 def start(*, debug: bool = False) -> None:
-    """Start a daemon, which exits immediately if another one is running. With `debug`, it logs to this terminal."""
+    """Start a daemon, which exits immediately if another one is running.
+
+    With `debug`, the daemon logs to this terminal.
+    """
     target = None if debug else subprocess.DEVNULL
     server = interpreter("-m", "grader.ros2.daemon.server", *(["--debug"] if debug else []), searches=True)
     subprocess.Popen(

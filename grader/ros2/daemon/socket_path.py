@@ -1,7 +1,7 @@
 """The address of the daemon for a user, a domain and a network.
 
-The socket is in a folder that only this user can access. Its name depends on everything that determines which graph a
-node discovers.
+The socket is in a folder that only this user can access. The name of the socket depends on everything that determines
+which graph a node discovers.
 """
 
 from __future__ import annotations

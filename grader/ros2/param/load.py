@@ -23,7 +23,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Set all parameters. Return 0 even if the node rejects some of them.
+    """Set all parameters. Return 0 even if the node rejects some of the parameters.
 
     Raises:
         Ros2Error: the file cannot be read, or it is not a parameter file.

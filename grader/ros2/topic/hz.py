@@ -36,7 +36,10 @@ class Rate:
 
 
 def rate(gaps_ns: Collection[int]) -> Rate:
-    """Return the statistics of one or more intervals between messages (ns). If all are zero, the rate is 0."""
+    """Return the statistics of one or more intervals between messages (ns).
+
+    If all intervals are zero, the rate is 0.
+    """
     mean = sum(gaps_ns) / len(gaps_ns)
     deviation = math.sqrt(math.fsum((gap - mean) ** 2 for gap in gaps_ns) / len(gaps_ns))
     hertz = 1e9 / mean if mean > 0 else 0.0

@@ -118,7 +118,10 @@ def _publish(
     times: int,
     args: argparse.Namespace,
 ) -> None:
-    """Publish `times` messages, or publish forever if it is 0. Finally, wait until the last message has been sent."""
+    """Publish `times` messages, or publish forever if `times` is 0.
+
+    Finally, wait until the last message has been sent.
+    """
     from rclpy.duration import Duration
 
     from grader.graph.discovery import nap, spin_until

@@ -23,7 +23,7 @@ _POLL_S = 0.02
 
 
 def expanded(node: Node, name: str) -> str:
-    """Return the full name of a topic: "turtle1/pose" -> "/turtle1/pose".
+    """Return the full name of a topic, such as "/turtle1/pose" for "turtle1/pose".
 
     Raises:
         Ros2Error: no topic can have this name.
