@@ -197,7 +197,7 @@ def in_words(error: Exception) -> str:
 def _overwhelmed(how: str) -> Finding:
     observed = f"The trial could not be finished: the node made the simulator fail ({shorten(how, 150)})."
     expected = "The simulator keeps running while the node publishes and calls services at a reasonable rate."
-    cause = "The node sends without a pause, or sends invalid data. If yours does neither, please report this."
+    cause = "The node sends without a pause, or sends invalid data. If your node does neither, please report this."
     return failed(observed, expected, Cause("overwhelmed", cause))
 
 

@@ -96,7 +96,7 @@ class GraphQuestion:
     """
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
-    find: str = choice("topic", "type", "node", about="The property of each endpoint that the question is about.")
+    find: str = choice("topic", "type", "node", about="The question asks for this property of each endpoint.")
     among: str = choice("publisher", "subscription", "all", about="The kind of endpoint that counts.")
     node: str = string("a node's full name", start="/", default="", about="Only endpoints of this node count.")
     type_starts: str = string(
@@ -104,7 +104,10 @@ class GraphQuestion:
     )
     type_ends: str = string("the end of a type name", default="", about="Only types that end with this string count.")
     connected_to: str = string(
-        "a node's full name", start="/", default="", about="Only topics on which this node has the other end count."
+        "a node's full name",
+        start="/",
+        default="",
+        about="A topic counts only if this node has an endpoint of the opposite kind on it.",
     )
     form: str = choice("text", "list", about="Whether the answer is a single string or a list of all matching strings.")
 

@@ -42,13 +42,15 @@ class Arc:
     radius_tolerance_m: float = number(0.06, above=0, about="The maximum error of the radius.")
     residual_m: float = number(0.03, above=0, about="The maximum deviation of the piece from the fitted circle (RMS).")
     direction: str = choice("counter-clockwise", "clockwise", about="The direction of the turn.")
-    angle_deg: float = number(0.0, at_least=0, about="The angle of the arc; any angle if 0.")
+    angle_deg: float = number(0.0, at_least=0, about="The angle of the arc; 0 allows every angle.")
     angle_tolerance_deg: float = number(12.0, above=0, about="The maximum error of the angle.")
-    speed_m_s: float = number(0.0, at_least=0, about="The speed; any speed if 0.")
+    speed_m_s: float = number(0.0, at_least=0, about="The speed; 0 allows every speed.")
     speed_tolerance_m_s: float = number(0.05, above=0, about="The maximum error of the speed.")
     from_s: float = number(0.0, at_least=0, about="Only the movement after this time counts.")
     until_s: float = number(600.0, above=0, about="Only the movement before this time counts.")
-    red: float = number(-1.0, at_least=-1, at_most=255, about="The colour of the pen; any colour if it is left out.")
+    red: float = number(
+        -1.0, at_least=-1, at_most=255, about="The colour of the pen; without this key, every colour counts."
+    )
     green: float = number(-1.0, at_least=-1, at_most=255, about="The green component of the colour.")
     blue: float = number(-1.0, at_least=-1, at_most=255, about="The blue component of the colour.")
 
@@ -78,7 +80,7 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
     if params.color is not None and _pieces(evidence, chosen) > 1:
         color = ", ".join(map(str, params.color))
         observed = f"The turtle drew with the colour {color}, then with another one, and then with the first one again."
-        text = "The node starts again after its last arc. The last state must be one in which it sends only zeros."
+        text = "The node starts again after its last arc. In its last state, the node must send only zeros."
         return failed(observed, expected, Cause("drives-on", text, evidence.place("publish")))
     points = np.append(np.flatnonzero(chosen)[0], np.flatnonzero(chosen) + 1)
     x, y = trajectory.x[points], trajectory.y[points]
@@ -121,7 +123,7 @@ def _other_angle(evidence: Evidence, params: Arc, chosen: Steps, angle: float) -
     too_long = angle > params.angle_deg
     if too_long and np.flatnonzero(chosen)[-1] == len(chosen) - 1:
         observed = f"This arc has an angle of {angle:.0f} degrees, and the turtle was still driving it at the end."
-        text = "The state does not change after the last call of this arc. From which value does the counter count?"
+        text = "The state does not change after the last timer call of this arc. At which value does the counter start?"
         return observed, Cause("drives-on", text, evidence.place("publish"))
     if not too_long and params.color is not None and _goes_on(evidence, chosen):
         text = "The pen must have this colour before the turtle moves: wait for the response before you drive."
@@ -141,7 +143,10 @@ def _not_followed(evidence: Evidence, params: Arc) -> Cause | None:
     after = [each for each in evidence.commands if params.from_s <= each.t_s <= params.until_s]
     if before and after and (before[-1].linear, before[-1].angular) != (after[0].linear, after[0].angular):
         return None
-    text = "The parameter was set, but the commands did not change. Read it with get_parameter before each command."
+    text = (
+        "The parameter was set, but the commands did not change. Read the parameter with get_parameter before each "
+        "command."
+    )
     return Cause("parameter-not-followed", text, evidence.place("get_parameter"))
 
 

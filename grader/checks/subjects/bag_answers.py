@@ -92,7 +92,7 @@ def _truth(evidence: Evidence, params: BagAnswer) -> float:
 
 def _why(quantity: str, value: float, band: Band) -> Cause:
     if any(band.holds(value * factor) for factor in (1e-9, 1e9)):
-        return Cause("nanoseconds", "Time stamps in a bag are in nanoseconds. A second has 1,000,000,000 of them.")
+        return Cause("nanoseconds", "Time stamps in a bag are in nanoseconds. A second has 1,000,000,000 nanoseconds.")
     if quantity == "rate" and value and band.holds(1.0 / value):
         cause = "This is the period, the time between two messages in seconds. The rate is 1 divided by the period."
         return Cause("period-for-rate", cause)

@@ -55,7 +55,7 @@ def builds(evidence: Evidence, _: NoParams) -> Finding:
     if known is not None:
         return known
     if build.timed_out:
-        cause = "setup.py should only call setup(). It must not sleep, ask for input or loop."
+        cause = "setup.py should only call setup(). setup.py must not sleep, ask for input or loop."
         return failed(
             f"`colcon build` was still running after {build.seconds:.0f} s.",
             EXPECTED,
@@ -100,7 +100,7 @@ def _broken(evidence: Evidence) -> Finding:
     where = Where("setup.py", _setup_line(evidence))
     if UNREAD_SETUP in build.log:
         observed = "colcon could not read the arguments of setup() in setup.py."
-        cause = "setup.py should only call setup(). It must not print anything or exit."
+        cause = "setup.py should only call setup(). setup.py must not print anything or exit."
         printed = _line_of(evidence, r"^\s*(?:print|exit|quit|sys\.exit)\(")
         return failed(observed, EXPECTED, Cause("setup-py-output", cause, printed or where))
     words = [line for line in LAST_WORDS.findall(build.log) if "CalledProcessError" not in line]
@@ -111,7 +111,7 @@ def _broken(evidence: Evidence) -> Finding:
         diagnosis: Diagnosis = "package-xml-missing" if missing["file"] == "package.xml" else "data-file-missing"
         last = missing["file"].rpartition("/")[2]
         if last == setup.name != evidence.exercise.package:
-            cause += f" Its name comes from the package name {shorten(last)}."
+            cause += f" The name of the file comes from the package name {shorten(last)}."
             where = Where("setup.py", setup.name_line)
         marker = missing["file"].startswith("resource/")
         named = _line_of(evidence, r"['\"]resource/" if marker else rf"['\"/]{re.escape(last)}['\"]")

@@ -49,13 +49,13 @@ def cancels_goal(evidence: Evidence, params: CancelsGoal) -> Finding:
         if not goals:
             return no_goal(evidence, expected)
         observed = f"The turtle followed no goal when {params.service} was called."
-        text = "Until the service is called, the node sends the next goal as soon as the last one has ended."
+        text = "Until the service is called, the node sends the next goal as soon as the previous goal has ended."
         return failed(observed, expected, Cause("goal-not-sent", text, evidence.place("send_goal_async")))
     call, goal = found
     took = Band.at_most(params.within_s)
     if goal.status == "aborted" and goal.ended_s is not None and took.holds(goal.ended_s - call.t_s):
         observed, cause = why_aborted(evidence, goals, goal)
-        return failed(f"{observed} It was not cancelled.", expected, cause)
+        return failed(f"{observed} The node did not cancel the goal.", expected, cause)
     took_s = float("inf") if goal.cancel_asked_s is None or goal.ended_s is None else goal.ended_s - call.t_s
     if goal.status == "canceled" and took.holds(took_s):
         return passed("The goal was cancelled.", near_edge=took.near(took_s))
@@ -90,7 +90,10 @@ def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
     after = [goal for goal in goals if goal.t_s > found[0].t_s]
     if after:
         observed = f"The node sent another goal {after[0].t_s - found[0].t_s:.1f} s after the call."
-        text = "A cancelled goal also has a result, and its callback is called. Check the status of the result."
+        text = (
+            "A cancelled goal also has a result, and the callback for the result is called. Check the status of the "
+            "result."
+        )
         return failed(observed, expected, Cause("goal-after-cancel", text, evidence.place("get_result_async")))
     return passed("No goal arrived after the call.")
 

@@ -38,7 +38,7 @@ def entry_point(evidence: Evidence, _: NoParams) -> Finding:
         folder = f"lib/{build.package or evidence.exercise.package}"
         observed = f"{executable} was not installed in the folder of the package, {folder}."
         expected = "setup.cfg says where to install executables, so that `ros2 run` finds them."
-        cause = "Compare it with the setup.cfg in the lesson, letter by letter."
+        cause = "Compare your setup.cfg with the one in the lesson, letter by letter."
         if "setup.cfg" not in evidence.submission.files:
             cause = "setup.cfg is missing."
         elif build.package not in (None, evidence.exercise.package):
@@ -59,7 +59,7 @@ def _resolve(evidence: Evidence, module_name: str, attribute: str) -> Finding:
         return _no_module(evidence, module_name)
     if not _is_installed(evidence, file):
         observed = f"{file} is not installed, so {module_name} cannot be imported."
-        cause = "The packages argument of setup() does not list its folder, or the folder has no __init__.py."
+        cause = "The packages argument of setup() does not list the module's folder, or the folder has no __init__.py."
         return failed(
             observed,
             f"The entry point {evidence.trial.executable} needs this module.",
@@ -93,9 +93,11 @@ def _no_module(evidence: Evidence, module_name: str) -> Finding:
         cause = "Write the folder first, then a dot, then the file name without .py."
     else:
         guess = nearest(module_name, modules)
-        cause = f"There is a module {shorten(guess)}." if guess else "Compare it with the names of your files."
+        cause = (
+            f"There is a module {shorten(guess)}." if guess else "Compare the module name with the names of your files."
+        )
         if f"{last}.py" in files:
-            cause = f"{last}.py is next to setup.py. It belongs in the folder {shorten(outer)}."
+            cause = f"{last}.py is next to setup.py. The file belongs in the folder {shorten(outer)}."
     right = nearest(module_name, modules, alike=0.7)
     fix = at(line(evidence), module_name, right) if right is not None else ()
     return failed(observed, expected, Cause("entry-point-module", cause, line(evidence)).fixed_by(fix))
@@ -123,7 +125,7 @@ def _attribute(evidence: Evidence, module: Module, attribute: str) -> Finding:
         observed = f"The entry point {executable} names {shorten(name)}, which is not a function."
         return failed(
             observed,
-            "It names a function that is defined with def.",
+            "The entry point names a function that is defined with def.",
             Cause("entry-point-not-callable", where=Where(module.file, last.lineno)),
         )
     return passed(f"The entry point {executable} names {shorten(name)} in {module.file}.")
@@ -132,7 +134,7 @@ def _attribute(evidence: Evidence, module: Module, attribute: str) -> Finding:
 def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
     executable = evidence.trial.executable
     if not module.nodes[1:]:
-        expected = f"It contains the function {shorten(name)}, which the entry point names."
+        expected = f"The file contains the function {shorten(name)}, which the entry point names."
         where = Where(module.file)
         return failed(
             f"{module.file} contains no code.", expected, Cause("empty-file", "Did you save the file?", where)
@@ -142,7 +144,7 @@ def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
     functions = [node for node in module.nodes if isinstance(node, ast.FunctionDef)]
     at_top = next((node for node in module.nodes if isinstance(node, ast.Call) and _is_top_level(module, node)), None)
     if at_top is not None and not any(node.name == name for node in functions):
-        cause = "The program is at the top level of the file. Move it into a function with that name."
+        cause = "The program is at the top level of the file. Move the program into a function with that name."
         return failed(observed, expected, Cause("top-level-code", cause, Where(module.file, at_top.lineno)))
     inside = next((node for node in functions if node.name == name and node.col_offset), None)
     if inside is not None:
@@ -152,7 +154,7 @@ def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
     top = [node.name for node in functions if node.col_offset == 0]
     cause = "Nothing at the top level of the file has that name."
     if guess or len(top) == 1:
-        cause = f"It has a function {shorten(guess or top[0])}."
+        cause = f"The file has a function {shorten(guess or top[0])}."
     right = guess or (top[0] if len(top) == 1 else None)
     fix = at(line(evidence), f":{name}", f":{right}") if right is not None else ()
     return failed(observed, expected, Cause("entry-point-function", cause, line(evidence)).fixed_by(fix))

@@ -66,7 +66,10 @@ def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
     if not amount.holds(len(told)):
         observed = f"{len(told)} such lines appeared while the turtle turned for {turning_s:.1f} s."
         if len(told) > turning_s / params.period_s:
-            text = "The feedback arrives 62 times per second. Store it, and log it in the callback of a timer."
+            text = (
+                "The feedback arrives 62 times per second. Store the number, and log the stored number in the "
+                "callback of a timer."
+            )
             return failed(observed, expected, Cause("every-message", text, where))
         text = "Log in the callback of the timer while there is a goal."
         return failed(observed, expected, _unheard(evidence) or Cause("feedback-not-logged", text, where))
@@ -142,7 +145,7 @@ def _wrong(
     if all(_holds(evidence, params, *pair, factor=math.degrees(1.0)) for pair in told):
         return failed(observed, expected, Cause("degrees", "The feedback and the line are both in radians.", where))
     if len({line.numbers["remaining"] for line, _ in told}) == 1:
-        text = "The number never changes. Store it in self each time feedback arrives."
+        text = "The number never changes. Store the number in self each time feedback arrives."
         return failed(observed, expected, Cause("stale-feedback", text, where))
     text = "The message has a field feedback, which has the field remaining."
     return failed(observed, expected, Cause("wrong-feedback", text, where))

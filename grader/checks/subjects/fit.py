@@ -62,7 +62,7 @@ def fits_circle(evidence: Evidence, params: FitCall) -> Finding:
     where = evidence.place("lstsq", "solve")
     if values is None or len(values) != 3:
         observed = f"{name} returned {_form(called)}."
-        cause = "It must return three numbers: `return x, y, radius`."
+        cause = f"{name} must return three numbers: `return x, y, radius`."
         return failed(observed, expected, Cause("result-form", cause, where))
     observed = f"{name} returned x={values[0]:.3f}, y={values[1]:.3f} and radius={values[2]:.3f}."
     fit = Fit(arc, (values[0], values[1], values[2]), tolerances(arc, params.rounding_m))
@@ -112,7 +112,7 @@ def _missing(evidence: Evidence, called: Called, expected: str, name: str) -> Fi
     nodes = (node for each in evidence.code.modules if each.file == file for node in each.nodes)
     known = {node.name: node.lineno for node in nodes if isinstance(node, ast.FunctionDef)}
     guess = nearest(name, known)
-    cause = f"It has a function {shorten(guess)}." if guess else ""
+    cause = f"The file has a function {shorten(guess)}." if guess else ""
     where = Where(file, known[guess] if guess else None)
     return failed(f"{file} has no function {name}.", expected, Cause("function-missing", cause, where))
 
@@ -125,7 +125,7 @@ def _late(evidence: Evidence, called: Called, expected: str, name: str) -> Findi
     observed = f"{name} did not end in time (5 s of CPU time)."
     if not called.ended:
         observed = f"{name} was not called with this input, because an earlier call did not end."
-    cause = "A loop may never end, or it waits for something that never happens."
+    cause = "A loop may never end, or the function may wait for something that never happens."
     return failed(observed, expected, Cause("call-too-long", cause, evidence.code.start))
 
 
@@ -134,12 +134,12 @@ def _why_raised(evidence: Evidence, crash: Crash, id_: str) -> Cause | None:
     if any(each.id == id_ and each.lists for each in evidence.trial.calls.points):
         others = [each for each in evidence.run.called or () if each.id != id_ and each.values is not None]
         if others:
-            cause = "It works with numpy arrays, but not with lists. `np.asarray` converts both to an array."
+            cause = "The function works with numpy arrays, but not with lists. `np.asarray` accepts arrays and lists."
             return Cause("lists-refused", cause)
     if evidence.code.calls("lstsq") and (crash.error == "LinAlgError" or "to unpack" in crash.message):
         cause = (
-            "lstsq takes the matrix first and the right side second. It returns four values: the solution, the "
-            "residuals, the rank and the singular values."
+            "lstsq takes the matrix first and the right side second. lstsq returns four values: the solution, "
+            "the residuals, the rank and the singular values."
         )
         return Cause("lstsq-result", cause)
     return None
@@ -168,7 +168,7 @@ def refuses(evidence: Evidence, params: OneCall) -> Finding:
     if crash is not None and called.kind:
         cause = "The caller expects ValueError, and cannot know what another exception means."
         return failed(f"{name} raised {crash.observed}.", expected, Cause("other-error", cause, crash.where or where))
-    cause = "sys.exit ends the whole program. A function raises an exception, and its caller decides."
+    cause = "sys.exit ends the whole program. After an exception, the caller can decide what to do."
     return failed(f"{name} ended the program.", expected, Cause("other-error", cause, where))
 
 

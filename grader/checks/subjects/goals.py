@@ -73,7 +73,7 @@ def sends_goals(evidence: Evidence, params: SendsGoals) -> Finding:
             if crash is not None:
                 return crash_finding(evidence, crash, end_observed(evidence), expected)
             observed = f"The goal sent at {goal.t_s:.1f} s was not reached by the end: its status is {goal.status}."
-            text = "The node itself cancelled it." if goal.status == "canceled" else "The node starts too late."
+            text = "The node itself cancelled the goal." if goal.status == "canceled" else "The node starts too late."
             return failed(observed, expected, Cause("goal-not-reached", text, where))
     if len(goals) < first + amount:
         return _no_more(evidence, goals, expected)
@@ -148,7 +148,10 @@ def _other_heading(
     if abs(normalize(theta + math.radians(heading))) <= SAME_RAD:
         text = "Angles increase to the left, which is counter-clockwise."
         return failed(observed, expected, Cause("wrong-sign", text, where), near_edge=near_edge)
-    text = turned or "Compare this heading with the one that the exercise asks for. It is absolute: 0 is to the right."
+    text = (
+        turned
+        or "Compare this heading with the one that the exercise asks for. A heading is absolute: 0 is to the right."
+    )
     return failed(observed, expected, Cause("wrong-goal", text, where), near_edge=near_edge)
 
 

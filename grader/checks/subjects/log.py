@@ -79,10 +79,10 @@ def _silent(evidence: Evidence, expected: str) -> Finding:
 def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expected: str) -> Finding:
     line = logged[-1]
     observed = f'The last log line is "{shorten(line, 90)}".'
-    why = Cause("log-format", "Compare it letter by letter: capital letters, spaces and dots count.")
+    why = Cause("log-format", "Compare the line letter by letter: capital letters, spaces and dots count.")
     pattern = student_log.Format(params.format).pattern()
     if re.search(r"\{[\w.:]+\}", line):
-        text = "The line contains the braces themselves. Only an f-string replaces them by a value."
+        text = "The line contains the braces themselves. Only an f-string replaces braces by a value."
         where = evidence.place(*LEVELS)
         why = Cause("log-numbers", text, where).fixed_by(at(where, '("', '(f"'))
     elif re.search(r"%[-+.\d]*[dfsi]|\{\}", line):

@@ -57,7 +57,10 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
     early = [line for line in logged if line.t_s < evidence.trial.scenario.pose_from_s]
     if early:
         observed = "The log has a line with numbers before the first pose had arrived."
-        cause = "Before the first pose, the position is unknown, not 0. Keep None until then, and log nothing."
+        cause = (
+            "Before the first pose, the position is unknown, not 0. Until the first pose arrives, store None and log "
+            "nothing."
+        )
         where = evidence.place("info", "create_subscription")
         return failed(observed, expected, Cause("before-first-pose", cause, where))
 
@@ -130,8 +133,8 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
         return failed(observed, expected, Cause("distance-from-zero", cause, where))
     if _is_chords(logged, numbers):
         cause = (
-            "It adds one straight line per second, between the logged positions. On a curve the turtle drives further "
-            "than that. Add a step each time a pose arrives."
+            "The node adds one straight line per second, between the logged positions. On a curve, the turtle drives "
+            "further than the straight line. Add a step each time a pose arrives."
         )
         return failed(observed, expected, Cause("distance-by-chords", cause, where))
     cause = (

@@ -41,7 +41,7 @@ def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
     wanted = draw_numbers(spec, found.student)
     if found != wanted:
         observed = f"The numbers in {spec.file} are not the ones that were drawn for this student."
-        cause = "Do not change the file. Use its numbers in your node."
+        cause = "Do not change the file. Use the file's numbers in your node."
         return failed(observed, f"{_shown(wanted)}.", Cause("numbers-changed", cause, Where(spec.file)))
     return passed(f"{_shown(found)}.")
 

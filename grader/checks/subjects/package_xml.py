@@ -58,7 +58,8 @@ def valid(evidence: Evidence, _: NoParams) -> Finding:
     if manifest.build_type != BUILD_TYPE:
         observed = f"The build type is {shorten(manifest.build_type or 'missing')}."
         cause = (
-            f"Without <build_type>{BUILD_TYPE}</build_type> in <export>, colcon does not treat it as a Python package."
+            f"Without <build_type>{BUILD_TYPE}</build_type> in <export>, colcon does not treat the folder as a Python "
+            "package."
         )
         return failed(
             observed, EXPECTED_BUILD_TYPE, Cause("build-type", cause, _line(evidence, "<build_type>", "<export>"))
@@ -137,7 +138,7 @@ def _why_not_declared(
     """Return the reason why package.xml does not declare the package `name` at all."""
     guess = nearest(name, [each for each in manifest.run_depends if each not in needed and not _used(evidence, each)])
     if guess is not None:
-        cause = f'It declares "{shorten(guess)}". Is that a typing error?'
+        cause = f'The file declares "{shorten(guess)}". Is that a typing error?'
         return Cause("depend-misspelt", cause, _line(evidence, re.escape(guess)))
     comment = re.search(rf"<!--(?:(?!-->).)*\b{re.escape(name)}\b", _text(evidence), re.DOTALL)
     if comment is not None:
@@ -152,9 +153,9 @@ def _why_not_declared(
         )
     cause = "On a computer without this package, nothing would install it together with yours."
     if name in imported:
-        cause = f"{imported[name]} imports it. {cause}"
+        cause = f"{imported[name]} imports the package. {cause}"
     elif imported:
-        cause = f"Your code does not import it, but the task needs it. {cause}"
+        cause = f"Your code does not import the package, but the task needs the package. {cause}"
     return Cause("missing-depend", cause, where)
 
 

@@ -88,7 +88,10 @@ def sets_parameter(evidence: Evidence, params: SetsParameter) -> Finding:
         if crash is not None:
             return crash_finding(evidence, crash, end_observed(evidence), expected)
         observed = f"The node did not answer when {name} was set."
-        text = "A node answers in rclpy.spin. Something blocks its callbacks, or its parameter services are turned off."
+        text = (
+            "A node answers while rclpy.spin runs. Something blocks its callbacks, or its parameter services are "
+            "turned off."
+        )
         return failed(observed, expected, Cause("no-response", text, where))
     successful, reason = result["successful"], result["reason"].strip()
     if params.answer == "accepted" and not successful:

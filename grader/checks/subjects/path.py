@@ -116,7 +116,7 @@ def _no_circle(evidence: Evidence, trajectory: Trajectory, expected: str) -> Fin
         )
     if trajectory.length_m <= MOVED_M:
         if trajectory.turned_rad > TURNED_RAD:
-            cause = "linear.x is the forward speed. Without it the turtle only turns."
+            cause = "linear.x is the forward speed. Without linear.x, the turtle turns on the spot."
             why = _replaced(evidence) or Cause("turns-on-the-spot", cause, _line(evidence))
             return failed("The turtle turned on the spot.", expected, replace(why, diagnosis="turns-on-the-spot"))
         crash = crash_of(evidence)

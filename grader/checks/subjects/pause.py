@@ -77,7 +77,7 @@ def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *,
         observed = (
             f"The same call arrived again at {again_s:.1f} s, while the node was paused, and the turtle drove again."
         )
-        text = "Each call changes the state. The state must not depend on the old one, but only on request.data."
+        text = "Each call changes the state. The new state must not depend on the old state, but only on request.data."
         return failed(observed, expected, Cause("pause-toggles", text, where), near_edge=near_edge)
     if driving:
         observed = f"The turtle still moved {stop_s:.1f} s after the call."

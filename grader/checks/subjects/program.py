@@ -41,23 +41,23 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
     crash = read_traceback(called.stderr, evidence.submission.files)
     if crash is not None and crash.error == "AttributeError" and "Twist" in crash.message:
         observed = f"{name} raised {crash.observed}."
-        cause = "It used a command as a pose. Read only the messages on the topic of the poses."
+        cause = "The program used a command as a pose. Read only the messages on the topic of the poses."
         return failed(observed, expected, Cause("all-messages", cause, crash.where))
     broken = stopped(evidence, called, expected, name)
     if broken is not None:
         return broken
     lines = [line.strip() for line in called.stdout.splitlines() if line.strip()]
     if not lines:
-        cause = "print writes a line. The function main of the entry point must reach it."
+        cause = "print writes a line. The function main of the entry point must reach the line with print."
         return failed(f"{name} printed nothing.", expected, Cause("prints-nothing", cause, evidence.code.start))
     pattern = Format(params.format).pattern()
     found = next((match for match in map(pattern.fullmatch, lines) if match is not None), None)
     where = evidence.place("print")
     if found is None and "nan" in lines[-1]:
-        cause = "NaN is the result of an undefined computation. Where does it come from?"
+        cause = "NaN is the result of an undefined computation. Which computation returns NaN?"
         return failed(f'{name} printed "{shorten(lines[-1], 80)}".', expected, Cause("not-a-number", cause, where))
     if found is None:
-        cause = "Compare it letter by letter: names, spaces and the digits after the decimal point count."
+        cause = "Compare the line letter by letter: names, spaces and the digits after the decimal point count."
         return failed(f'{name} printed "{shorten(lines[-1], 80)}".', expected, Cause("print-format", cause, where))
     given = {key: float(value) for key, value in found.groupdict().items()}
     wrong = [key for key in params.values if not abs(given[key] - truth[key]) <= _within(bag)[key]]
@@ -73,10 +73,7 @@ def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
     expected = f"{name} prints one sentence about what is missing, and ends with an exit code other than 0."
     crash = read_traceback(called.stderr, evidence.submission.files)
     if crash is not None:
-        cause = (
-            "A user cannot read a traceback. Check whether there are poses. If there are none, call sys.exit with a "
-            "sentence."
-        )
+        cause = "A user cannot read a traceback. If there are no poses, call sys.exit with a sentence."
         observed = f"For a bag without poses, {name} ended with {crash.observed}."
         return failed(observed, expected, Cause("program-traceback", cause, crash.where))
     if called.ended == "exit 0":
@@ -98,7 +95,9 @@ def _why(key: str, given: dict[str, float], bag: BagInput) -> Cause:
     if key == "rate":
         value = given[key]
         if value == 0.0 or abs(value * 1e9 - rate) <= rate:
-            return Cause("nanoseconds", "Time stamps in a bag are in nanoseconds. A second has 1,000,000,000 of them.")
+            return Cause(
+                "nanoseconds", "Time stamps in a bag are in nanoseconds. A second has 1,000,000,000 nanoseconds."
+            )
         if abs(value - rate * count / (count - 1)) <= HUNDREDTH:
             return Cause(
                 "rate-off-by-one",
@@ -106,7 +105,8 @@ def _why(key: str, given: dict[str, float], bag: BagInput) -> Cause:
             )
         if abs(value - 1.0 / rate) <= HUNDREDTH:
             return Cause(
-                "period-for-rate", "This is the time between two messages in seconds. The rate is 1 divided by it."
+                "period-for-rate",
+                "This is the time between two messages in seconds. The rate is 1 divided by this time.",
             )
         return Cause(
             "wrong-rate", "The rate is the number of intervals divided by the time from the first to the last message."
@@ -143,7 +143,7 @@ PRINTS = Kind(
     Printed,
     prints,
     about="The executable, started with the name of a `[[trial.bag]]`, prints a line in the format, with the right "
-    "numbers of the poses in the bag. It ends with exit code 0.",
+    "numbers of the poses in the bag. The executable ends with exit code 0.",
 )
 ENDS = Kind(
     "ends_with_message",

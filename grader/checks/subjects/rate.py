@@ -125,7 +125,7 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
         return failed(observed, wanted, Cause("uneven-rate", cause, evidence.place(what.call)), near_edge=near)
     if not first.holds(measured.first_s):
         observed = f"The first {what.noun} arrived {measured.first_s:.1f} s after the start."
-        wanted = f"It arrives within {params.first_within_s:.1f} s."
+        wanted = f"The first {what.noun} arrives within {params.first_within_s:.1f} s."
         return failed(
             observed,
             wanted,
@@ -243,7 +243,7 @@ def _why_mean(evidence: Evidence, what: Subject, mean: float, params: Rate) -> C
     if len(timers) > 1:
         return Cause(
             "several-timers",
-            f"There are {len(timers)} timers. Each of them calls its method at its own rate.",
+            f"There are {len(timers)} timers. Each timer calls its method at its own rate.",
             timers[1][0].where,
         )
     where = timers[0][0].where if timers else evidence.place(what.call)
@@ -259,7 +259,7 @@ def _uneven_cause(evidence: Evidence, what: Subject) -> str:
 
 def _late_cause(evidence: Evidence) -> str:
     if evidence.code.calls("sleep"):
-        return "A sleep before the first one may be the reason."
+        return "A sleep at the start may be the reason."
     return (
         "The wait for a service (wait_for_service) may be the reason."
         if evidence.code.calls("wait_for_service")

@@ -40,16 +40,16 @@ def readable(evidence: Evidence, params: InBag) -> Finding:
         return failed(
             f"There is no folder {params.bag}.",
             expected,
-            Cause("no-bag", "`ros2 bag record` creates it in the current folder."),
+            Cause("no-bag", "`ros2 bag record` creates the folder in the current folder."),
         )
     if bag.problem == "elsewhere":
-        observed = f"There is no bag in {params.bag}, but {shorten(bag.detail)} belongs to one."
+        observed = f"There is no bag in {params.bag}, but {shorten(bag.detail)} belongs to a bag."
         cause = "The option -o sets the name of the bag, which is created in the current folder."
         return failed(observed, expected, Cause("bag-name", cause, Where(bag.detail)))
     if bag.problem == "unfinished":
         cause = (
-            "It is written when you end the recording with Ctrl-C. If the recorder was killed, `ros2 bag "
-            "reindex` makes it."
+            "metadata.yaml is written when you end the recording with Ctrl-C. If the recorder was killed, `ros2 bag "
+            "reindex` writes the file."
         )
         return failed(f"{params.bag} has no metadata.yaml.", expected, Cause("bag-unfinished", cause, where))
     if bag.problem == "storage":
@@ -85,7 +85,7 @@ def topic_in_bag(evidence: Evidence, params: TopicInBag) -> Finding:
         observed = f"{params.topic} has the type {shorten(bag.types[params.topic])} in the bag."
         return failed(observed, expected, Cause("wrong-type", "", where))
     if not bag.counts.get(params.topic):
-        cause = "The topics to record are the last words of the command. Each begins with a slash."
+        cause = "The topics to record are the last words of the command. Each topic begins with a slash."
         return failed(f"The bag contains {a_list(held)}.", expected, Cause("bag-topic", cause, where))
     return passed(f"The bag contains {a_list(held)}.")
 

@@ -37,7 +37,7 @@ class CallsService:
     after: str = string(
         "the full name of a service",
         default=" ",
-        about="A service that must have been called before. If this is left out, the order does not matter.",
+        about="A service that must have been called before. Without this key, the order does not matter.",
     )
 
 
@@ -157,7 +157,10 @@ def _missing(evidence: Evidence, service: str, type_: str, expected: str) -> Fin
     if names:
         guess = nearest(service, names) or names[0]
         observed = f"No service is named {service}. The node offers {a_list([shorten(name) for name in names])}."
-        text = f"The name is the second argument of create_service. It is {service}, including the slash."
+        text = (
+            f"The name is the second argument of create_service. The name of the service is {service}, including the "
+            "slash."
+        )
         if guess.endswith(service):
             text = (
                 "A name without a slash at the beginning is in the namespace of the node; with ~, it is below the "

@@ -130,7 +130,7 @@ def places_differ(evidence: Evidence, params: PlacesDiffer) -> Finding:
     now, before = (_spawned(each) for each in (evidence, evidence.from_trial(params.other)))
     if now and now[: len(before)] == before[: len(now)]:
         observed = f"The node was started twice, and {params.name}1 was at {_at(now[0])} both times."
-        text = "Draw the places with random, and leave out random.seed: it makes the numbers the same each time."
+        text = "Draw the places with random, but without random.seed, which makes the numbers the same each time."
         where = evidence.place("seed") if evidence.code.calls("seed") else evidence.place("Request")
         return failed(observed, expected, Cause("target-place", text, where))
     return passed(expected)
@@ -207,7 +207,7 @@ def _wrong_names(evidence: Evidence, message: Announcement, expected: str) -> Fi
     if missing:
         observed = f"{at} does not name {a_list([shorten(name) for name in missing])}."
         stuck = waits_in_callback(evidence)
-        text = "Add a name to the list in the callback that receives the response of /spawn."
+        text = "Add the name of a turtle to the list in the callback that receives the response of /spawn."
         return failed(observed, expected, stuck or Cause("target-unannounced", text, where))
     return None
 
@@ -250,7 +250,7 @@ def _not_killed(evidence: Evidence, name: str, topic: str, kills: list[Call], ex
         return failed(observed, expected, Cause("not-killed", text, where))
     heard = announcements(evidence.recording, topic)
     if heard and not any(name in message.names for message in heard):
-        text = f"{name} was never announced. Perhaps it is not in the list of the remaining turtles."
+        text = f"{name} was never announced. Perhaps {name} is not in the list of the remaining turtles."
         return failed(f"{name} was caught, but it still exists.", expected, Cause("target-unannounced", text, where))
     why = waits_in_callback(evidence) or why_unasked(evidence, "/kill")
     if why.diagnosis == "service-not-called":

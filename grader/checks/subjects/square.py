@@ -100,13 +100,13 @@ def square(evidence: Evidence, params: Square) -> Finding:
     sides = sides_of(trajectory)
     if sides.curved_share > CURVED_SHARE:
         observed = f"{100.0 * sides.curved_share:.0f} % of the trajectory is curved."
-        cause = "Drive with angular.z at 0, then turn with linear.x at 0. Never do both at once."
+        cause = "Drive with angular.z at 0, then turn with linear.x at 0. Never drive and turn at once."
         return failed(observed, expected, Cause("curves", cause, where))
     if len(sides.lengths) < SIDES:
         observed = f"The trajectory has {count(len(sides.lengths), 'side')}."
         cause = (
             "Four sides and the turns between them must fit into the duration of the trial. "
-            "The node must switch back from turning to driving each time."
+            "After each turn, the node must switch back to driving."
         )
         return failed(observed, expected, Cause("too-few-sides", cause, where))
     return _measured(evidence, params, sides, expected)

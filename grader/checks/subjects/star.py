@@ -81,7 +81,10 @@ def _measured(evidence: Evidence, params: Star, sides: Sides, expected: str) -> 
         observed = f"Side {index + 1} is {length:.2f} m long."
         text = "The length of a side is speed times time. The time is the number of timer calls times the timer period."
         if length > params.side_m and all(command.linear[0] for command in evidence.commands):
-            text = "No command with zeros ends a side, so the turtle continues. Publish one after each side."
+            text = (
+                "No command with zeros ends a side, so the turtle continues. Publish a command with zeros after each "
+                "side."
+            )
         return failed(observed, expected, Cause("side-length", text, where), near_edge=near)
     for index, heading in enumerate(sides.headings[:amount]):
         off = math.degrees(heading) - params.heading_deg - index * params.corner_deg

@@ -60,5 +60,5 @@ STOP = Kind(
     "The node stops on Ctrl-C",
     Stop,
     stop,
-    about="The node runs until Ctrl-C and ends soon after it. Its exit code does not matter.",
+    about="The node runs until Ctrl-C and ends soon after Ctrl-C. The node's exit code does not matter.",
 )

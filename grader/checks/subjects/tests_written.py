@@ -43,7 +43,7 @@ def declared(evidence: Evidence, _: NoParams) -> Finding:
     setup, manifest = evidence.setup_py, evidence.manifest
     if setup is not None and not any(_name(each) == PYTEST for each in setup.tested_with):
         old = setup.tests_require_line
-        cause = "Without it, colcon test runs unittest, which finds no test function of pytest."
+        cause = "Without this entry, colcon test runs unittest, which finds no test function of pytest."
         if old is not None:
             cause = "setuptools ignores tests_require since version 72, and colcon test then runs unittest."
         observed = f'setup.py does not name "{PYTEST}" in extras_require.'
@@ -64,7 +64,7 @@ def _name(requirement: str) -> str:
 def outside(evidence: Evidence, _: NoParams) -> Finding:
     """The tests do not read the source of the node, and do not start it as another process."""
     code = code_of(evidence)
-    expected = "The tests create the node and watch what it publishes. They do not read its file."
+    expected = "The tests create the node and watch what it publishes. The tests do not read the file of the node."
     for module in code.modules:
         for node in module.nodes:
             name = _imported(node, SOURCE_MODULES) or (getattr(node, "attr", "") if _is_of_code(node) else "")
@@ -89,7 +89,7 @@ def outside(evidence: Evidence, _: NoParams) -> Finding:
 
 
 SPIN = "Import the class, create the node in the test, and spin it. Then the test controls the time."
-LOOKS = "The same node can be written differently. A test of its source would then fail, although the node is right."
+LOOKS = "The same node can be written differently. A test of the source would then fail, although the node is right."
 
 
 def _imported(node: ast.AST, modules: frozenset[str]) -> str:

@@ -91,7 +91,7 @@ def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
         return crash_finding(evidence, crash, end_observed(evidence), _expected(params))
     subscribed = [each for each in activity.endpoints(evidence.recording, "subscription") if each.topic == params.topic]
     if subscribed:
-        cause = "A subscription only receives messages. Use create_publisher to send them."
+        cause = "A subscription only receives messages. Use create_publisher to send messages."
         where = evidence.place("create_subscription")
         return failed(
             f"The node subscribes to {params.topic}.", _expected(params), Cause("subscription-instead", cause, where)
@@ -172,7 +172,7 @@ def subscribes(evidence: Evidence, params: Topic) -> Finding:
         return failed(observed, expected, Cause("wrong-type", cause, where))
     if found:
         observed = f"The node subscribes to {a_list(sorted({shorten(each.topic) for each in found}))}."
-        cause = "The topic name is the second argument of create_subscription. Compare it letter by letter."
+        cause = "The topic name is the second argument of create_subscription. Compare the name letter by letter."
         fixes = [right_name(evidence, "create_subscription", each.topic, params.topic) for each in found]
         why = Cause("wrong-topic", cause, where).fixed_by(next(filter(None, fixes), ()))
         return failed(observed, expected, why)

@@ -141,7 +141,9 @@ def _why(six: Six, wanted: Six, off: list[int]) -> tuple[Cause, str]:
             "Such a value comes from a calculation without a defined result, such as infinity minus infinity.",
         ), not_numbers[0]
     if not any(six):
-        return Cause("empty-twist", "All fields of a new Twist are 0. Set them before you publish it."), first
+        return Cause(
+            "empty-twist", "All fields of a new Twist are 0. Set the fields before you publish the message."
+        ), first
     if any(wanted) and _same(six[0], wanted[5]) and _same(six[5], wanted[0]) and not _same(wanted[0], wanted[5]):
         return Cause("values-swapped", "The forward speed and the turning speed are swapped."), "linear.x"
     for index in off:

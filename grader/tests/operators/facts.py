@@ -271,7 +271,7 @@ FACTS: dict[str, Callable[[Facts, re.Match[str], Outcome], bool]] = {
     rf"(?:There is|called) (?:a name |a module |a folder )?{NAME}\. (?:Compare|Upper)": _is_right_word,
     rf"Did you mean {NAME}\?": _is_right_word,
     rf"but there is {NAME}\.": _stands_in,
-    r'It declares "(?P<word>[^"]+)"': _stands_in,
+    r'The file declares "(?P<word>[^"]+)"': _stands_in,
     rf"\b{NAME} is never called": _never_called,
     rf"Nothing calls {NAME}": _is_named_nowhere,
     rf"Line (?P<line>\d+) sets {NAME}": _on_line,

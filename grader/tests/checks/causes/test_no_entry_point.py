@@ -142,8 +142,13 @@ def test_a_script_is_no_entry_point(files: Files, diagnosis: str, where: str, wo
     ("files", "package", "where", "cause"),
     [
         ({"setup.cfg": None}, "my_robot_controller", "setup.py", "setup.cfg is missing."),
-        ({}, "my_robot_controller", "setup.cfg", "Compare it with the setup.cfg in the lesson, letter by letter."),
-        ({}, None, "setup.cfg", "Compare it with the setup.cfg in the lesson, letter by letter."),
+        (
+            {},
+            "my_robot_controller",
+            "setup.cfg",
+            "Compare your setup.cfg with the one in the lesson, letter by letter.",
+        ),
+        ({}, None, "setup.cfg", "Compare your setup.cfg with the one in the lesson, letter by letter."),
         ({}, "my_robot", "setup.cfg", "The folder name must be the package name in package.xml."),
     ],
 )
@@ -165,7 +170,7 @@ def leads_to(target: str) -> Build:
             "entry-point-module",
             "There is a module my_robot_controller.draw_circle.",
         ),
-        ("elsewhere.quaff:main", "entry-point-module", "Compare it with the names of your files."),
+        ("elsewhere.quaff:main", "entry-point-module", "Compare the module name with the names of your files."),
         (
             "draw_circle:main",
             "entry-point-module",
@@ -173,11 +178,11 @@ def leads_to(target: str) -> Build:
         ),
         ("my_robot:main", "entry-point-module", "Write the folder first, then a dot, then the file name without .py."),
         ("my_robot_controller.draw_circle.py:main", "entry-point-py", "Write the module name without the ending .py."),
-        ("my_robot_controller.draw_circle:mian", "entry-point-function", "It has a function main."),
+        ("my_robot_controller.draw_circle:mian", "entry-point-function", "The file has a function main."),
         (
             "my_robot_controller.draw_circle:send_it",
             "entry-point-function",
-            "It has a function main.",
+            "The file has a function main.",
         ),
         ("my_robot_controller.draw_circle:", "entry-point-no-function", "After the module, write a colon"),
     ],

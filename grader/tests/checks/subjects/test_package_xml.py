@@ -67,7 +67,7 @@ def test_format_2_is_valid_and_a_byte_order_mark_does_no_harm() -> None:
 def test_a_misspelt_dependency_is_shown() -> None:
     found = of("dependencies", xml("geometry_msgs", "geometry_msg"))
     assert found.observed == "package.xml does not declare geometry_msgs."
-    assert found.cause == 'It declares "geometry_msg". Is that a typing error?'
+    assert found.cause == 'The file declares "geometry_msg". Is that a typing error?'
 
 
 NODE_IMPORT = "from geometry_msgs.msg import Twist\n"
@@ -94,7 +94,7 @@ def test_what_the_node_imports_must_be_declared(line: str, missing: str | None) 
         return
     assert (found.status, found.diagnosis) == (Status.FAILED, "missing-depend")
     assert found.observed == f"package.xml does not declare {missing}."
-    assert found.cause.startswith(f"{NODE_FILE}:{at + line.count(chr(10)) - 1} imports it.")
+    assert found.cause.startswith(f"{NODE_FILE}:{at + line.count(chr(10)) - 1} imports the package.")
 
 
 def test_the_imports_of_each_node_of_an_exercise_must_be_declared() -> None:
@@ -106,7 +106,7 @@ def test_the_imports_of_each_node_of_an_exercise_must_be_declared() -> None:
     spec = next(each for each in step.checks if each.id == "dependencies")
     found = KINDS["dependencies"].judge(given, spec.params)
     assert found.observed == "package.xml does not declare std_msgs."
-    assert found.cause.startswith(f"{last}:1 imports it.")
+    assert found.cause.startswith(f"{last}:1 imports the package.")
 
 
 def test_another_node_of_the_package_may_import_what_it_likes() -> None:

@@ -98,7 +98,7 @@ def test_an_uneven_rhythm_is_explained_by_the_source(
     ("first", "line", "cause"),
     [
         ("self.count = 0", 17, ""),
-        ("time.sleep(3)", 9, "A sleep before the first one may be the reason."),
+        ("time.sleep(3)", 9, "A sleep at the start may be the reason."),
         (
             "self.client.wait_for_service()",
             17,
