@@ -1,7 +1,8 @@
 """Watch the total resource use of a cell: the memory and number of its processes, its disks, and the files on them.
 
 Resource limits apply to each process separately, and bubblewrap limits the bytes of a tmpfs but not its files. Control
-groups limit totals, but the grader may not be allowed to create them. Checking ten times per second works everywhere.
+groups limit totals, but not every user is allowed to create them. Checking the totals ten times per second works
+everywhere.
 """
 
 from __future__ import annotations
@@ -140,7 +141,10 @@ def _ready_s(pid: int) -> float:
 
 
 def _disks(pid: int) -> dict[int, tuple[int, int]]:
-    """Return the bytes and files on each writable disk of the cell, by device. Empty for a process outside the cell."""
+    """Return the bytes and files on each writable disk of the cell, by device.
+
+    The result is empty for a process outside the cell.
+    """
     root = Path(f"/proc/{pid}/root")
     found = {}
     try:

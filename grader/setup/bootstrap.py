@@ -2,7 +2,7 @@
 
     python3 -m grader.setup.bootstrap (learner | cluster | notebooks | docs | tests) [--python PYTHON]
 
-Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
+Like machine.py, this module runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
 
 import argparse
@@ -177,7 +177,7 @@ def read_arguments(arguments: Sequence[str]) -> argparse.Namespace:
 
 
 def requested_python(name: str) -> machine.Python:
-    """Return the interpreter with this name. Raises ArgumentTypeError if it does not run."""
+    """Return the interpreter with this name. Raises ArgumentTypeError if the interpreter does not run."""
     python = machine.probe(shutil.which(name) or name)
     if python is None:
         message = f"{name} is not a Python that runs here"

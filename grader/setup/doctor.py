@@ -206,9 +206,9 @@ def look_at_ros(ros: Ros, env: Mapping[str, str]) -> Line:
 
 
 def look_at_sandbox() -> Line:
-    """Create a cell like the one in which a student's process runs.
+    """Create a sandbox cell like the one in which a student's process runs.
 
-    Cells are optional for users who check only their own code.
+    Sandbox cells are optional for users who check only their own code.
     """
     why = bubblewrap.why_unavailable()
     if why is None:
@@ -217,7 +217,7 @@ def look_at_sandbox() -> Line:
 
 
 def look_at_limits() -> Line:
-    """Return a line about how the memory and the processes of a cell are counted."""
+    """Return a line about how the memory and the processes of a sandbox cell are counted."""
     with control_group(NODE_LIMITS) as group:
         if group:
             return Line("limits", "memory and processes of a cell are counted by the kernel")

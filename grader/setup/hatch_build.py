@@ -12,7 +12,7 @@ _FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitign
 
 
 class CourseHook(BuildHookInterface):  # type: ignore[type-arg]
-    """Adds the course's folders to the wheel. An editable install finds them in the repository instead."""
+    """Adds the course's folders to the wheel. An editable install uses the folders in the repository instead."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Add the folders. hatchling calls this method before the build."""

@@ -1,6 +1,6 @@
-"""The second half of the set-up: fill .venv from the lock file. It runs in the empty .venv.
+"""The second half of the set-up: fill .venv from the lock file. This module runs in the empty .venv.
 
-`python -m grader.setup.install STAMP`: STAMP is the stamp of bootstrap.py as JSON. It is written to .venv at the
+`python -m grader.setup.install STAMP`: STAMP is the stamp of bootstrap.py as JSON. The stamp is written to .venv at the
 end, with the duration of each stage (s), so an interrupted set-up has no stamp.
 """
 
@@ -103,7 +103,7 @@ def _pip(requirements: Path) -> None:
 
 
 def _uv(*arguments: str) -> float | None:
-    """Run `uv pip install`. Return the duration of the download (s), or None if it failed and pip may succeed.
+    """Run `uv pip install`. Return the duration of the download (s), or None if uv failed and pip may succeed.
 
     Raises: MachineError: the disk is full or not writable.
     """
@@ -127,10 +127,10 @@ def _may_write(folder: Path) -> bool:
 
 
 def _run(command: list[str], env: dict[str, str]) -> Ran:
-    """Run an installer and show its progress line by line. Stop it after two retries without a network.
+    """Run an installer and show its progress line by line. Stop the installer after two retries without a network.
 
-    When both installers write to a pipe, they print a line at the start of each download. This makes slow
-    downloads visible and keeps logs readable.
+    When pip and uv write to a pipe, they print a line at the start of each download, which makes slow downloads visible
+    and keeps logs readable.
     """
     shown: list[str] = []
     rest: list[str] = []

@@ -1,9 +1,9 @@
 """The lock file: the version and hashes of every package that the set-up installs, for all Pythons, in parts.
 
-The file is in pip's format and has sections. `# part: NAME` starts the packages that only one part needs, and
-`# part: NAME NAME` starts those that several parts need. Each set-up installs exactly the packages of its parts.
-`python -m grader.setup.lock` (`make lock`) writes the file. This module uses only the standard library, because the
-set-up reads the file before anything is installed.
+The file is in pip's format and has sections. `# part: NAME` starts the list of packages that only one part needs, and
+`# part: NAME NAME` starts a list of packages that several parts need. Each set-up installs exactly the packages of its
+parts. `python -m grader.setup.lock` (`make lock`) writes the file. This module uses only the standard library, because
+the set-up reads the file before anything is installed.
 """
 
 from __future__ import annotations
@@ -59,7 +59,9 @@ class Entry:
 
 
 def parse(text: str) -> dict[str, list[Entry]]:
-    """Return the entries of each part in the order of the file. An entry that several parts need is in each of them.
+    """Return the entries of each part in the order of the file.
+
+    An entry that several parts need is returned for each part.
 
     Raises:
         UsageError: a line is outside a part or an entry.
@@ -125,7 +127,7 @@ def split(entries: Iterable[Entry], needs: Mapping[str, Collection[str]]) -> str
 
 
 def make(*, upgrade: bool = False) -> str:
-    """Return the content of a new lock file for pyproject.toml, resolved by uv. This needs the network.
+    """Return the content of a new lock file for pyproject.toml, resolved by uv (over the network).
 
     The versions in the existing lock file are kept if they are still compatible, unless `upgrade` is True.
     """

@@ -1,4 +1,4 @@
-"""The properties of this machine: Pythons, a sourced ROS 2, system programs, and messages about missing ones.
+"""The properties of this machine: Pythons, a sourced ROS 2, system programs, and messages about missing programs.
 
 The set-up runs this module with any `python3`, before anything is installed. With an old Python, users must get a
 message instead of a SyntaxError. Therefore, this module and bootstrap.py use only the syntax of Python 3.6 and the
@@ -161,7 +161,7 @@ def probe(executable: str) -> Optional[Python]:
 
 
 def for_ros(python: Python, ros: SourcedRos) -> Python:
-    """Return the interpreter with the modules that it lacks for this ROS 2, or unchanged if the version differs."""
+    """Return the interpreter, with a list of the modules that it lacks for this ROS 2 if its version is right."""
     if python.version[:2] != ros.python or not python.cpython:
         return python
     # Like .venv, use the system's packages, but not those in the user's home.
@@ -175,7 +175,7 @@ def for_ros(python: Python, ros: SourcedRos) -> Python:
 
 
 def find_pythons(path: str) -> Iterator[Python]:
-    """Yield the interpreters on PATH and in the system's folders: first `python3`, then the others, newest first."""
+    """Yield the interpreters on PATH and in the system's folders: first `python3`, then all others, newest first."""
     folders = list(dict.fromkeys([*filter(None, path.split(os.pathsep)), *SYSTEM_PATH]))
     observed = set()
     for name in ["python3", *(f"python3.{minor}" for minor in range(NEWEST[1], OLDEST[1] - 1, -1))]:
@@ -189,10 +189,10 @@ def find_pythons(path: str) -> Iterator[Python]:
 def choose_python(
     pythons: Iterable[Python], *, root: bool, wanted: Optional[Tuple[int, int]] = None
 ) -> Optional[Python]:
-    """Return the first suitable interpreter for .venv. Prefer complete ones to those that lack modules.
+    """Return the first suitable interpreter for .venv. Complete interpreters are preferred to those that lack modules.
 
-    For root, prefer one that other users can also run (not in root's home), since the sandbox drops root's rights.
-    `wanted` is the only suitable (major, minor) version: the one that a sourced ROS 2 was built for.
+    For root, an interpreter that other users can also run (not in root's home) is preferred, since the sandbox drops
+    root's rights. `wanted` is the only suitable (major, minor) version: the version that a sourced ROS 2 was built for.
     """
     best: Optional[Tuple[Tuple[bool, bool, bool], Python]] = None
     for python in pythons:

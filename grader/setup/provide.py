@@ -1,6 +1,6 @@
 """Install programs that the system lacks, as root or with sudo, or return why this is not possible.
 
-Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
+Like machine.py, this module runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
 
 import os
@@ -20,7 +20,7 @@ def provide(needs: Sequence[package_managers.Need], env: Mapping[str, str], say:
     """Print a line with `say`, and then install the needs. Return why something could not be installed.
 
     The required packages are installed first, in one command. Each optional package is installed separately, so that a
-    missing one does not stop the others.
+    missing package does not stop the others.
     """
     path = env.get("PATH", "")
     manager = package_managers.find_manager(path)

@@ -1,6 +1,6 @@
 """Messages that explain why a set-up stopped and what to do, from an error or an installer's output.
 
-Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
+Like machine.py, this module runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
 
 import errno

@@ -10,7 +10,8 @@ from pathlib import Path
 def uv(*arguments: str) -> list[str]:
     """Return the command line of the uv in .venv.
 
-    uv uses the certificates of the system, as other programs do. If the system has none, uv uses its own.
+    uv uses the certificates of the system, as other programs do. If the system has no certificates, uv uses its own
+    certificates.
     """
     stores = ssl.get_default_verify_paths()
     has_certificates = stores.cafile or (stores.capath and any(Path(stores.capath).iterdir()))

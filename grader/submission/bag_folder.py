@@ -1,6 +1,6 @@
 """BagFolder: a bag that a student recorded, read from the files of the submission.
 
-The bag is not trusted. It is read in a process with limits (reader.py), and nothing is written.
+The bag is not trusted. The bag is read in a process with limits (reader.py), and nothing is written.
 """
 
 from __future__ import annotations

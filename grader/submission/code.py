@@ -139,7 +139,7 @@ def _sets(node: ast.AST, path: tuple[str, ...]) -> list[int]:
 def read_code(files: Mapping[str, bytes], first: str | None) -> Code:
     """Parse the node's file `first` and the submission's files that it imports. Without `first`, parse all files.
 
-    The other nodes of the package are irrelevant for this one.
+    The other nodes of the package are irrelevant for the node in `first`.
     """
     paths = {path: None for path in sorted(files) if path.endswith(".py") and not _left_out(path)}
     modules: dict[str, Module] = {}
@@ -214,7 +214,7 @@ def _required_imports(body: Iterable[ast.AST]) -> Iterator[ast.Import | ast.Impo
 
 
 def module_file(module: str, paths: Collection[str]) -> str | None:
-    """Return the file of the submission that has this dotted module name, or None if there is none."""
+    """Return the file of the submission that has this dotted module name, or None if no file has it."""
     path = module.replace(".", "/")
     candidates = (f"{root}{path}{end}" for root in ("", SRC) for end in (".py", "/__init__.py"))
     return next((each for each in candidates if each in paths), None)

@@ -23,7 +23,7 @@ class Names(dict[str, "ast.expr | None"]):
         self._left = MAX_NODES
 
     def spend(self) -> bool:
-        """Count one more node. Return False if the limit is exceeded."""
+        """Count one more node of the syntax tree. Return False if the limit is exceeded."""
         self._left -= 1
         return self._left >= 0
 

@@ -19,8 +19,8 @@ NO_NEWS = re.compile(r"Error\(s\) in package '[^']*':|Error\(s\):|The manifest c
 class Manifest:
     """A package.xml. `run_depends` are the run-time dependencies; `other_depends` are only for building or testing.
 
-    `problem` is the reason why the file is invalid, and `line` the line of the error, if known. The other fields are
-    then empty.
+    `problem` is the reason why the file is invalid, and `line` the line of the error, if known. If there is a
+    `problem`, the other fields are empty.
     """
 
     name: str = ""

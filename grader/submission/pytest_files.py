@@ -61,7 +61,7 @@ def is_test_file(path: str) -> bool:
 
 
 def read_test_code(files: Mapping[str, bytes], folder: str) -> TestCode:
-    """Read the test files. Raises TooLargeError if they are larger than anyone would write by hand."""
+    """Read the test files. Raises TooLargeError if the files are larger than anyone would write by hand."""
     inside = f"{folder}/"
     paths = [
         path

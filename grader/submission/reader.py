@@ -1,7 +1,8 @@
 """Reader: read a student's files in a child process with limits on time and memory.
 
-All such reading must go through `read`. The child is a fork, so it has all its parent's data. It returns plain data.
-A test (grader/tests/test_reading.py) finds every other place that reads a submission.
+All code that reads a student's files must go through `read`. The child process is a fork, so it has all its parent's
+data. The child process returns plain data. A test (grader/tests/test_reading.py) finds every other place that reads a
+submission.
 """
 
 from __future__ import annotations
@@ -62,7 +63,7 @@ def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> 
 
     Raises:
         TooLargeError: the function took too much time or memory.
-        UnreadableError: the function raised an exception that is not one of ours.
+        UnreadableError: the function raised an exception other than the grader's own errors.
         GraderError: the function itself raised this error.
     """
     if _Child.inside:

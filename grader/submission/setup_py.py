@@ -33,7 +33,7 @@ class EntryPoint:
 
 @dataclass(frozen=True)
 class SetupPy:
-    """The arguments of setup() that are constants. The others are None."""
+    """The arguments of setup() that are constants. All other arguments are None."""
 
     name: str | None = None
     name_line: int | None = None

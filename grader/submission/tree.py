@@ -58,12 +58,12 @@ class Entry:
 
     @property
     def is_folder(self) -> bool:
-        """Whether the entry is a folder, and not a link to one."""
+        """Whether the entry is a folder, and not a link to a folder."""
         return stat.S_ISDIR(self.mode)
 
     @property
     def is_file(self) -> bool:
-        """Whether the entry is a regular file, and not a link to one."""
+        """Whether the entry is a regular file, and not a link to a file."""
         return stat.S_ISREG(self.mode)
 
 
@@ -74,9 +74,9 @@ class Tree:
     files: dict[str, bytes] = field(default_factory=dict)
     executable: set[str] = field(default_factory=set)
     rejected: dict[str, str] = field(default_factory=dict)
-    """Path -> the reason why the file is missing from `files`, if the student's folder is at fault."""
+    """Maps a path to the reason why the file is missing from `files`, if the student's folder is at fault."""
     links: dict[str, str] = field(default_factory=dict)
-    """Path -> the target of the link, as written in the link."""
+    """Maps the path of a link to its target, as written in the link."""
     total: int = 0
     """The total size of all files (bytes). A file that is reached through links counts once per link."""
     entries: int = 0
@@ -84,7 +84,10 @@ class Tree:
 
 @contextmanager
 def open_folder(name: str, parent: int | None = None) -> Iterator[int]:
-    """Open a folder and return its descriptor. With `parent`, the name is looked up there and must not be a link."""
+    """Open a folder and return its descriptor.
+
+    With `parent`, the name is looked up in that folder, and must not be a link.
+    """
     flags = os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC | (0 if parent is None else os.O_NOFOLLOW)
     descriptor = os.open(name, flags, dir_fd=parent)
     try:
@@ -168,7 +171,7 @@ def _exists(path: str, folder: int) -> bool:
 
 
 def read_folder(folder: str | os.PathLike[str]) -> Tree:
-    """Call `read_tree` for the folder at this path. Raises OSError if it cannot be opened."""
+    """Call `read_tree` for the folder at this path. Raises OSError if the folder cannot be opened."""
     with open_folder(os.fspath(folder)) as opened:
         return read_tree(opened)
 
@@ -254,7 +257,7 @@ def _add(tree: Tree, path: str, data: bytes, *, executable: bool) -> None:
 
 
 def _resolve(tree: Tree, path: str) -> None:
-    """Replace a link by the content of its target, if the target is one of the files. This does not read the disk."""
+    """Replace a link by the content of its target, if the target is one of the files. Nothing is read from the disk."""
     at = path
     for _ in range(len(tree.links)):
         target = tree.links[at]

@@ -1,8 +1,9 @@
 """Uses of functions, found by the last part of their names, even if the source gives the functions other names.
 
 A search for calls to `sleep` does not find `from time import sleep as nap`, `nap = time.sleep`, `partial(time.sleep,
-1)` or `getattr(time, "sleep")`. It does not find a function in another file that calls `sleep` either. So every mention
-of one of the functions counts as a use, and names in other files that refer to one are followed.
+1)` or `getattr(time, "sleep")`. Such a search also misses a function in another file that calls `sleep`. So every
+mention of one of the functions counts as a use, and names in other files that refer to one of the functions are
+followed.
 """
 
 from __future__ import annotations
@@ -41,11 +42,11 @@ class _File:
 
     module: Module
     functions: dict[str, str] = field(default_factory=dict)
-    """Local name -> one of the functions, as in `from x import FUNCTION as LOCAL`."""
+    """Maps a local name to one of the functions, as in `from x import FUNCTION as LOCAL`."""
     modules: set[str] = field(default_factory=set)
     """Names that may refer to modules."""
     others: dict[str, Top] = field(default_factory=dict)
-    """Local name or MODULE.NAME -> the top-level name in another file that it refers to."""
+    """Maps a local name or MODULE.NAME to the top-level name in another file that it refers to."""
     stored: set[str] = field(default_factory=set)
     """Attributes that the file itself assigns. For example, after `self.sleep = 0` the attribute is not a function."""
 
@@ -162,7 +163,7 @@ def _below(module: str, tops: dict[str, Top]) -> dict[str, Top]:
 
 
 def _use(node: ast.AST, file: _File, names: Collection[str]) -> Iterable[Use]:
-    """Yield the use that this node represents, if it is one."""
+    """Yield the use of a function that this syntax node represents, if any."""
     name: str | None = None
     written: str | None = None
     if isinstance(node, ast.Call):

@@ -1,1 +1,1 @@
-"""The test bench: run a student's tests on a right node and on broken ones, without revealing which is which."""
+"""The test bench: run a student's tests on a correct node and on broken nodes, without revealing which is which."""

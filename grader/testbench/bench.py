@@ -1,7 +1,7 @@
-"""The bench: run a student's tests on the right node several times and on each broken node once, in a random order.
+"""The bench: run a student's tests on the correct node several times and on each broken node once, in random order.
 
-The student's process reports whether its tests passed, and it could lie. But it does not know which node it tests, so a
-lie does not help: tests that always pass, always fail, or pass by chance earn no points.
+The student's process reports whether its tests passed, and it could lie. But this process does not know which node it
+tests, so a lie does not help: tests that always pass, always fail, or pass by chance earn no points.
 """
 
 from __future__ import annotations
@@ -109,8 +109,8 @@ class _Queue:
     def take(self) -> tuple[str, Behaviour] | None:
         """Return the next run, or None.
 
-        If the tests rejected the right node, they earn no points for rejecting broken nodes. The remaining runs then
-        use the right node.
+        If the tests rejected the correct node, they earn no points for rejecting broken nodes. In that case, the
+        remaining runs use the correct node.
         """
         with self._lock:
             if self._closed or sum(each.over for each in self.ended) >= MOST_HANGS:

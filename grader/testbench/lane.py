@@ -58,8 +58,8 @@ class Package:
 class Lane:
     """The cell with its session, as a context manager. On entry, it starts the imports.
 
-    Without a cell, the lane uses `folder`, which no other lane uses. Its nodes then discover no other nodes on the
-    machine.
+    Without a cell, the lane uses `folder`, which no other lane uses. The nodes of such a lane discover no other nodes
+    on the machine.
     """
 
     def __init__(self, ros: Ros, package: Package, duration_s: float, folder: Path | None = None) -> None:
@@ -157,7 +157,10 @@ class Lane:
         return Ended(node, None, time.monotonic() >= until, time.monotonic() - begun)
 
     def _converse(self, brain: Brain, until: float) -> bytes | None:
-        """Answer requests about the node until the session reports the end of the run. Return None if it never does."""
+        """Answer requests about the node until the session reports the end of the run.
+
+        Return None if it reports no end.
+        """
         assert self._process.stdout is not None
         reports = self._process.stdout.fileno()
         asked, rest, received = 0, b"", b""

@@ -15,12 +15,13 @@ MOST_MESSAGE = 1500
 
 @dataclass(frozen=True)
 class NodeRun:
-    """One run of all tests. `node` is the id of the broken node, or "" for the right one.
+    """One run of all tests. `node` is the id of the broken node, or "" for the correct node.
 
-    `exit_code` is that of pytest, or None if the run did not finish on its own. `collected` is the number of tests that
-    pytest found. The other fields describe the first test that did not pass: its name, the message, the file, the line,
-    and what failed: the test itself ("failed"), a fixture ("setup") or the import of its file ("import"). A student's
-    process reports all of this. So only the pass or failure of a run counts, and only together with the other runs.
+    `exit_code` is the exit code of pytest, or None if the run did not finish on its own. `collected` is the number of
+    tests that pytest found. The other fields describe the first test that did not pass: its name, the message, the
+    file, the line, and what failed: the test itself ("failed"), a fixture ("setup") or the import of its file
+    ("import"). A student's process reports all of these values. So only the success or failure of a run counts, and
+    only together with the other runs.
     """
 
     node: str
@@ -45,18 +46,21 @@ class NodeRun:
 
 @dataclass(frozen=True)
 class BenchResult:
-    """The runs on the right node and on the broken nodes. Runs that could no longer change the verdict are missing."""
+    """The runs on the correct node and on the broken nodes.
+
+    Runs that could no longer change the verdict are missing.
+    """
 
     runs: tuple[NodeRun, ...]
     seconds: float = 0.0
 
     @cached_property
     def right(self) -> tuple[NodeRun, ...]:
-        """The runs on the right node."""
+        """The runs on the correct node."""
         return tuple(run for run in self.runs if not run.node)
 
     def of(self, node: str) -> NodeRun | None:
-        """Return the run on this broken node, or None if there was none."""
+        """Return the run on this broken node, or None if there was no such run."""
         return next((run for run in self.runs if run.node == node), None)
 
 
@@ -103,7 +107,7 @@ def runs_of(ended: tuple[Ended, ...]) -> tuple[NodeRun, ...]:
 
 
 def from_json(data: Any) -> BenchResult:  # noqa: ANN401 - JSON
-    """Return the result stored in a recording. Raises KeyError, TypeError or ValueError if the data is not one."""
+    """Return the result stored in a recording. Raises KeyError, TypeError or ValueError if the data is not a result."""
     return BenchResult(tuple(map(_run, data["runs"])), number(data["seconds"]))
 
 

@@ -1,12 +1,12 @@
-"""Run a student's tests in a cell, repeatedly: pytest and rclpy are imported once, and each run is a fork.
+"""Run a student's tests in a sandbox cell repeatedly: pytest and rclpy are imported once, and each run is a fork.
 
-This file runs as a separate script. It reads one line of JSON and the files of the package (a tar stream) from
-standard input, then one byte per run. It writes to standard output: READY as soon as it can run tests, and after each
-run the exit code of pytest, whether the time limit was exceeded, the duration (s), the report's size, and the report.
-It does not know which node a run uses.
+This file runs as a separate script. The session reads one line of JSON and the files of the package (a tar stream) from
+standard input, then one byte per run. The session writes to standard output: READY as soon as it can run tests, and
+after each run the exit code of pytest, whether the time limit was exceeded, the duration (s), the report's size, and
+the report. The session does not know which node a run uses.
 
-Between two runs, it kills all other processes of the cell and empties its disks. So a run finds no trace of the
-earlier ones.
+Between two runs, the session kills all other processes of the cell and empties the disks of the cell. So a run finds no
+trace of earlier runs.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""The trials of one submission. They start during the build, and those in simulated time run in parallel.
+"""The trials of one submission. The trials start during the build, and run in parallel if in simulated time.
 
-They start one after the other, so that most of a processor is left for the build, which all of them wait for. Simulated
-time does not depend on the speed of the machine, so parallel trials do not affect each other. A trial in wall time
-needs the processors to itself, so the caller first waits for the other trials (`settle`).
+The trials start one after the other, so that most of a processor is left for the build, for which all trials wait.
+Simulated time does not depend on the speed of the machine, so parallel trials do not affect each other. A trial in wall
+time needs the processors to itself, so the caller first waits for the other trials (`settle`).
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ class Ahead:
             pool.shutdown()
 
     def start(self, name: str, trial: Trial) -> None:
-        """Start the simulator and the launcher as soon as the previous trials have theirs ready.
+        """Start the simulator and the launcher as soon as those of the previous trials are ready.
 
         If that fails, the trial's `run` raises the error.
         """

@@ -23,7 +23,10 @@ FOUND_S = 0.5
 
 
 class Caller:
-    """Makes each call when it is due. The clients exist from the start, so that discovery is complete by then."""
+    """Makes each call at its time.
+
+    The clients exist from the start, so that discovery is complete before the first call.
+    """
 
     def __init__(self, node: Node, calls: tuple[PlannedCall, ...], now: Callable[[], float]) -> None:
         self._node = node

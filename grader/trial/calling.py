@@ -1,4 +1,4 @@
-"""Call a function or a program of the built package in a cell, without a simulator."""
+"""Call a function or a program of the built package in a sandbox cell, without a simulator."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ def make_calls(
 ) -> bytes:
     """Call the function, or else the executable, and return the output of the cell (see called.read_called).
 
-    `tree` is the install tree of the package (a tar stream). `files` are added next to it, in the current folder of the
-    program, by their paths.
+    `tree` is the install tree of the package (a tar stream). `files` maps paths to the files that are added in the
+    current folder of the program.
 
     Raises:
         MachineError: the sandbox does not work.

@@ -1,8 +1,8 @@
-"""Call a student's function or program in a cell, once per input, in a new process each time.
+"""Call a student's function or program in a sandbox cell, once per input, in a new process each time.
 
-This file runs as a separate script. It reads one line of JSON (`calls`, `script`, `function`, `python_path`, `env`,
-`install`, `files`) and then the install tree, a tar stream, from standard input. It writes one line of JSON for
-each call. A student's code may write such lines too, but it does not know the expected numbers.
+This file runs as a separate script. The script reads one line of JSON (`calls`, `script`, `function`, `python_path`,
+`env`, `install`, `files`) and then the install tree, a tar stream, from standard input. The script writes one line of
+JSON for each call. A student's code can write such lines too, but does not know the expected numbers.
 """
 
 from __future__ import annotations

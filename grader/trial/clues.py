@@ -89,7 +89,10 @@ def _clues(path: str, tree: ast.Module) -> Iterator[Clue]:
 
 
 def _short(node: ast.Attribute) -> str:
-    """Return the source of the expression, or only its last name if it is long. Each part of it may be a clue."""
+    """Return the source of the expression, or only its last name if it is long.
+
+    Each part of the expression may be a clue.
+    """
     return ast.unparse(node) if len(list(islice(ast.walk(node), MOST_NODES + 1))) <= MOST_NODES else node.attr
 
 

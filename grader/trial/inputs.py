@@ -37,7 +37,7 @@ class Inputs:
     """The inputs of a trial.
 
     `drives` contains start times (s) with speeds (m/s, rad/s). `arguments` are additional ROS arguments of the node,
-    and `params_file` is the text of a file with parameters. The other fields are those of Scenario.
+    and `params_file` is the text of a file with parameters. All other fields are those of Scenario.
     """
 
     drives: tuple[tuple[float, float, float], ...] = ()
@@ -104,7 +104,7 @@ def _settings(parameters: Mapping[str, Setting]) -> list[str]:
 
 
 def _params_file(parameters: Mapping[str, Setting]) -> str:
-    """Return the text of a file for `--params-file` (JSON is also YAML), or an empty string if it is not needed."""
+    """Return the text of a file for `--params-file` (JSON is also YAML), or an empty string if no file is needed."""
     return json.dumps({"/**": {"ros__parameters": dict(parameters)}}, indent=2) + "\n" if parameters else ""
 
 

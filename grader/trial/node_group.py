@@ -58,7 +58,7 @@ class NodeGroup:
         return sum(process.read_output(now_s) for process in self.processes)
 
     def waited_to_write(self, size: int) -> bool:
-        """Return whether one of the nodes, which wrote this many bytes in total, may have waited for a reader."""
+        """Return whether one of the nodes (which together wrote this many bytes) may have waited for a reader."""
         return any(process.waited_to_write(size) for process in self.processes)
 
     def worked_s(self, begin: float, end: float) -> float:

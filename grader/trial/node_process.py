@@ -1,4 +1,4 @@
-"""The process of the student's node: start it in a cell, keep its output, and stop it as with Ctrl-C."""
+"""The process of the student's node: start it in a sandbox cell, keep its output, and stop it as with Ctrl-C."""
 
 from __future__ import annotations
 

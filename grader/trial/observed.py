@@ -13,8 +13,9 @@ if TYPE_CHECKING:
 class Call:
     """A service call, with its request and response as plain data, at the time `t_s` of the trial's clock.
 
-    If `by_trial` is False, a node called the simulator. Otherwise, the trial called the node. Then `response` is None
-    and `answered_s` is None until the response arrives, and `missing` says that no node offered the service.
+    If `by_trial` is False, a node called the simulator. Otherwise, the trial called the node. In a call by the trial,
+    `response` and `answered_s` are None until the response arrives, and `missing` says that no node offered the
+    service.
     """
 
     t_s: float
@@ -74,7 +75,7 @@ class PenChange:
 class Track:
     """The track of a turtle other than turtle1: rows of t_s (s), x and y (m) and theta (rad), one per change.
 
-    The first row is its first frame. `gone_s` is the time at which it was killed (s), or None.
+    The first row is the turtle's first frame. `gone_s` is the time at which the turtle was killed (s), or None.
     """
 
     turtle: str

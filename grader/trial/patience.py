@@ -1,4 +1,4 @@
-"""Time limits for a node in simulated time. They apply to CPU time, so the load of the machine has no effect."""
+"""Time limits for a node in simulated time. The limits apply to CPU time, so the load of the machine has no effect."""
 
 from __future__ import annotations
 
@@ -51,7 +51,8 @@ class HandshakePatience:
 class TickPatience:
     """The limit for the node and the simulator to respond to each other at one instant of simulated time.
 
-    Reading the CPU time of the node costs as much as checking its threads. Most instants end before it is necessary.
+    Reading the CPU time of the node costs as much as checking its threads. Most instants end before this is necessary,
+    so the CPU time is read late.
     """
 
     def __init__(self, node: Threads | GroupThreads, now_s: float) -> None:
@@ -74,7 +75,7 @@ class TickPatience:
     def several_worked(self) -> bool:
         """Return whether several threads of the program shared the work, rather than one loop without a pause.
 
-        The threads of rclpy's MultiThreadedExecutor do so by chance: until a thread begins to run a callback, the
+        The threads of rclpy's MultiThreadedExecutor share work by chance: until a thread begins to run a callback, the
         executor submits the same callback again and again, and wakes a thread each time.
         """
         worked_s = sorted(at_s - self._before_s.get(tid, 0.0) for tid, at_s in self._node.run_times_s().items())

@@ -53,8 +53,8 @@ class Recorder(Node):
 
         `now` returns the time of the trial (s). `prefixes` are the folders in which the message types are installed.
 
-        The simulator itself reports its messages on the `simulated` topics (name -> type). The `judged` topics are
-        always recorded, however many other topics there are.
+        The simulator itself reports its messages on the `simulated` topics (a mapping from names to types). The
+        `judged` topics are always recorded, however many other topics there are.
         """
         super().__init__("recorder", namespace=OWN_NAMESPACE, start_parameter_services=False, enable_rosout=False)
         self.now = now
@@ -188,7 +188,10 @@ class Recorder(Node):
         return result
 
     def _own_participant(self) -> bytes:
-        """Return the recorder's participant. No other node can interfere, since the student's does not exist yet."""
+        """Return the recorder's participant.
+
+        No other node can interfere, since the student's node does not exist yet.
+        """
         topic = f"{OWN_NAMESPACE}/whoami"
         publisher = self.create_publisher(Log, topic, 1)
         found = self.get_publishers_info_by_topic(topic)
@@ -233,7 +236,7 @@ class Recorder(Node):
 
 
 def _each_type_first(endpoints: set[Endpoint]) -> list[Endpoint]:
-    """Return the endpoints with one of each type first, so that a hundred of one type cannot crowd out another type."""
+    """Return one endpoint of each type first, so that a hundred endpoints of one type cannot crowd out another type."""
     ordered = sorted(endpoints, key=str)
     first = list({end.type: end for end in reversed(ordered)}.values())
     return first + [end for end in ordered if end not in first]

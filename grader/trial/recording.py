@@ -35,8 +35,8 @@ class Pose:
 class Message:
     """A message that was received.
 
-    `data` is its CDR serialization. `t_s` is its arrival time on the trial's clock (s, 0 when the scenario starts,
-    negative before). `mono_s` is its arrival time on CLOCK_MONOTONIC (s).
+    `data` is the message as serialized in CDR. `t_s` is the arrival time on the trial's clock (s, 0 when the scenario
+    starts, negative before). `mono_s` is the arrival time on CLOCK_MONOTONIC (s).
     """
 
     topic: str
@@ -98,8 +98,8 @@ class Graph:
 class Frames:
     """The state of turtle1 in the simulator, one row per frame (16 ms), as arrays of shape (N,).
 
-    `t_s` is in s, `x` and `y` in m, `theta` in rad, `linear` in m/s and `angular` in rad/s. `wall` says whether the
-    position was clamped.
+    `t_s` is in s, `x` and `y` in m, `theta` in rad, `linear` in m/s and `angular` in rad/s. `wall` says whether a wall
+    limited the position.
     """
 
     t_s: Floats
@@ -127,10 +127,10 @@ class Output:
 class ProcessEnd:
     """How the node's process ended.
 
-    `by` says what stopped it: "itself" (before the scenario was over), or a signal. `out_of` is set if the grader
-    stopped it because it used more "memory", "processes" or "files" than a node may. `stop_s` is the time from SIGINT
-    to its exit (s of wall time), or None if it exited on its own. `t_s` is the time of its exit on the trial's clock.
-    `exit_code` is negative for a signal, as in subprocess.
+    `by` says what stopped the process: "itself" (before the scenario was over), or a signal. `out_of` is set if the
+    grader stopped the process because it used more "memory", "processes" or "files" than a node may. `stop_s` is the
+    time from SIGINT to the exit of the process (s of wall time), or None if the process exited on its own. `t_s` is the
+    time of the exit on the trial's clock. `exit_code` is negative for a signal, as in subprocess.
     """
 
     by: Literal["itself", "SIGINT", "SIGTERM", "SIGKILL"]
@@ -208,7 +208,7 @@ class Recording:
     time)."""
 
     def seen_from(self, executable: str) -> Recording:
-        """Return the recording from the viewpoint of an additional node, with its output and end. Raises KeyError."""
+        """Return the recording from the viewpoint of an additional node, with the output and end of that node."""
         other = {each.executable: each for each in self.beside}[executable]
         return replace(self, stdout=other.stdout, stderr=other.stderr, end=other.end)
 

@@ -1,9 +1,9 @@
 """Rest: detect whether a process is idle, by reading /proc, which does not disturb the process.
 
-Simulated time advances only while the node is idle: every thread sleeps, and none ran between two looks. If a thread
-ran between two looks, the count in its schedstat has changed. A thread that was woken but has not run yet is in state
-R. So two equal looks are enough if the kernel keeps these counts, and the first one need not include the states.
-Otherwise, more looks are needed.
+Simulated time advances only while the node is idle: every thread sleeps, and none ran between two looks at the threads.
+If a thread ran between two looks, the count in its schedstat has changed. A thread that was woken but has not run yet
+is in state R. So two equal looks are enough if the kernel keeps these counts, and the first look need not include the
+states of the threads. If the kernel does not keep these counts, more looks are needed.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class GoneError(Exception):
 class DoubtError(Exception):
     """The process may follow wall time, so its idleness proves nothing. The message says why.
 
-    `by_chance` is true if this error may not occur in another run of the same program.
+    `by_chance` is true if another run of the same program might not raise this error.
     """
 
     def __init__(self, why: str, *, by_chance: bool = False) -> None:
@@ -141,7 +141,10 @@ class Threads:
         raise GoneError
 
     def runs(self) -> tuple[bytes, ...]:
-        """Return the number of runs of each thread of the last look. This takes a third as long as a look."""
+        """Return the number of runs of each thread of the last look.
+
+        Counting the runs takes a third as long as a look.
+        """
         try:
             return tuple([os.pread(schedstat, 64, 0) for _, schedstat in self._files.values()])
         except ProcessLookupError:  # some or all threads have exited, so the result must differ from every look

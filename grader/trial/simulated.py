@@ -1,8 +1,8 @@
 """A trial in simulated time: /clock advances only while the node is idle.
 
-The clock is held at 0 until both sides have discovered each other (the handshake). Then it advances in frames of 16 ms.
-The threads of a node show whether it follows wall time. Any sign that it does is called a doubt, and leads to a trial
-in wall time (grading/clock.py; docs/design.md, decision 3).
+The clock is held at 0 until the simulator and the node have discovered each other (the handshake). Then the clock
+advances in frames of 16 ms. The threads of a node show whether the node follows wall time. Any sign that the node
+follows wall time is called a doubt, and leads to a trial in wall time (grading/clock.py; docs/design.md, decision 3).
 """
 
 from __future__ import annotations
@@ -236,7 +236,10 @@ class SimulatedTrial(Simulation):
         return waits and self.all_nodes_found() and self._clock.get_subscription_count() >= amount
 
     def _wake(self) -> None:
-        """Publish time 0 until each node has woken up twice. This shows that both sides have discovered each other."""
+        """Publish time 0 until each node has woken up twice.
+
+        Then the simulator and the nodes have discovered each other.
+        """
         rest = GroupThreads(self.node.pids, not_of_dds)
         try:
             before = rest.looks()

@@ -47,7 +47,7 @@ class Simulation:
     """The ROS side of a trial. `frame` moves the turtle, and `spin` handles everything that has arrived.
 
     Each time it runs, an executor checks every service and every event, which takes longer than anything else in a
-    frame. `hear` handles only messages. It is sufficient while no other node `may_request` a service.
+    frame. `hear` handles only messages. `hear` is sufficient while no other node `may_request` a service.
     """
 
     held = False
@@ -119,7 +119,7 @@ class Simulation:
     def crowded(self) -> bool:
         """Return whether other programs kept the simulator and the node from running.
 
-        This is irrelevant in simulated time.
+        In simulated time, other programs do not matter.
         """
         return False
 
@@ -252,7 +252,7 @@ class Simulation:
         self.node.read_output(self.now())
 
     def tick(self, now_s: float) -> None:
-        """Run one frame, and publish the time if this clock does so."""
+        """Run one frame, and publish the time if the clock is simulated."""
         self.frame(now_s)
 
 

@@ -1,4 +1,4 @@
-"""The start pose of the turtle: turtlesim's usual one, or one drawn from a seed."""
+"""The start pose of the turtle: the usual pose of turtlesim, or a random pose from a seed."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""The node `spawner`, with which a trial plays the other half of a game: it announces targets and removes caught ones.
+"""The node `spawner`, with which a trial plays the other half of a game: it announces and removes targets.
 
-The node of the trial receives the names on /targets twice a second, and calls /catch to have one removed.
+The node of the trial receives the names on /targets twice a second, and calls /catch to have a turtle removed.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class TargetKeeper(Node):
             turtlesim.add_turtle(target.name, Start(target.x, target.y, 0.0))
 
     def frame(self, now_s: float) -> None:
-        """Announce the remaining targets if they are due at this time (s)."""
+        """Announce the remaining targets if an announcement is due at this time (s)."""
         if now_s >= self._next_s:
             self._next_s = now_s + ANNOUNCED_EVERY_S
             self._publisher.publish(String(data=" ".join(self._left)))

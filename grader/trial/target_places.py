@@ -1,7 +1,7 @@
-"""Draw the places of targets, which are turtles that a node must catch, nearest first.
+"""Choose random places for targets, which are turtles that a node must catch, nearest first.
 
-The places are drawn again until the order is unambiguous: the rule of always going to the nearest target gives a single
-order, and any other rule (by name, by the distance from the start) gives a different order.
+Places are chosen again until the order of the targets is unambiguous: the rule of always going to the nearest target
+gives a single order, and any other rule (by name, by the distance from the start) gives a different order.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Target:
 
 
 def draw_targets(count: int, start: Pose, seed: int) -> tuple[Target, ...]:
-    """Return `count` targets, sorted by name. Draw repeatedly, and use the first draw that meets the conditions."""
+    """Return `count` targets, sorted by name. Random places are tried until the places meet the conditions."""
     draw = random.Random(f"targets {seed}")
     targets: tuple[Target, ...] = ()
     for _ in range(MOST_DRAWS):

@@ -69,7 +69,7 @@ def last_words(stderr: bytes) -> str:
 class WallTimeNeeded(Exception):  # noqa: N818 - not an error
     """Simulated time may misjudge this node. The message says why.
 
-    `by_chance` is true if another trial in simulated time may judge it.
+    `by_chance` is true if another trial in simulated time may be able to judge the node.
     """
 
     def __init__(self, why: str, *, by_chance: bool = False) -> None:
@@ -87,7 +87,10 @@ class OverwhelmedError(Exception):
 
 @cache
 def compile_conductor() -> None:
-    """Compile the modules that the conductor imports if they changed. In its room, it cannot store compiled files."""
+    """Compile the modules that the conductor imports if they changed.
+
+    The conductor itself cannot store compiled files in its room.
+    """
     if not sys.dont_write_bytecode:
         for folder in (_FOLDER, *(_FOLDER / room for room in CONDUCTORS_ROOMS)):
             compileall.compile_dir(folder, maxlevels=0, quiet=2)
@@ -96,7 +99,7 @@ def compile_conductor() -> None:
 class Trial:
     """One trial, as a context manager.
 
-    On entry, it starts the simulator and the launcher, so that both are ready when the build is done.
+    On entry, the trial starts the simulator and the launcher, so that both are ready when the build is done.
     """
 
     def __init__(self, plan: Plan, ros: installation.Ros, *, in_cell: bool) -> None:

@@ -51,6 +51,6 @@ class TurtleWatch:
 
     @property
     def tracks(self) -> tuple[Track, ...]:
-        """The tracks of the turtles besides turtle1: first those that were killed, then the others."""
+        """The tracks of the turtles besides turtle1: first all turtles that were killed, then the rest."""
         alive = [(name, rows, None) for name, rows in self._rows.items()]
         return tuple(Track(name, tuple(rows), gone_s) for name, rows, gone_s in [*self._tracks, *alive])

@@ -1,4 +1,4 @@
-"""A trial in wall time. It is the reference, and the only choice for a node that does not follow ROS time."""
+"""A trial in wall time. Wall time is the reference, and the only choice for a node that does not follow ROS time."""
 
 from __future__ import annotations
 
