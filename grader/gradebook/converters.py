@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import sys
 import tempfile
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +16,7 @@ from nbgrader.converters.base import BaseConverter
 from nbgrader.exchange.default import ExchangeCollect
 
 from grader.errors import GraderError
-from grader.gradebook import readable
+from grader.gradebook import inbound, readable
 from grader.gradebook.copies import copy_of
 from grader.submission import tree
 from grader.submission.reader import read
@@ -28,6 +29,9 @@ if TYPE_CHECKING:
 
 _USERS = ("nbgrader.converters", "nbgrader.apps.autogradeapp", "nbgrader.apps.api")
 """The modules that import Autograde by name. nbgrader has no setting for the class."""
+
+
+_NEVER = datetime(1, 1, 1)  # noqa: DTZ001 - nbgrader compares times without a zone
 
 
 def install() -> None:
@@ -96,14 +100,22 @@ class BoundedCollect(ExchangeCollect):  # type: ignore[misc, unused-ignore]
 
     def _path_to_record(self, path: str) -> dict[str, Any]:
         try:
-            return super()._path_to_record(path)  # type: ignore[no-any-return, unused-ignore]
+            record: dict[str, Any] = super()._path_to_record(path)
+            why = inbound.why_not(Path(path), record["username"], owned=self.check_owner)
         except Exception:
-            self.log.warning("Not collected, because the name has no valid time: %s", tree.shown(path))
-            return {"username": "", "filename": "", "timestamp": 0}
+            record, why = {}, "the name has no valid time"
+        if why:
+            self.log.warning("Not collected, because %s: %s", why, tree.shown(path))
+            return {"username": "", "filename": "", "timestamp": _NEVER}
+        owner = inbound.owner(Path(path)) if self.check_owner else record["username"]
+        if owner != record["username"]:
+            self.log.warning("%s names %s, but belongs to %s", tree.shown(path), record["username"], owner)
+        return record
 
     def copy_files(self) -> None:
         """Copy the files as in the base class, except folders that nbgrader cannot have created."""
         self.src_records: list[dict[str, Any]] = [record for record in self.src_records if record["username"]]
+        self.check_owner = False  # it would stop if a student removes a folder at this moment
         super().copy_files()
 
     def do_copy(self, src: str, dest: str, log: Any = None) -> None:  # noqa: ANN401 - as the base class

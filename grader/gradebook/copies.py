@@ -20,7 +20,7 @@ def copy_of(submission: Path, copy: Path, *, notebooks: bool = True) -> tuple[st
 
     Return the reasons why other entries were omitted.
     """
-    found = read(tree.read_folder, submission)
+    found = read(tree.read_folder, submission, follow=False)
     files = {path: data for path, data in found.files.items() if notebooks or not path.endswith(".ipynb")}
     for path in files if copy.exists() else ():
         (copy / path).unlink(missing_ok=True)

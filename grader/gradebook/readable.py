@@ -21,6 +21,8 @@ TIMESTAMP = "timestamp.txt"
 """The file in which nbgrader stores the time of a submission."""
 MOST_TIMESTAMP = 100
 """The maximum size of that file (bytes)."""
+YEARS = range(2000, 2100)
+"""The years in which a time is valid. In year 9999, a time zone would make the formgrader fail for the whole class."""
 MOST_BYTES = tree.MAX_FILE_BYTES
 """The maximum size of a notebook (bytes)."""
 MOST_VALUES = 500_000
@@ -42,11 +44,16 @@ def time_of(folder: Path) -> datetime | None:
     if not os.path.lexists(path):
         return None
     data = _content(path, MOST_TIMESTAMP)
+    if not data.strip():
+        return None
     try:
-        return parse_utc(data.decode().strip()) if data.strip() else None  # type: ignore[no-any-return, unused-ignore]
+        when: datetime = parse_utc(data.decode().strip())
+        if when.year not in YEARS:
+            raise ValueError(when.year)  # noqa: TRY301
     except Exception as error:  # dateutil raises other exceptions than ValueError, too
         message = f"{TIMESTAMP} does not contain a time"
         raise UnreadableError(message) from error
+    return when
 
 
 def notebook(path: Path) -> str:

@@ -88,7 +88,7 @@ def _submission(name: str, exactly: bool) -> Submission:
 
 @contextmanager
 def _opened(name: str, exactly: bool) -> Iterator[int]:
-    with tree.open_folder(name) as folder:
+    with tree.open_folder(name, follow=True) as folder:
         if exactly:
             tree.require_path(folder, Path(name))
         yield folder

@@ -83,12 +83,12 @@ class Tree:
 
 
 @contextmanager
-def open_folder(name: str, parent: int | None = None) -> Iterator[int]:
+def open_folder(name: str, parent: int | None = None, *, follow: bool = False) -> Iterator[int]:
     """Open a folder and return its descriptor.
 
-    With `parent`, the name is looked up in that folder, and must not be a link.
+    With `parent`, the name is looked up in that folder. With `follow`, the name may be a link.
     """
-    flags = os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC | (0 if parent is None else os.O_NOFOLLOW)
+    flags = os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC | (0 if follow else os.O_NOFOLLOW)
     descriptor = os.open(name, flags, dir_fd=parent)
     try:
         yield descriptor
@@ -170,9 +170,13 @@ def _exists(path: str, folder: int) -> bool:
     return True
 
 
-def read_folder(folder: str | os.PathLike[str]) -> Tree:
-    """Call `read_tree` for the folder at this path. Raises OSError if the folder cannot be opened."""
-    with open_folder(os.fspath(folder)) as opened:
+def read_folder(folder: str | os.PathLike[str], *, follow: bool = True) -> Tree:
+    """Call `read_tree` for the folder at this path. With `follow`, it may be a link to a folder.
+
+    Raises:
+        OSError: the folder cannot be opened.
+    """
+    with open_folder(os.fspath(folder), follow=follow) as opened:
         return read_tree(opened)
 
 

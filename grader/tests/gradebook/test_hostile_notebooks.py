@@ -17,7 +17,7 @@ from grader.errors import TooLargeError, UnreadableError
 from grader.gradebook import readable
 from grader.sandbox import bubblewrap
 from grader.submission.reader import read
-from grader.tests.gradebook.term import FIRST, Term
+from grader.tests.gradebook.term import FIRST, LATER, Term
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -103,6 +103,8 @@ def test_a_notebook_of_an_older_format_is_converted(tmp_path: Path) -> None:
 TIMES: dict[str, Callable[[Path], object]] = {
     "a word": lambda file: file.write_text("yesterday evening"),
     "a date that no calendar has": lambda file: file.write_text("9" * 60),
+    "the end of all time": lambda file: file.write_text("9999-12-31 23:59:59 UTC"),
+    "the beginning of all time": lambda file: file.write_text("0001-01-01 00:00:00 UTC"),
     "20 GiB": sparse,
     "a pipe": pipe,
     "a link": lambda file: link(file, "/dev/zero"),
@@ -156,8 +158,12 @@ def hostile(tmp_path_factory: pytest.TempPathFactory) -> Hostile:
     term.run("release_assignment", HOMEWORK)
     for name, change in SUBMISSIONS.items():
         hand_in(term, name, change, secret)
-    odd = term.exchange / "ros2-topics" / "inbound" / f"mallory+{HOMEWORK}+when I had time"
-    odd.mkdir()
+    inbound = term.exchange / "ros2-topics" / "inbound"
+    (inbound / f"mallory+{HOMEWORK}+when I had time").mkdir()
+    (inbound / f"mallory+{HOMEWORK}+{LATER}").symlink_to(f"anna+{HOMEWORK}+{FIRST}")
+    (inbound / f"nobody+{HOMEWORK}+{LATER}").symlink_to("nowhere")
+    for student in ("..", ".hidden", TITLE):
+        shutil.copytree(inbound / f"anna+{HOMEWORK}+{FIRST}", inbound / f"{student}+{HOMEWORK}+{FIRST}")
     collected = term.run("collect", HOMEWORK)
     # An instructor may also add submissions without nbgrader's exchange.
     for name, change in BESIDE.items():
@@ -223,7 +229,11 @@ def scores(term: Term) -> dict[str, float]:
 
 def test_collect_takes_only_regular_files_of_the_submission(hostile: Hostile) -> None:
     submitted = hostile.folder / "submitted"
-    assert not (submitted / "mallory").exists()
+    assert sorted(path.name for path in submitted.iterdir()) == sorted(["anna", "links", "when", *BESIDE])
+    assert not (submitted.parent / HOMEWORK).exists()
+    assert TITLE not in hostile.collected
+    for why in ("it is not a folder", "the name has control characters"):
+        assert f"Not collected, because {why}" in hostile.collected
     assert not (submitted / "when" / HOMEWORK).exists()
     files = {path.name for path in (submitted / "links" / HOMEWORK).iterdir()}
     assert files == {f"{HOMEWORK}.ipynb", readable.TIMESTAMP}
