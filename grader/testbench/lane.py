@@ -1,4 +1,4 @@
-"""A lane: one cell, in which the student's tests run on one node after another, and the brain of the current node."""
+"""A lane: a sandbox cell in which tests run on one node after another, and the brain of the current node."""
 
 from __future__ import annotations
 

@@ -32,12 +32,12 @@ FOLDER = Path(__file__).parent / "hostile"
 class Attack:
     """The content of expected.toml.
 
-    One of these keys names the trace that the attack leaves without a sandbox, and must not leave with one: `says` (a
-    text in the output), `file` (a path in the observed host), `process` (a part of a command line), `socket`, `kills`
-    (the grader itself), `secret` (the caller's secret in the node's output). `raw` is a shell command that is run in
-    the package's folder; its trace is `says` or `file`.
+    One of these keys names the trace that the attack leaves without a sandbox, and must not leave in a sandbox: `says`
+    (a text in the output), `file` (a path in the observed host), `process` (a part of a command line), `socket`,
+    `kills` (the grader itself), `secret` (the caller's secret in the node's output). `raw` is a shell command that is
+    run in the package's folder; its trace is `says` or `file`.
 
-    An attack on the simulator leaves its trace in the recording with a sandbox too, because the recording is judged.
+    An attack on the simulator leaves its trace in the recording even in a sandbox, because the recording is judged.
     `passes` is a check that would pass if `without` were ignored ("interventions", "participants"). `reaches` is a
     topic, an intervention or a text in the recording, which shows that the attack was made.
     """

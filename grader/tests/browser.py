@@ -37,7 +37,10 @@ def find_browser() -> str | None:
 
 
 def browser_or_reason() -> str:
-    """Return the path of Chromium. Without it, the test is skipped and the reason is shown. In CI, the test fails."""
+    """Return the path of Chromium. Without Chromium, the test is skipped and the reason is shown.
+
+    In CI, the test fails.
+    """
     found = find_browser()
     if found is None:
         if os.environ.get("TESTS_WITHOUT_BROWSER"):

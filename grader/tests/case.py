@@ -65,11 +65,11 @@ class Case:
     advice: tuple[str, ...] = ()
     """The expected advice: the checks worth 0 points that did not pass. They are not listed in `failed`."""
     diagnosis: Mapping[str, str] = ()  # type: ignore[assignment]
-    """Check -> the stable id of the cause."""
+    """Maps a check to the stable id of the cause."""
     where: Mapping[str, str] = ()  # type: ignore[assignment]
-    """Check -> "file:line"."""
+    """Maps a check to the place, as in "file:line"."""
     says: Mapping[str, tuple[str, ...]] = ()  # type: ignore[assignment]
-    """Check -> strings that its message must contain. The key "usage" is for the message of exit code 2."""
+    """Maps a check to strings that its message must contain. The key "usage" is for the message of exit code 2."""
     never: tuple[str, ...] = ()
     """Text that the report must not contain."""
 

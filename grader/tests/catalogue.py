@@ -45,7 +45,7 @@ SHOWN_BY_TESTS = {
     "unreadable": "checks/test_judge.py",
     "wrong-centre": "checks/subjects/test_path.py",
 }
-"""Diagnosis -> the test that shows it. Only a hostile submission or a class can cause these diagnoses."""
+"""Maps a diagnosis to the test that shows it. Only a hostile submission or a class can cause these diagnoses."""
 HEAD = """\
 # The catalogue of mistakes
 

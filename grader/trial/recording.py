@@ -208,7 +208,10 @@ class Recording:
     time)."""
 
     def seen_from(self, executable: str) -> Recording:
-        """Return the recording from the viewpoint of an additional node, with the output and end of that node."""
+        """Return the recording from the viewpoint of an additional node, with the output and end of that node.
+
+        Raises KeyError if no additional node ran this executable.
+        """
         other = {each.executable: each for each in self.beside}[executable]
         return replace(self, stdout=other.stdout, stderr=other.stderr, end=other.end)
 

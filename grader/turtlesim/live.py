@@ -1,7 +1,7 @@
 """`python -m grader.turtlesim.live`: run turtlesim in wall time for another process that shows its pictures.
 
-The program writes each new picture to standard output: four bytes with the length (big endian), followed by a
-PNG image. A slow reader misses some pictures, but never the last one. The program exits when standard input is closed.
+The program writes each new picture to standard output: four bytes with the length (big endian), followed by a PNG
+image. A slow reader misses some pictures, but never the last picture. The program exits when standard input is closed.
 """
 
 from __future__ import annotations

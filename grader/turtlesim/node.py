@@ -63,7 +63,7 @@ class TurtlesimNode(Node):
         """Create the node. turtle1 starts at `start` (m, m, rad), also after a reset.
 
         `Hooks` describes the callbacks. A pose is published every `pose_every` frames, starting at `pose_from_s` (s).
-        The real turtlesim publishes one in each frame. Services are answered `answers_after_s` (s) late. The turtles
+        The real turtlesim publishes a pose in each frame. Services are answered `answers_after_s` (s) late. The turtles
         draw on `canvas`.
         """
         self._pose_every, self._pose_from_s = pose_every, pose_from_s
@@ -147,7 +147,7 @@ class TurtlesimNode(Node):
         return response
 
     def add_turtle(self, wanted: str, start: Start) -> str:
-        """Add a turtle at `start`. Return its name, or "" after logging an error."""
+        """Add a turtle at `start`. Return the turtle's name, or "" after logging an error."""
         name = self.world.spawn(wanted, start)
         if not name:
             self.get_logger().error(f"A turtle named [{wanted}] already exists")
@@ -202,7 +202,7 @@ class TurtlesimNode(Node):
     # --- parameters -------------------------------------------------------------------------------------------
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
-        """Set parameters as rclpy does, but reject invalid ones with the messages of the real turtlesim."""
+        """Set parameters as rclpy does, but reject invalid values with the real turtlesim's messages."""
         return parameters.refusal(self, parameter_list) or super().set_parameters_atomically(parameter_list)
 
     def _parameters_of_ours(self) -> list[Parameter]:

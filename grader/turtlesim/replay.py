@@ -31,7 +31,7 @@ _HAIR_S = 1e-6
 
 @dataclass(frozen=True)
 class Difference:
-    """The largest difference between a recorded value and ours, in the unit of that value (m, rad, m/s, rad/s)."""
+    """The largest difference between a recorded and a computed value, in the unit of the value (m, rad, m/s, rad/s)."""
 
     size: float
     frame: int
@@ -51,7 +51,7 @@ def replay(inputs: Path, poses: Path) -> Difference:
 
 
 def rotations(inputs: Path, frames: int) -> Iterator[Rotation]:
-    """Replay the given number of frames, and yield the rotation after each frame that has one."""
+    """Replay the given number of frames, and yield the rotation after each frame with a rotation."""
     for _, rotation in itertools.islice(_frames(inputs), frames):
         if rotation is not None:
             yield rotation

@@ -1,4 +1,4 @@
-"""The action rotate_absolute of one turtle. It accepts goals, sends feedback in each frame, and sends a result."""
+"""The action rotate_absolute of one turtle. It accepts goals, and sends feedback and results."""
 
 from __future__ import annotations
 

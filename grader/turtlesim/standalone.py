@@ -1,4 +1,4 @@
-"""Run turtlesim in wall time, until Ctrl-C. `grader sim` and the executable turtlesim_node use this."""
+"""Run turtlesim in wall time, until Ctrl-C. `grader sim` and turtlesim_node use this module."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class View(Protocol):
 def main(open_view: OpenView, args: Sequence[str] | None = None) -> int:
     """Run turtlesim; return the exit code, which is 0 after Ctrl-C, or 2 for invalid arguments.
 
-    `open_view` starts the view for `--view` on the given port. If the port is None, the view chooses one.
+    `open_view` starts the view for `--view` on the given port. If the port is None, the view chooses a port.
     """
     arguments = list(sys.argv if args is None else ["turtlesim_node", *args])
     stop = threading.Event()

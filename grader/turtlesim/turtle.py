@@ -1,7 +1,7 @@
-"""The motion of one turtle, frame by frame, as in turtlesim 1.8. It needs neither ROS nor a clock.
+"""The motion of one turtle, frame by frame, as in turtlesim 1.8. This module needs neither ROS nor a clock.
 
 Positions are in m from the lower left corner, angles are in rad counter-clockwise from east, and times are in s on the
-caller's clock. The state is stored in doubles. Messages narrow it to float32.
+caller's clock. The state is stored in doubles, which become float32 in messages.
 """
 
 from __future__ import annotations
@@ -60,7 +60,10 @@ class Pen:
 
 
 class State(NamedTuple):
-    """The state of a turtle after a frame, in m, m, rad, m/s (never negative) and rad/s. `wall`: it hit a wall."""
+    """The state of a turtle after a frame, in m, m, rad, m/s (never negative) and rad/s.
+
+    `wall`: the turtle hit a wall.
+    """
 
     x: float
     y: float
@@ -129,8 +132,8 @@ class Turtle:
     def command(self, linear_x: float, linear_y: float | None, angular_z: float) -> None:
         """Set the velocities (m/s, m/s, rad/s), and abort the current rotation.
 
-        If `linear_y` is None, the sideways velocity does not change, as in a turtlesim that is not holonomic. A turtle
-        that was holonomic before then drifts until it times out.
+        If `linear_y` is None, the sideways velocity does not change, as in a turtlesim that is not holonomic. So a
+        turtle that has just stopped being holonomic drifts sideways until its last command times out.
         """
         self.abort_rotation()
         self._vx, self._spin = linear_x, angular_z

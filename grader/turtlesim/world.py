@@ -32,7 +32,7 @@ class World:
         return next(name for number in self._numbers if (name := f"turtle{number}") not in self.turtles)
 
     def spawn(self, name: str, start: Start) -> str:
-        """Add a turtle and return its name, or "" if `name` is taken. An empty `name` means the next free turtleN."""
+        """Add a turtle and return its name, or "" if `name` is taken. An empty `name` means the next free name."""
         if name in self.turtles:
             return ""
         name = name or self.new_name()

@@ -1,4 +1,4 @@
-"""The address of a view. It is reachable only from this machine, and does not change if possible.
+"""The address of a view. The address is reachable only from this machine, and stays the same if possible.
 
 The port and the token are stored for each user and kind of view, so that an open tab can connect to a restarted
 simulator.
@@ -41,7 +41,10 @@ class Address:
 
 @dataclass(frozen=True)
 class Place:
-    """An address and its listening socket. `before` is True if an earlier view used it, so a tab may still be open."""
+    """An address and its listening socket.
+
+    If an earlier view used the address, `before` is True, since a tab may still be open.
+    """
 
     address: Address
     listening: socket.socket

@@ -32,10 +32,13 @@ Rgb = tuple[int, int, int]
 
 
 class Picture:
-    """An image to which the trail is added. It is repainted only if the trail is cleared or the size changes."""
+    """An image to which the trail is added. The image is repainted only if the trail is cleared or the size changes."""
 
     def __init__(self, side: int) -> None:
-        """Create the image. `side` is in pixels of the terminal, so it has `side` columns and half as many rows."""
+        """Create the image.
+
+        `side` is in pixels of the terminal, so the image has `side` columns and half as many rows.
+        """
         self.side = side
         self._trail = Image.new("RGBA", (side * FINER, side * FINER))
 

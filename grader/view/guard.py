@@ -71,7 +71,7 @@ POLICY = (
 
 
 def answer_headers(host: str) -> dict[str, str]:
-    """Return the headers of every response. They forbid loading from other sites, and embedding in them."""
+    """Return the headers of every response, which forbid loading from other sites, and embedding in other sites."""
     return {
         "content-security-policy": POLICY.format(host=host),
         "x-content-type-options": "nosniff",

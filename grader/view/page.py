@@ -1,4 +1,7 @@
-"""The process that serves the page. It reads from the simulator and ROS, and handles the requests of the pages."""
+"""The process that serves the page.
+
+The process also reads from the simulator and ROS, and handles the requests of pages.
+"""
 
 from __future__ import annotations
 

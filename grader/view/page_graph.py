@@ -20,8 +20,8 @@ _INCH = 72.0
 def laid_out(drawn: Picture) -> dict[str, Any]:
     """Return the size of the graph (points), its nodes and topics with centre and size, and its arrows.
 
-    The points of an arrow are the start of a Bezier curve and three points for each segment. `tip` is the tip of its
-    head.
+    The points of an arrow are the start of a Bezier curve and three points for each segment. `tip` is the tip of the
+    arrowhead.
 
     Raises:
         MachineError: Graphviz cannot draw.

@@ -1,4 +1,4 @@
-"""The server of the page. It serves a few files and has a connection to each page for updates and input."""
+"""The server of the page. The server sends a few files, and has a connection to each page for updates and input."""
 
 from __future__ import annotations
 

@@ -141,7 +141,7 @@ def _write(file: Path, drawn: Picture) -> None:
 
 
 def _shown_live(show: Show, port: int | None) -> bool:
-    """Serve the graph on a page until Ctrl-C. Return False immediately if no browser can show it.
+    """Serve the graph on a page until Ctrl-C. Return False immediately if no browser can show the page.
 
     With --port, or in a terminal over ssh, the user opens the page in a browser on another machine.
     """

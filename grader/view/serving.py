@@ -57,7 +57,7 @@ async def serve(
 ) -> bool:
     """Serve until `ended` is set. Return whether the page could be opened in a browser.
 
-    The page is opened only if `opens` is true. If this fails, return immediately unless `stays` is true.
+    The page is opened only if `opens` is true. If opening the page fails, return immediately unless `stays` is true.
     """
     server = _Server(uvicorn.Config(app, **_SETTINGS))
     serving = asyncio.create_task(server.serve([place.listening]))

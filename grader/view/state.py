@@ -1,4 +1,4 @@
-"""The state of a simulator in its view, built from the messages of feed.py. Pages and terminals use it."""
+"""The state of a simulator in its view, built from the messages of feed.py. Pages and terminals show this state."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The ROS system for a view: the graph, the rates of topics, and the node that drives for the user.
 
-The listening node is hidden and offers nothing, so that it does not change the visible graph. It subscribes to a topic
-only while a page shows the rates, and only if the simulator does not report the rate of the topic.
+The listening node is hidden and offers nothing, so that it does not change the visible graph. This node subscribes to a
+topic only while a page shows the rates, and only if the simulator does not report the rate of the topic.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class System:
 
 
 class Ears:
-    """A thread that spins `node`. It reads the graph at regular intervals and passes it to `tell`.
+    """A thread that spins `node`. The thread reads the graph at regular intervals and passes the graph to `tell`.
 
     `known` returns the topics that are counted elsewhere. `looking` returns whether a page shows the rates.
     """

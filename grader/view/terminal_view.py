@@ -157,7 +157,7 @@ def _loop(shown: Terminal, read: Callable[..., bytes | None], live: Live, hands:
 
 
 def _do(shown: Terminal, data: bytes, hands: Hands) -> bool:
-    """Handle the keys. Return False if one of them quits the program."""
+    """Handle the keys. Return False if a key quits the program."""
     text = data.decode("latin-1")
     for char, what in ((" ", "resume" if shown.state.paused else "pause"), ("x", "clear"), ("z", "reset")):
         if char in text.lower():

@@ -1,7 +1,7 @@
 """The trail in a view: strokes that are sharp at any size, and an image of the older trail below them.
 
-The coordinates are integers in tenths of the canvas's pixels, with the y axis pointing down. They are short
-in JSON and precise enough.
+The coordinates are integers in tenths of the canvas's pixels, with the y axis pointing down. Such integers are short in
+JSON and precise enough.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class Stroke:
 
 
 def _beside(point: Point, begin: Point, end: Point) -> float:
-    """Return the distance of a point from the line segment between two others."""
+    """Return the distance of a point from the line segment between two other points."""
     along = (end[0] - begin[0], end[1] - begin[1])
     length = math.hypot(*along)
     if length == 0:

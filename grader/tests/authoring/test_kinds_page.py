@@ -44,7 +44,7 @@ WITHOUT_UNIT = {
 
 
 def sections() -> dict[str, str]:
-    """Return kind -> its section of the page."""
+    """Map each kind of check to its section of the page."""
     parts = page().split("\n### ")[1:]
     return {part.partition("\n")[0]: part.partition("\n## ")[0] for part in parts}
 

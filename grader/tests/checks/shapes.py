@@ -49,7 +49,7 @@ def uneven() -> list[Timed]:
 
 
 def teleported(given: Recording, *, at_s: float = 5.0, name: str = "teleport_absolute") -> Recording:
-    """Return the same run, in which the turtle is also moved half a metre to the left."""
+    """Return the given run, but also move the turtle half a metre to the left."""
     frames = given.frames
     moved = replace(frames, x=frames.x - 0.5 * (frames.t_s > at_s))
     return replace(given, frames=moved, interventions=(name,))
@@ -112,4 +112,4 @@ SHAPES: dict[str, Callable[[], Recording]] = {
         [*map(as_command, every(0.5, 2.0, 1.0)), Command(10.1, 10.1, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))]
     ),
 }
-"""Name -> a function that makes the recording."""
+"""Maps the name of a run to a function that makes the recording."""

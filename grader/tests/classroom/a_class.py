@@ -84,7 +84,7 @@ def grade(*arguments: object, **env: str) -> subprocess.CompletedProcess[str]:
 
 
 def reports(out: Path) -> dict[str, dict[str, Any]]:
-    """Return student -> report for every result in the folder."""
+    """Map each student to the report in the folder."""
     found = [json.loads(file.read_text("utf-8")) for file in sorted((out / "reports").glob("*.json"))]
     by_student = {data["student"]: data for data in found}
     assert len(by_student) == len(found)

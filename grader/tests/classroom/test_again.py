@@ -1,4 +1,7 @@
-"""A submission that ends with an `error` is graded again if others could be judged. A repeated error is suspicious."""
+"""A submission that ends with an `error` is graded again if other submissions could be judged.
+
+A repeated error is suspicious.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +29,7 @@ STEP = "03-circle-publisher"
 
 
 class Scripted:
-    """An engine with a planned sequence of results for each submission. The last one is repeated."""
+    """An engine with a planned sequence of results for each submission. The last result is repeated."""
 
     def __init__(self, ends: dict[str, list[str]]) -> None:
         self.graded: Counter[str] = Counter()

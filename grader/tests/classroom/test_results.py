@@ -1,4 +1,4 @@
-"""Results on disk: each one is either complete or absent."""
+"""Results on disk: each result is either complete or absent."""
 
 from __future__ import annotations
 

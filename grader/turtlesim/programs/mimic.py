@@ -1,4 +1,7 @@
-"""mimic: make one turtle imitate another one, from input/pose to output/cmd_vel (remap both topics)."""
+"""mimic: make one turtle imitate another turtle.
+
+The node reads poses from input/pose, and publishes commands on output/cmd_vel. Both topics must be remapped.
+"""
 
 from __future__ import annotations
 

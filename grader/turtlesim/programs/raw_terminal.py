@@ -30,8 +30,9 @@ def is_terminal() -> bool:
 def keyboard() -> Iterator[Callable[..., bytes | None]]:
     """Read standard input without echo and without waiting for Enter. Ctrl-C and Ctrl-Z work as usual.
 
-    Yields a function that waits for keys and returns the bytes that they send. Its argument is the timeout in seconds,
-    or None to wait forever. The function returns b"" if the terminal has been closed, or None if the timeout expires.
+    Yields a function that waits for keys and returns the bytes that they send. The argument of the function is the
+    timeout in seconds, or None to wait forever. The function returns b"" if the terminal has been closed, or None if
+    the timeout expires.
     """
     number = sys.stdin.fileno()
     before = termios.tcgetattr(number)
@@ -77,6 +78,6 @@ def _end(number: int, _: FrameType | None) -> NoReturn:
 
 
 def _in_front(number: int) -> None:
-    """Apply the settings of the terminal again, since it has the settings of the shell after Ctrl-Z and fg."""
+    """Apply the program's settings to the terminal again, since fg after Ctrl-Z leaves the shell's settings."""
     if os.tcgetpgrp(number) == os.getpgrp():
         tty.setcbreak(number)

@@ -40,7 +40,7 @@ _DISCOVERY_S = 2.0
 
 
 class Teleop(Node):
-    """The node teleop_turtle. A view gives it another name, chooses the turtle, and suppresses its messages."""
+    """The node teleop_turtle. A view gives the node another name, chooses the turtle, and suppresses messages."""
 
     def __init__(
         self,
@@ -85,7 +85,7 @@ class Teleop(Node):
         super().destroy_node()
 
     def _see_that(self, somebody: Callable[[], bool], name: str) -> bool:
-        """Return whether the condition holds. If it does not after the first two seconds, print a message."""
+        """Return whether the condition holds. If the condition does not hold after two seconds, print a message."""
         while not somebody() and time.monotonic() < self._begun + _DISCOVERY_S:
             time.sleep(0.01)
         there = somebody()

@@ -30,7 +30,7 @@ Sample = tuple[float, float | None]
 
 @dataclass
 class _Topic:
-    """A subscription to a topic, with the plotted fields: name -> path in the message."""
+    """A subscription to a topic, with the plotted fields: the name of each, and its path in the message."""
 
     subscription: Any
     type: str
@@ -77,7 +77,7 @@ class Plotted:
                 self._wanted[name] = self._begin(name, types)
 
     def flush(self) -> None:
-        """Pass the samples since the last call to `tell`."""
+        """Pass to `tell` all samples since the last flush."""
         if any(self._new.values()) or self._wanted != self._told:
             self._tell(self._new, dict(self._wanted))
             self._told = dict(self._wanted)

@@ -26,7 +26,7 @@ Line = dict[str, object]
 
 
 class Rosout:
-    """Collects log messages in the thread of the node. `flush` passes new ones to `tell`."""
+    """Collects log messages in the thread of the node. `flush` passes new messages to `tell`."""
 
     def __init__(self, node: Node, tell: Callable[[list[Line]], object]) -> None:
         self._tell = tell
@@ -35,7 +35,7 @@ class Rosout:
         node.create_subscription(Log, "/rosout", self._arrived, _QOS)
 
     def flush(self) -> None:
-        """Pass the messages since the last call to `tell`."""
+        """Pass to `tell` all messages since the last flush."""
         if self._new:
             new, self._new = self._new[-MOST_LINES:], []
             self._tell(new)

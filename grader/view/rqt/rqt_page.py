@@ -1,4 +1,4 @@
-"""The page of rqt: the graph, the log, a plot and a service caller, or only one of them."""
+"""The page of rqt: the graph, the log, a plot and a service caller, or only one of these parts."""
 
 from __future__ import annotations
 

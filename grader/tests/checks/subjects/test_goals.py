@@ -164,7 +164,10 @@ def test_feedback_without_a_callback_is_named() -> None:
 
 
 def star(sides: int = 5, ticks: int = 10, turn: float = 144.0, more: int = 0) -> list[tuple[float, float, float]]:
-    """Return the commands of a star of 2 m, at 0.2 m per tick. They also turn, because the frames follow from them."""
+    """Return the commands of a star of 2 m, at 0.2 m per tick.
+
+    The commands also turn the turtle, since the frames are computed from the commands.
+    """
     corner = math.radians(turn) / (4 * TICK_S)
     speeds = []
     for index in range(sides):

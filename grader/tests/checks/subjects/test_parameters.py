@@ -1,4 +1,4 @@
-"""Parameters: their descriptions, and the response of a node when one is set."""
+"""Parameters: their descriptions, and the response of a node when a parameter is set."""
 
 from __future__ import annotations
 

@@ -140,7 +140,7 @@ def test_a_mean_near_the_edge_is_for_wall_time_to_judge(period_s: float, near: b
     ("hz", "clock", "near"), [(62.5, "simulated", True), (62.5, "wall", False), (25.0, "simulated", False)]
 )
 def test_a_rate_above_40_hz_is_for_wall_time_to_judge(hz: float, clock: ClockName, near: bool) -> None:
-    """Simulated time has frames of 16 ms, so it cannot measure such a rate."""
+    """Simulated time has frames of 16 ms, so a trial in simulated time cannot measure a rate above 40 Hz."""
     found = finding("rate", evidence(recording(every(1.0 / hz, 2.0, 1.0), clock=clock)))
     assert (found.near_edge, found.status) == (near, Status.FAILED)
 

@@ -95,7 +95,10 @@ def test_a_node_that_crashed_while_it_ran_did_start() -> None:
 def test_by_either_clock_an_end_in_the_first_moment_is_one_at_the_start(
     clock: ClockName, t_s: float, diagnosis: str | None
 ) -> None:
-    """In wall time, the clock starts when the node appears in the graph. The node may not be complete then."""
+    """In wall time, the clock starts when the node appears in the graph.
+
+    Parts of the node may still be missing at that moment.
+    """
     end = ProcessEnd(by="itself", exit_code=0, t_s=t_s, stop_s=None)
     observed = evidence(recording([], clock=clock, end=end))
     assert finding("start", observed).diagnosis == diagnosis
@@ -105,7 +108,7 @@ def test_by_either_clock_an_end_in_the_first_moment_is_one_at_the_start(
 @pytest.mark.parametrize("clock", ["wall", "simulated"])
 @pytest.mark.parametrize(("frame", "starts"), [("await_or_execute", True), ("handler", True), ("spin_once", False)])
 def test_a_node_that_crashes_in_its_first_callback_has_started(clock: ClockName, frame: str, *, starts: bool) -> None:
-    """This holds however early the node exits. A class that is passed to rclpy.spin has no callback."""
+    """The node has started, however early it exits. A class that is passed to rclpy.spin has no callback."""
     text = f'{START}\n  File "/ros/rclpy/executors.py", line 838, in {frame}\n    x\nValueError: x\n'
     end = ProcessEnd(by="itself", exit_code=1, t_s=0.0, stop_s=None)
     crashed_early = evidence(recording([], clock=clock, end=end, stderr=Output(text)))
