@@ -32,7 +32,7 @@ def default_domain() -> int:
 
 
 def own_domain() -> int:
-    """Return the next domain of this process. After the last one, start again with the first one."""
+    """Return the next domain of this process. After the last domain, start again with the first domain."""
     default_domain()
     domain = _free() if len(_own) < MOST else None
     if domain is None:

@@ -28,7 +28,7 @@ HANG_S = 300.0
 
 @dataclass(frozen=True)
 class Graded:
-    """The result of one `grader check`: `report` is None if it wrote none."""
+    """The result of one `grader check`: `report` is None if the command wrote no report."""
 
     exit_code: int
     stdout: str
@@ -41,7 +41,7 @@ class Graded:
 
 
 class Gradings:
-    """Grades the cases that a module needs, `AT_ONCE` at the same time."""
+    """Grades the cases that a module needs, of which `AT_ONCE` are graded at the same time."""
 
     def __init__(self, wanted: list[tuple[Case, str]], folder: Path, pool: ThreadPoolExecutor) -> None:
         self._futures: dict[tuple[Path, str], Future[Graded]] = {

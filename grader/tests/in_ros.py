@@ -1,7 +1,7 @@
 """Run a function of a test in a process with ROS 2. The tests' own process has no ROS 2.
 
-The function is passed by name, since the tests' own process cannot import its module. It receives and returns JSON. If
-it raises an exception, the test fails.
+The function is passed by name, since the tests' own process cannot import its module. The function receives and returns
+JSON. If the function raises an exception, the test fails.
 """
 
 from __future__ import annotations
@@ -39,11 +39,14 @@ class InRos:
     home: Path
 
     def environment(self) -> dict[str, str]:
-        """The environment of one process. Processes in other domains do not receive its messages."""
+        """The environment of one process. Processes in other domains do not receive the messages of this process."""
         return installation.environment(self.ros, home=self.home, domain=own_domain())
 
     def run(self, name: str, *arguments: object) -> Ran:
-        """Call a function of grader.tests in a separate process. Its name has the form "turtlesim.scenarios:graph"."""
+        """Call a function of grader.tests in a separate process.
+
+        The name of the function has the form "turtlesim.scenarios:graph".
+        """
         code = "import sys; from grader.tests import in_ros; in_ros.call(*sys.argv[1:])"
         done = subprocess.run(
             [self.ros.python, "-c", code, name, json.dumps(arguments)],
@@ -60,7 +63,7 @@ class InRos:
 
 
 def call(name: str, arguments: str) -> None:
-    """Call the function and print its result as JSON. This runs in the process with ROS 2."""
+    """Call the function and print its result as JSON. This function runs in the process with ROS 2."""
     module, function = name.split(":")
     result = getattr(importlib.import_module(f"grader.tests.{module}"), function)(*json.loads(arguments))
     print(_RESULT + json.dumps(result))

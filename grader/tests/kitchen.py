@@ -1,4 +1,7 @@
-"""A thermometer and a heater in one process: the example whose graph step 05 shows. It runs until it is stopped."""
+"""A thermometer and a heater in one process: the example whose graph step 05 shows.
+
+The program runs until it is stopped.
+"""
 
 from __future__ import annotations
 

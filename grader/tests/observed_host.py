@@ -3,8 +3,8 @@
 The effects of a submission stay in this host. So an attack can also run without a sandbox: programs that do nothing
 replace bubblewrap and prlimit, usage.py measures nothing, and the command finds no sandbox.
 
-This file also runs inside the host, as a script. There it offers what an attacker would like to reach (services,
-secrets), runs the command, and reports what is left.
+This file also runs inside the host, as a script. There, the script offers what an attacker would like to reach
+(services, secrets), runs the command, and reports what is left.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Left:
 
 
 class Host:
-    """A host with a scratch folder. Its /tmp/work is the folder `work` outside."""
+    """A host with a scratch folder. The folder /tmp/work in the host is the folder `work` outside."""
 
     def __init__(self, scratch: Path, interfaces: Path | None, *, as_user: bool = False) -> None:
         self._scratch = scratch

@@ -1,9 +1,9 @@
 """The sample of mistakes that `make test` grades.
 
-It covers every group of diagnoses, and for each exercise a mistake that the files show and a mistake that only the
-behaviour shows. From each group, it also covers one diagnosis that no test of the checks expects. A test of the checks
-judges an invented recording, which takes milliseconds. A case takes one to three seconds, and at least ten if wall time
-judges it. `make test-all` grades all cases.
+The sample covers every group of diagnoses, and for each exercise a mistake that the files show and a mistake that only
+the behaviour shows. From each group, the sample also covers one diagnosis that no test of the checks expects. A test of
+the checks judges an invented recording, which takes milliseconds. A case takes one to three seconds, or at least ten
+seconds if it needs a trial in wall time. `make test-all` grades all cases.
 """
 
 from __future__ import annotations

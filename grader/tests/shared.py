@@ -15,7 +15,10 @@ if TYPE_CHECKING:
 
 
 def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], Any]) -> tuple[Path, Any]:
-    """Return the folder with this name, filled by `make`, and what `make` returned (JSON). Tests must not change it."""
+    """Return the folder with this name, filled by `make`, and what `make` returned (JSON).
+
+    Tests must not change this.
+    """
     base = factory.getbasetemp()
     folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / f"shared-{name}"
     folder.mkdir(exist_ok=True)

@@ -1,7 +1,7 @@
-"""Each diagnosis has a case in which it is true, and a correct package that is similar to the case and must not get it.
+"""Each diagnosis has a case in which it is true, and a similar but correct package that must not get the diagnosis.
 
-A case is a correct package with a few edits. If a diagnosis ignored the mistake itself and appeared for everything
-that looks like the case, the correct package would get it, too. But the correct packages pass: `test_course` tests the
+A case is a correct package with a few edits. If a diagnosis ignored the mistake itself and appeared for everything that
+looks like the case, the correct package would get it, too. But the correct packages pass: `test_course` tests the
 solutions, and `unusual/` has cases for the packages in bases/.
 """
 
@@ -29,7 +29,7 @@ FAR = {
     "test-class-init": "all tests are in a class, so every line of them is indented",
     "timer-in-callback": "thousands of timers slow a machine down; the case has its own time limit",
 }
-"""Diagnosis -> the reason why no correct package is similar to one of its cases."""
+"""Maps a diagnosis to the reason why no correct package is similar to one of its cases."""
 
 
 def test_a_right_package_is_close_to_a_case_of_each_diagnosis() -> None:
@@ -46,7 +46,7 @@ def test_the_packages_that_cases_are_laid_over_are_right() -> None:
 
 @cache
 def closest() -> dict[str, int]:
-    """Return diagnosis -> the smallest number of lines in which one of its cases differs from its base."""
+    """Map each diagnosis to the smallest number of lines in which one of its cases differs from its base."""
     found: dict[str, int] = {}
     bases: dict[str, dict[str, list[str]]] = {}
     with TemporaryDirectory() as name:
@@ -76,7 +76,7 @@ def lines_of(path: Path) -> list[str]:
 
 
 def distance(right: dict[str, list[str]], wrong: dict[str, list[str]]) -> int:
-    """Return the number of removed and added lines. A file that exists in only one of them counts as one line."""
+    """Return the number of removed and added lines. A file that exists in only one of the two counts as one line."""
     lines = len(right.keys() ^ wrong.keys())
     for path in right.keys() & wrong.keys():
         if right[path] != wrong[path]:

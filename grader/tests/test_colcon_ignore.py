@@ -62,7 +62,7 @@ def tracked() -> list[PurePosixPath]:
 
 
 def test_no_package_of_a_test_can_be_found_by_colcon(tracked: list[PurePosixPath]) -> None:
-    """Check the marker files without colcon, which would run every setup.py. Some of them attack the machine."""
+    """Check the marker files without colcon, which would run every setup.py, even those that attack the machine."""
     packages = {path.parent for path in tracked if path.name in PACKAGE_FILES and path.is_relative_to("grader/tests")}
     assert len(packages) > 100
     above = {folder for package in packages for folder in package.parents if folder.is_relative_to("grader/tests")}

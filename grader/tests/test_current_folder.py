@@ -64,7 +64,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Folder]:
 
 
 def points(out: Path) -> dict[str, float]:
-    """Return student -> points of a graded class."""
+    """Map each student of a graded class to the points."""
     return {student: float(report["points"]) for student, report in reports(out).items()}
 
 

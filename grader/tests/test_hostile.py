@@ -218,7 +218,10 @@ def is_double(node: str) -> bool:
 
 @pytest.mark.exhaustive
 def test_an_attack_does_not_change_the_grading_of_the_next_submission(tmp_path: Path) -> None:
-    """In `make test`, the tests above find traces of an attack, and test_hostile_class.py grades it with others."""
+    """Grade a correct submission after three attacks on the same machine.
+
+    The attacks must leave no files or processes.
+    """
     host = Host(tmp_path / "host", underlay.ensure(installation.find_ros()))
     chosen = [attack for attack in ATTACKS if attack.name[:3] in ("301", "304", "406")]
     commands = []

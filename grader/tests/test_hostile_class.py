@@ -1,4 +1,4 @@
-"""In a class with attacks, the other submissions get the same reports as without them, and the command exits with 0."""
+"""In a class with attacks, honest submissions get the same reports as without attacks, and the command exits with 0."""
 
 from __future__ import annotations
 

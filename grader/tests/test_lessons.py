@@ -105,7 +105,7 @@ def test_answers_of_ros2_are_those_that_were_recorded(block: Block) -> None:
 
 
 def test_no_command_stands_outside_of_a_block(lesson: Path) -> None:
-    """No other test would run a command outside a block."""
+    """A command outside a block would not be run by any test."""
     assert re.findall(r"^ +\$ .*", lesson.read_text("utf-8"), re.MULTILINE) == []
 
 
@@ -178,7 +178,7 @@ def test_questions_about_the_kitchen_have_the_answers_shown(
 
 @pytest.mark.parametrize("block", blocks_of("python", "part"))
 def test_parts_of_files_are_in_the_step(block: Block) -> None:
-    """A code block that quotes a part of the solution must be equal to it."""
+    """A code block that quotes a part of the solution must be equal to that part."""
     assert any(block.text in path.read_text("utf-8") for path in (ROOT / "solutions").glob("*/**/*.py"))
 
 

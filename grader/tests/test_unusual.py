@@ -1,6 +1,7 @@
 """Correct submissions that differ from our solutions get full marks. Their reports contain no criticism except advice.
 
-`make test` grades every third one. It leaves out those that wall time judges, since each takes ten seconds.
+`make test` grades every third submission, and leaves out submissions that wall time judges, since each takes ten
+seconds.
 """
 
 from __future__ import annotations

@@ -39,7 +39,7 @@ CONFIGURATIONS = (
 
 
 class Traps:
-    """Fills `folder` with traps. `touched` contains the names of the traps that were loaded or run since then."""
+    """Fills `folder` with traps. `touched` contains the names of the traps that have been loaded or run."""
 
     def __init__(self, folder: Path, marker: Path) -> None:
         self.folder, self._marker = folder, marker

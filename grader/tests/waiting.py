@@ -1,4 +1,4 @@
-"""Wait for an event that a test has caused. If it does not happen before a deadline, the test fails."""
+"""Wait for an event that a test has caused. If the event does not happen before a deadline, the test fails."""
 
 from __future__ import annotations
 

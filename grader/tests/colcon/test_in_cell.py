@@ -1,4 +1,4 @@
-"""colcon in a cell: a fork that runs setup.py behaves like a new interpreter."""
+"""colcon in a sandbox cell: a fork that runs setup.py behaves like a new interpreter."""
 
 from __future__ import annotations
 

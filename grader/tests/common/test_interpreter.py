@@ -19,7 +19,7 @@ SHOW = (
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Return the current folder, whose modules report when they are imported. One in `other` prints what it finds."""
+    """Change to a folder whose modules print a line when they are imported. Return another folder with a package."""
     (tmp_path / "other" / "module_of_ours").mkdir(parents=True)
     (tmp_path / "other" / "module_of_ours" / "__init__.py").touch()
     (tmp_path / "other" / "module_of_ours" / "show.py").write_text(SHOW)

@@ -112,5 +112,5 @@ def options_of(commands: dict[str, object]) -> set[str]:
 
 @pytest.mark.parametrize("page", PAGES)
 def test_no_command_with_a_prompt_stands_outside_of_a_block(page: str) -> None:
-    """No other test would run a command outside a block."""
+    """A command outside a block would not be run by any test."""
     assert re.findall(r"^ *\$ .*", prose_of(page), re.MULTILINE) == []

@@ -14,7 +14,7 @@ MAPS = ("README.md", "docs/development.md")
 
 
 def map_of(page: str) -> dict[str, int]:
-    """Return path -> depth of its indentation, from the block below "Map of the repository"."""
+    """Map each path in the block below "Map of the repository" to the depth of its indentation."""
     text = text_of(page).split("## Map of the repository", 1)[1]
     paths: dict[str, int] = {}
     folder = ""

@@ -27,12 +27,12 @@ KEYS = {
     "[[check]]": '[[check]]\nkind = "builds"\nwrong = 1\n',
     "[[hint]]": "[[hint]]\nwrong = 1\n",
 }
-"""Table -> a file with an unknown key in it. The error message lists the valid keys."""
+"""Maps a table to a file with an unknown key in the table. The error message lists the valid keys."""
 
 TABLES = {"call", "drive", "parameters", "params_file", "set"}
 """Keys that are tables themselves."""
 OPTIONAL = {"[[trial]]": {"alone_s", "beside"}}
-"""Table -> keys that are valid only in some of these tables, so that the error message does not list them."""
+"""Maps a table to keys that are valid only in some of these tables, so that the error message does not list them."""
 
 
 def row(words: str) -> list[str]:

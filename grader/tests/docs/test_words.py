@@ -1,4 +1,4 @@
-"""The page of all commands agrees with their help, and the glossary contains the terms of the lessons."""
+"""The page of all commands agrees with the help texts, and the glossary contains the terms of the lessons."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ NO_TERMS = re.compile(r"\d|=|^in (each|a) |^(one|comma|seconds|talk|waits|method
 
 
 def terms() -> dict[str, str]:
-    """Return word -> the step that explains it."""
+    """Map each word to the step that explains the word."""
     rows = re.findall(r"^\| (.+?) \| .+ \| (\d\d) \|$", text_of("docs/glossary.md"), re.MULTILINE)
     return dict(rows)
 

@@ -1,4 +1,4 @@
-"""If a system call fails while a submission is graded, it loses no points, and every message is one sentence."""
+"""If a system call fails during the grading of a submission, no points are lost, and every message is one sentence."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """Run a target with atheris: `python -m grader.tests.fuzz TARGET --minutes N`. Install it with `pip install atheris`.
 
-A finding ends the run. Its input is stored in build/fuzz/TARGET/; `--again FILE` runs this input again.
+A finding ends the run. The input that caused the finding is stored in build/fuzz/TARGET/; `--again FILE` runs this
+input again.
 """
 
 from __future__ import annotations

@@ -98,7 +98,7 @@ def write(student: str, report: Report, page: str) -> None:
 
 
 def regraded(folder: Path) -> None:
-    """Run `regrade` on the recording in the folder, with all of its options."""
+    """Run `regrade` on the recording in the folder, with all options of `regrade`."""
     from typer.testing import CliRunner
 
     from grader.cli import app

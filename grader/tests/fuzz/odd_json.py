@@ -1,4 +1,4 @@
-"""Our own JSON with unexpected values."""
+"""The grader's own JSON files with unexpected values."""
 
 from __future__ import annotations
 

@@ -54,7 +54,10 @@ def names(data: bytes) -> None:
 
 
 def archives(data: bytes) -> None:
-    """Unpack an archive. The first byte selects whether the rest is an archive or describes how to create one."""
+    """Unpack an archive.
+
+    The first byte selects whether the rest is an archive or describes how to create an archive.
+    """
     made = odd_archive(Choices(data[1:])) if data[:1] == b"z" else data[1:]
     said = io.StringIO()
     with tempfile.TemporaryDirectory() as folder, redirect_stdout(said):
@@ -136,7 +139,7 @@ def recordings(data: bytes) -> None:
 
 
 def reports(data: bytes) -> None:
-    """Run `class-page` on this report and a valid one. The first byte may select a report with replaced values."""
+    """Run `class-page` on this report and a valid report. The first byte may select a report with replaced values."""
     data = odd_json(_report(), Choices(data[1:])) if data[:1] == b"j" else data
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "anna.json").write_bytes(data)

@@ -79,7 +79,7 @@ class Term:
         return said
 
     def exported(self) -> dict[str, tuple[float, float, float]]:
-        """Return student -> (raw score, penalty, score) from `nbgrader export`."""
+        """Map each student to (raw score, penalty, score), as written by `nbgrader export`."""
         file = self.root / "grades.csv"
         self.run("export", "--to", str(file))
         with file.open(newline="") as opened:

@@ -84,7 +84,7 @@ def submit(term: Term, student: str, change: Callable[[Path], None]) -> None:
 
 
 def grades(term: Term, student: str) -> dict[str, tuple[float | None, float | None, bool]]:
-    """Return check -> (automatic score, manual score, needs manual grade) from nbgrader's database."""
+    """Map each check to (automatic score, manual score, needs manual grade), as in nbgrader's database."""
     with term.gradebook() as gradebook:
         submission = gradebook.find_submission(STEP, student)
         return {

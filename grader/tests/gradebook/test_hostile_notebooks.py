@@ -1,4 +1,4 @@
-"""nbgrader refuses folders and notebooks that attack it, and grades the others."""
+"""nbgrader refuses folders and notebooks that attack it, and grades all others."""
 
 from __future__ import annotations
 
@@ -212,14 +212,14 @@ SUBMISSIONS: dict[str, Callable[[Path, Path], object]] = {
     "links": with_links,
     "when": lambda folder, _: (folder / readable.TIMESTAMP).write_text("yesterday evening"),
 }
-"""Student -> what is wrong with the student's folder in the exchange."""
+"""Maps a student to what is wrong with the student's folder in the exchange."""
 BESIDE: dict[str, Callable[[Path, Path], object]] = {
     "beside": beside,
     "never": lambda folder, _: (folder / readable.TIMESTAMP).write_text("yesterday evening"),
     "deep": lambda folder, _: (folder / f"{HOMEWORK}.ipynb").write_text("[" * 100_000),
     "blocks": lambda folder, _: pipe(folder / f"{HOMEWORK}.ipynb"),
 }
-"""Student -> what is wrong with the student's folder in submitted/."""
+"""Maps a student to what is wrong with the student's folder in submitted/."""
 
 
 def scores(term: Term) -> dict[str, float]:

@@ -92,7 +92,7 @@ ATTACKS = {
     ),
     "its own bridge": ("import os, signal\nos.kill(os.getppid(), signal.SIGKILL)", "The kernel died."),
 }
-"""Name -> the source of a cell, and the reason why no cell runs after it."""
+"""Maps a name to the source of a cell, and the reason why no cell runs after it."""
 SAMPLE = ("large widgets", "messages without end", "files without end", "output without keys")
 
 MANY_CHANGED = (

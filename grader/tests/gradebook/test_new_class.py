@@ -62,7 +62,10 @@ def test_a_folder_without_a_course_is_a_usage_error(tmp_path: Path) -> None:
 
 @pytest.fixture
 def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Create a student's clone of the course as the current folder. Its configuration leaves a trace when it runs."""
+    """Create a student's clone of the course as the current folder.
+
+    The clone's configuration file leaves a trace when it is executed.
+    """
     folder = tmp_path / "clone"
     (folder / "course").mkdir(parents=True)
     (folder / "course" / CONFIG).write_text(f"open({str(tmp_path / 'touched')!r}, 'w').close()\n")

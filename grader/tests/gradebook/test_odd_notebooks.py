@@ -1,4 +1,4 @@
-"""A notebook that cannot be combined with its package does not stop the grading of others."""
+"""A notebook that cannot be combined with its package does not stop the grading of other notebooks."""
 
 from __future__ import annotations
 

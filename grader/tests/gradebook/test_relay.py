@@ -1,4 +1,4 @@
-"""The relay forwards the data from the pipe of a cell. It exits when the cell or nbgrader exits."""
+"""The relay forwards the data from the pipe of a sandbox cell, and exits when the cell or nbgrader exits."""
 
 from __future__ import annotations
 

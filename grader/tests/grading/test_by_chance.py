@@ -1,4 +1,4 @@
-"""If a trial in simulated time had to stop only by chance, it is repeated once; after that, wall time decides."""
+"""A trial in simulated time that stopped by chance is repeated once. After that, a trial in wall time decides."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ SLEEPS = WallTimeNeeded("the node sleeps in wall time")
 
 @dataclass
 class Trials:
-    """A replacement for the class `Trial`. Each trial in simulated time raises the next doubt, if any."""
+    """A replacement for the class `Trial`.
+
+    Each trial in simulated time raises the next of the `doubts`, until none is left.
+    """
 
     doubts: list[WallTimeNeeded]
     clocks: list[str] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""Causes are proved by trying a fix. The runs are made up."""
+"""Causes are proved by trying a fix. The runs of these tests are invented."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The trials of an exercise start during its build and run in parallel. Those in wall time run after the others."""
+"""The trials of an exercise start during its build and run in parallel. Trials in wall time run afterwards."""
 
 from __future__ import annotations
 

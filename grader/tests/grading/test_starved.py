@@ -33,7 +33,7 @@ class Trials:
 
     recordings: list[Recording]
     alone: list[bool] = field(default_factory=list)
-    """For each trial: whether it had the machine to itself, so that no other grader could run a trial."""
+    """For each trial: whether this grader had the machine to itself, so that no other grader could run a trial."""
 
     def __call__(self, *_: object, in_cell: bool) -> Any:  # noqa: ANN401 - a Trial to whoever makes it
         assert not in_cell

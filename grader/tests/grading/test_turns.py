@@ -1,4 +1,7 @@
-"""Graders share the machine. One that needs it alone waits for the others, and later ones wait for that one."""
+"""Graders share the machine.
+
+A grader that needs the whole machine waits for the others, and later graders wait for it.
+"""
 
 from __future__ import annotations
 

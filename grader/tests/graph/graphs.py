@@ -1,4 +1,4 @@
-"""Graphs to draw: the tutorial's graph, and one with ten nodes."""
+"""Graphs to draw: the tutorial's graph, and a graph with ten nodes."""
 
 from __future__ import annotations
 

@@ -86,7 +86,7 @@ BAG = "circle_bag"
 
 
 def record_own_bag(package: Path, own: OwnNumbers) -> None:
-    """Replace the bag of the solution and the answers about it with those of a student with these numbers."""
+    """Replace the solution's bag and answers with the bag and answers of a student with these numbers."""
     radius_m, speed = float(own.values["radius_m"]), float(own.values["speed_m_s"])
     poses = made_bag.poses(radius_m, speed=speed, drive_s=1.1 * 2.0 * math.pi * radius_m / speed)
     made_bag.record(package / BAG, poses)
@@ -110,7 +110,7 @@ OWN = {
     "catcher.py": {"REACH = 0.4": "REACH = {reach_m}"},
     "draw_star.py": {"SIDE = 2.3": "SIDE = {side_m}", "radians(10)": "radians({first_deg})"},
 }
-"""The individual numbers in our solutions: file -> string -> the string with a student's numbers."""
+"""The individual numbers in our solutions: for each file, maps each string to the string with a student's numbers."""
 
 
 def with_numbers(text: str, name: str, own: OwnNumbers) -> str:

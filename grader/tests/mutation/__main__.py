@@ -72,7 +72,7 @@ def _unnoticed_by_cases(
 def _materials(*, make: bool) -> dict[str, judging.Material]:
     """Return the cases by name, without those whose recording does not give the expected report.
 
-    The machine may have been busy during such a recording. With `make`, the case is recorded again.
+    Perhaps the machine was busy while the case was recorded. With `make`, such a case is recorded again.
     """
     recorded = recordings(all_cases(), _tell, make=make)
     good, stale = _judged(recorded)
@@ -87,7 +87,7 @@ def _materials(*, make: bool) -> dict[str, judging.Material]:
 
 
 def _judged(recorded: Sequence[Recorded]) -> tuple[dict[str, judging.Material], list[Recorded]]:
-    """Return the cases that get the expected report, by name, and the others."""
+    """Return the cases that get the expected report, by name, and all other cases."""
     good = {each.name: each for each in judging.load(recorded) if not judging.fails(each)}
     judging.forget()
     return good, [each for each in recorded if each.name not in good]

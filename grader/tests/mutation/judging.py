@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from grader.tests.mutation.recordings import Recorded
 
 Lines = dict[tuple["Path", int], set[str]]
-"""File -> line -> the names of the cases or tests that run it. Lines are counted from 1."""
+"""Maps a file to its lines, and a line to the names of the cases or tests that run it. Lines are counted from 1."""
 
 PACKAGE = "grader.checks"
 SHARED = "grader.checks.outcome"
@@ -153,10 +153,10 @@ def who_runs(mutant: Mutant, lines: Lines) -> set[str]:
 
 
 def requested(mutant: Mutant, lines: Lines, alike: int) -> list[str]:
-    """Return the cases or tests that run the mutant's lines, but few of those that run the same lines of the file.
+    """Return the cases or tests that run the mutant's lines, but not all that run the same lines of the file.
 
     Hundreds of cases pass a check with the same lines. A mutant may seem to survive although a case that was left out
-    would notice it. The opposite is not possible.
+    would notice it. Leaving out cases can never make a mutant seem noticed.
     """
     names = sorted(who_runs(mutant, lines))
     if mutant.at_import:

@@ -2,7 +2,7 @@
 
 Only code that decides is changed. Code for messages is not: strings, a choice between two strings, printed numbers.
 Declarations, the parameters of a kind of check with their defaults, the `strict` of zip, and the code that finds values
-near a limit, which chooses the clock, are not changed either. grader/tests/checks has tests for these.
+near a limit, which chooses the clock, are not changed either. grader/tests/checks has tests for this code.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ WORDS = frozenset({"shorten", "a_list", "count", "shown"})
 """Functions that create text. Numbers in their arguments do not change a diagnosis."""
 STRINGS = cst.SimpleString | cst.FormattedString | cst.ConcatenatedString
 MAKERS = {"failed": None, "Cause": 2}
-"""Calls whose first argument is the id of a diagnosis -> the index of the place among the positional arguments."""
+"""Maps calls whose first argument is the id of a diagnosis to the index of the place among the positional arguments."""
 OTHER = cst.SimpleString('"another"')
 KINDS = OUT, ALWAYS, NAME, PLACE, DETAIL = ("taken out", "always", "other name", "no place", "detail")
 """The effect of a change on a diagnosis. A "detail" is a change by one of mutmut's operators."""
@@ -51,7 +51,9 @@ Change = tuple[str, cst.CSTNode, cst.CSTNode]
 
 @dataclass(frozen=True)
 class Mutant:
-    """A file with one change. `line` and `end_line` are those of the statement, counted from 1. `change` is printed.
+    """A file with one change. `line` and `end_line` are the first and last line of the statement, counted from 1.
+
+    `change` is printed.
 
     `kind` is one of KINDS. `at_import` is true if the statement runs only when the file is imported.
     """
@@ -96,7 +98,7 @@ def mutants_of(file: Path) -> list[Mutant]:
 
 
 def _says_nothing(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> bool:
-    """Return whether it is a `return None` at the end of a function, which changes nothing."""
+    """Return whether the statement is a `return None` at the end of a function, which changes nothing."""
     if not (isinstance(node, cst.Return) and isinstance(node.value, cst.Name) and node.value.value == "None"):
         return False
     line = parents[node]

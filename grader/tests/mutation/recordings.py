@@ -54,7 +54,7 @@ def all_cases() -> Iterator[Case]:
 def recordings(
     cases: Iterable[Case], tell: Callable[[str], None], below: Path | None = None, *, make: bool = True
 ) -> list[Recorded]:
-    """Return the recordings of these cases. `make` creates the missing ones, in parallel on all processors.
+    """Return the recordings of these cases. `make` creates missing recordings, in parallel on all processors.
 
     A case is recorded again if its submission or its exercise has changed. Empty the cache after a change of the trial.
     """

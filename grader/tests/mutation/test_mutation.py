@@ -98,7 +98,10 @@ def test_a_case_is_recorded_once(recorded: list[Recorded], folder: Path) -> None
 
 
 def noticed(recorded: list[Recorded], change: str) -> dict[str, bool]:
-    """Return whether the case notices each mutant with this change. It runs in a child, since it unloads the checks."""
+    """Return whether the case notices each mutant with this change.
+
+    A child process does the work, since the checks are unloaded.
+    """
     wanted = [mutant for mutant in mutants_of(ANSWERS) if change in mutant.change]
     assert wanted
     with multiprocessing.get_context("fork").Pool(1) as pool:

@@ -68,7 +68,7 @@ def serving(folder: Path, home: Path) -> Iterator[str]:
 
 
 def type_cell(page: Page, begins: str, text: str) -> None:
-    """Type a new text in place of that of the cell that starts with `begins`."""
+    """Type a new text in the cell that starts with `begins`, in place of the old text."""
     cell = page.locator(".jp-CodeCell", has_text=begins).first
     cell.scroll_into_view_if_needed()
     cell.locator(".cm-content").click()

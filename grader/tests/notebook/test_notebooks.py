@@ -1,4 +1,4 @@
-"""The notebooks of the course match their exercises. Released ones contain nothing that students must not see."""
+"""The notebooks of the course match their exercises. Released notebooks hide what students must not see."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A node that is started in the page runs in a cell. It can reach the live turtle, but nothing else of this machine."""
+"""A node that is started in the page can reach the live turtle, but nothing else outside of its sandbox cell."""
 
 from __future__ import annotations
 

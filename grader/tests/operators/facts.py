@@ -1,8 +1,8 @@
 """Judge whether a report names a mistake and makes no false statement, without the tables of diagnoses.
 
 The only inputs are the difference between the correct and the wrong package, the source of the wrong package, and its
-recording. An outcome names the mistake if it refers to a changed line and mentions a changed word of this line.
-A statement is false if it contradicts one of these facts. Each entry of FACTS recognises one form of sentence by a
+recording. An outcome names the mistake if it refers to a changed line and mentions a changed word of this line. A
+statement is false if it contradicts a fact about these inputs. Each entry of FACTS recognises one form of sentence by a
 pattern and decides whether the sentence is true.
 """
 
@@ -45,7 +45,7 @@ SIGNS = {
     "&": "&|and|read",
     "f": "f-string",
 }
-"""Changed character -> a pattern for the words that may refer to it."""
+"""Maps a changed character to a pattern for the words that may refer to it."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def _speaks_of(word: str, text: str) -> bool:
 
 @dataclass(frozen=True)
 class Facts:
-    """A correct package, the wrong package derived from it, and the evidence about the wrong one."""
+    """A correct package, the wrong package derived from it, and the evidence about the wrong package."""
 
     right: Mapping[str, str]
     wrong: Mapping[str, str]
@@ -297,4 +297,4 @@ FACTS: dict[str, Callable[[Facts, re.Match[str], Outcome], bool]] = {
     r"exited on its own|crashed": _ended,
     r"Nothing was built|The node was not run": lambda facts, _, __: facts.evidence.run.recording is None,
 }
-"""The form of a sentence -> whether it is true. `word`, `line`, `count` and `number` are parts of the sentence."""
+"""Maps the form of a sentence to a test of its truth. `word`, `line`, `count` and `number` are parts of it."""

@@ -44,7 +44,7 @@ Make = Callable[[Package, Random], Change | None]
 class Operator:
     """A kind of mistake. `says` contains the diagnoses that name it; `never` is a pattern for false statements.
 
-    `also` contains the diagnoses of its consequences, which are true but do not name it.
+    `also` contains the diagnoses of the mistake's consequences, which are true but do not name the mistake itself.
     """
 
     name: str
@@ -97,7 +97,10 @@ def anywhere(make: Make) -> Make:
 
 
 def remove_line(pattern: str, *, file: str = "") -> Make:
-    """Return an operator that removes a line that matches the pattern. `pass` may replace a statement."""
+    """Return an operator that removes a line that matches the pattern.
+
+    A removed statement may be replaced by `pass`.
+    """
     is_code = not file
 
     def make(package: Package, draw: Random) -> Change | None:

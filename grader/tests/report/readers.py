@@ -1,4 +1,7 @@
-"""Readers for the formats of a class. They behave like a spreadsheet, Gradescope and the runner of GitHub Actions."""
+"""Readers for the formats of a class.
+
+The readers imitate a spreadsheet, Gradescope and the runner of GitHub Actions.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reports for tests: one for each status, and a hostile one. The judge makes them from made-up evidence."""
+"""Reports for tests: one for each status, and a hostile one. The real judge creates them all from invented evidence."""
 
 from __future__ import annotations
 

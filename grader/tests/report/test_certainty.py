@@ -1,4 +1,4 @@
-"""The causes that a report states as facts, and those that it states as possibilities."""
+"""The causes that a report states as facts, and the causes that it states as possibilities."""
 
 from __future__ import annotations
 

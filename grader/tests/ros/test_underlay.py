@@ -1,4 +1,7 @@
-"""The turtlesim interfaces are built once and completely, or not at all. Finding them starts no process."""
+"""The turtlesim interfaces are built once and completely, or not at all.
+
+Finding the built interfaces starts no process.
+"""
 
 from __future__ import annotations
 
@@ -58,7 +61,7 @@ def without(monkeypatch: pytest.MonkeyPatch, *programs: str) -> None:
 
 @pytest.mark.exhaustive
 def test_two_at_once_build_it_once_and_both_get_it(ros: installation.Ros, tmp_path: Path) -> None:
-    """The current folder contains modules and programs with the names of real ones. The build must not use them."""
+    """The current folder contains false modules and programs with familiar names, which the build must not use."""
     traps = Traps(tmp_path / "current", tmp_path / "touched")
     code = "from grader.ros import installation, underlay; print(underlay.ensure(installation.find_ros(), print))"
     env = {**careless(), "XDG_CACHE_HOME": str(tmp_path / "home of Ada")}

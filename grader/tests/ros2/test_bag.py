@@ -67,7 +67,7 @@ def record(here: World, options: str = "/count", count: int = 300) -> Running:
 
 
 def numbers(folder: Path) -> list[int]:
-    """Return the values in a bag. A different library reads them."""
+    """Return the values in a bag, as a different library reads them."""
     (file,) = folder.glob("*.mcap")
     with file.open("rb") as stream:
         found = list(make_reader(stream).iter_messages())

@@ -25,7 +25,7 @@ def run(
     limits: Limits = Limits(),  # noqa: B008
     view: bubblewrap.View = SEEN,
 ) -> process.Finished:
-    """Run Python code in a cell."""
+    """Run Python code in a sandbox cell."""
     with call_filter() as filter_fd, cell_user() as user:
         command = bubblewrap.lone_cell(
             [sys.executable, "-c", code], view, env=ENV, limits=limits, user=user, filter_fd=filter_fd

@@ -1,4 +1,4 @@
-"""If control groups are allowed, the kernel limits what a cell uses in total. Otherwise, the cell runs without one."""
+"""If control groups are allowed, the kernel limits what a cell uses in total. Otherwise, the cell has no group."""
 
 from __future__ import annotations
 

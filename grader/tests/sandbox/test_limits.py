@@ -1,4 +1,4 @@
-"""Resource limits in a cell and without one."""
+"""Resource limits, in a sandbox cell and outside of a cell."""
 
 from __future__ import annotations
 

@@ -65,7 +65,9 @@ class Clone:
         )
 
     def stop(self, command: str, at: str, number: signal.Signals) -> str:
-        """Run a command. When it prints `at`, send the signal to it and to all its children. Return its output.
+        """Run a command. When the command prints `at`, send the signal to it and to all its children.
+
+        Return its output.
 
         Raises:
             AssertionError: the command ended without printing `at`.
@@ -108,7 +110,10 @@ class Clone:
 
 
 def clone(folder: Path) -> Clone:
-    """Copy the current state of all files that git tracks into a home folder below `folder`. Its path has spaces."""
+    """Copy the current state of all files that git tracks into a home folder below `folder`.
+
+    The path of the clone has spaces.
+    """
     home = folder / "home of Ada"
     target = home / "ros2 course"
     listed = subprocess.run(

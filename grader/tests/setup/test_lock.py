@@ -63,7 +63,7 @@ def applies(entry: lock.Entry, python: str) -> bool:
 
 
 def applying(python: str) -> dict[str, str]:
-    """Return name -> version of each package that the lock file installs for a Python. Names must be unique."""
+    """Map each package that the lock file installs for a Python to its version. Names must be unique."""
     found: dict[str, str] = {}
     for entry in ENTRIES:
         if applies(entry, python):

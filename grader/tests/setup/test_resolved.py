@@ -1,6 +1,7 @@
-"""Each part of the lock file is complete for every Python: uv resolves its list and finds no other packages.
+"""Each part of the lock file is complete for every Python: uv needs no other packages for the part.
 
-Each set-up consists of such parts, so it is complete. The test needs the network if packages are missing in uv's cache.
+Each set-up consists of such parts, so every set-up is complete. The test needs the network if packages are missing in
+uv's cache.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Bags that students hand in: damaged and hostile ones are read without harm."""
+"""Bags that students hand in: damaged and hostile bags are read without harm."""
 
 from __future__ import annotations
 

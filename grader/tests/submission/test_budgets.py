@@ -34,7 +34,7 @@ except TooLargeError as error:
 
 
 def doubled(join: str, first: str, lines: int = 60) -> bytes:
-    """Return lines in which each name is the previous one, repeated several times."""
+    """Return code in which each name gets the value of the previous name, repeated several times."""
     names = [f"a{number} = {join.format(f'a{number - 1}')}" for number in range(1, lines)]
     return "\n".join([f"a0 = {first}", *reversed(names), f"setup(name=a{lines - 1})"]).encode()
 

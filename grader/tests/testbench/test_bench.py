@@ -28,7 +28,7 @@ pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no san
 
 
 def spec(*broken: str, right_runs: int = 1, duration_s: float = 20.0) -> TestsSpec:
-    """Return the nodes of the course, but only these broken ones."""
+    """Return the settings of the course's tests, but with only these broken nodes."""
     whole = find_exercise(STEP).trials[0].tests
     assert whole is not None
     chosen = tuple(each for each in whole.broken if each.id in broken)
@@ -105,7 +105,7 @@ def test_it():
 
 
 def test_the_code_and_the_environment_are_the_same_for_all_nodes(files: dict[str, bytes]) -> None:
-    """Each run fails with the digest of everything that it can read. All digests are equal."""
+    """Each run fails with the digest of everything that it can read. All these digests are equal."""
     nodes = spec("rate", "sign")
     # The correct node is not run, because its rejection would end the other runs.
     runs = run(dataclasses.replace(nodes, right_runs=0), {**files, TESTS: PEEKS.encode()})

@@ -1,4 +1,4 @@
-"""Functions for tests of a trial. They run in a process that has rclpy (in_ros.py)."""
+"""Functions for tests of a trial. The functions run in a process that has rclpy (in_ros.py)."""
 
 from __future__ import annotations
 
@@ -73,7 +73,10 @@ def a_node_that_drives_before_it_is_found() -> int:
 
 
 def who_may_request() -> bool:
-    """Return whether a request is possible before any client exists. Check that it is possible while one exists."""
+    """Return whether a request is possible before any client exists.
+
+    Check that a request is possible while a client exists.
+    """
     stage = _stage()
     student = rclpy.create_node("student")
     anybody = stage.may_request()

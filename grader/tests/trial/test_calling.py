@@ -1,4 +1,4 @@
-"""Calls of a student's function or program in a cell: a call can change only its own result."""
+"""Calls of a student's function or program in a sandbox cell: a call can change only its own result."""
 
 from __future__ import annotations
 

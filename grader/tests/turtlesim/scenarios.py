@@ -1,4 +1,7 @@
-"""Functions that test_node.py runs in processes with ROS 2. They use turtlesim, frame by frame, and a client."""
+"""Functions that test_node.py runs in processes with ROS 2.
+
+The functions use turtlesim, frame by frame, and a client.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """Take the screenshot of the live view for README and the lessons: `python -m grader.tests.view.pictures`.
 
-This starts turtlesim, the solution of step 03 and the system's Chromium, and needs the same programs as the tests.
+The program starts turtlesim, the solution of step 03 and the system's Chromium, and needs the same programs as the
+tests.
 """
 
 from __future__ import annotations

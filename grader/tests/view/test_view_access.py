@@ -1,4 +1,4 @@
-"""Only the page with the right address may connect to the live view. Pages of other sites may not."""
+"""Only the page with the right address may connect to the live view. Pages of other sites may not connect."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def test_a_page_with_a_wrong_token_says_what_to_do(browser: Browser, system: Wor
 
 
 def test_the_browser_is_opened_with_a_code_for_which_it_gets_the_token(browser: Browser, fresh: World) -> None:
-    """Every user of the machine can read command lines, so the token must not be in them."""
+    """Every user of the machine can read command lines, so the token must not be in a command line."""
     program = fresh.home / "xdg-open"
     program.write_text(f'#!/bin/sh\necho "$1" > {fresh.home}/opened\n')
     program.chmod(0o755)
