@@ -52,7 +52,7 @@ OTHERS = {
     ("node_process", "__init__"): "bubblewrap, with the command of conductor._command",
     ("notebooks", "seconds"): "the command of the nested function `nbgrader`",
     ("programs", "start"): "a command of interpreter() in the same function",
-    ("open_page", "_in_watch_s"): "our command grader",
+    ("open_page", "_screen"): "our command grader",
     ("process", "run"): "bubblewrap, with the command of colcon.runner.build",
     ("relay", "run"): "bubblewrap, with the command of gradebook.confined_autograde._order",
     ("ros2", "_measure"): "our command ros2",
