@@ -77,7 +77,7 @@ def release(solution: Path, to: Path) -> None:
 
 
 def refresh_notebook(solution: Path) -> None:
-    """Update the source notebook of a step, if it has one, from the step's files and checks.
+    """Update the source notebook of a step, if there is one, from the step's files and checks.
 
     Raises:
         UsageError: the notebook or the exercise is invalid.

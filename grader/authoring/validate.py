@@ -63,7 +63,7 @@ def validate(
 
 
 class _Validation:
-    """Finds the problems of an exercise. Its solution and starting point are graded in the background."""
+    """Finds the problems of an exercise. The exercise's solution and starting point are graded in the background."""
 
     def __init__(self, name: str, file: Path, root: Path, pool: Executor, tell: Callable[[str], None]) -> None:
         self._name = name

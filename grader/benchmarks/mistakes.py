@@ -118,7 +118,7 @@ def _static_s(case: Case, folder: Path) -> float:
 
 
 def _whole_s(case: Case, folder: Path) -> float | None:
-    """Return the duration of a whole check (s), or None if it needed wall time."""
+    """Return the duration of a whole check (s), or None if the check needed wall time."""
     begun = time.monotonic()
     graded = grade(case, "auto", folder)
     seconds = time.monotonic() - begun

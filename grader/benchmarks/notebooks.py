@@ -35,7 +35,7 @@ AT_MOST = 1.5
 
 
 def seconds(argv: list[str], cwd: Path) -> float:
-    """Return the duration of a command (s). Its output is shown only if it fails."""
+    """Return the duration of a command (s). The output is shown only if the command fails."""
     env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "PYTHONWARNINGS": "ignore"}
     begun = time.monotonic()
     done = subprocess.run(argv, cwd=cwd, env=env, capture_output=True, text=True, check=False)

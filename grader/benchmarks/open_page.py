@@ -136,7 +136,10 @@ def _rest() -> None:
 
 
 def _loaded(page: Page) -> tuple[int, float]:
-    """Load the page without a cache. Return the total size of its files (bytes), and the time until it is ready (s)."""
+    """Load the page without a cache.
+
+    Return the total size of the page's files (bytes), and the time until the page is ready (s).
+    """
     sizes: list[int] = []
 
     def weigh(response: Response) -> None:

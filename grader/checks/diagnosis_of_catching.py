@@ -1,4 +1,4 @@
-"""The ids of mistakes in two nodes, one of which spawns turtles that the other one catches."""
+"""The ids of mistakes in two nodes, one of which spawns turtles that the other node catches."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Judge a submission: run every check of the exercise, each one after the checks that it needs."""
+"""Judge a submission: run every check of the exercise, after the checks that it needs."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Judgement:
         return tuple(_outcome(spec, self.findings[spec.id]) for spec in self.exercise.checks)
 
     def of_trial(self, trial: str) -> tuple[Outcome, ...]:
-        """Return the outcomes of the checks that judge the recording of this trial (an id)."""
+        """Return the outcomes of the checks that judge the recording of the trial with this id."""
         return tuple(
             _outcome(spec, self.findings[spec.id])
             for spec in self.exercise.checks
@@ -46,7 +46,7 @@ class Judgement:
         )
 
     def wants(self, trial: str) -> bool:
-        """Return whether any check would use a recording of this trial (an id).
+        """Return whether any check would use a recording of the trial with this id.
 
         If no check would, the trial need not run.
         """
@@ -175,8 +175,8 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
 def unreadable(how: str) -> Finding:
     """Return a failed finding about a submission that the grader cannot read.
 
-    Its status is not `error`: a check reads only data produced by the submission, so only the submission can make it
-    fail.
+    The finding's status is not `error`: a check reads only data from the submission, so only the submission can make
+    the check fail.
     """
     observed = f"The submission could not be read: {shorten(how, 150)}."
     expected = "The grader can read the submitted files and the data that the node sends."

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def numbers_spec(evidence: Evidence) -> NumbersSpec:
-    """Return the table `[numbers]` of the exercise. Raises ValueError if the exercise has none."""
+    """Return the table `[numbers]` of the exercise. Raises ValueError if the exercise has no such table."""
     if evidence.exercise.numbers is None:
         message = "exercise.toml has no [numbers]"
         raise ValueError(message)

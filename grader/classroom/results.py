@@ -94,7 +94,7 @@ class Results:
         return Result(student, report, key.to_data(), f"{name}.html", errors)
 
     def write(self, name: str, content: bytes) -> Path:
-        """Write a file in the folder, completely or not at all. Raises MachineError if this fails."""
+        """Write a file in the folder, completely or not at all. Raises MachineError if the file cannot be written."""
         file = self.folder / name
         partial = file.with_name(file.name + _PARTIAL)
         try:

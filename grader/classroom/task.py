@@ -38,7 +38,7 @@ class Task:
 
     `content` contains the files of the submission, or the reason why they are missing. `package` is the name of the
     package's folder. `grader` is the key of the grader that created the task. Only a worker with the same key may grade
-    it.
+    the task.
     """
 
     student: str

@@ -1,8 +1,8 @@
 """Run colcon in its sandbox cell. Each `python setup.py` that colcon starts becomes a fork of a prepared interpreter.
 
 colcon runs the setup.py of a package three times, each time in a new interpreter that imports setuptools and reads the
-metadata of all installed packages again. These imports take most of the CPU time of a build. Here, one process does
-this work once, before the submission arrives, and forks for each run of setup.py. The fork gets the folder,
+metadata of all installed packages again. These imports take most of the CPU time of a build. To avoid this, one process
+does these imports once, before the submission arrives, and forks for each run of setup.py. The fork gets the folder,
 environment, arguments and streams of the process that colcon started, and the process that colcon started only waits
 for the exit code of the fork. If a fork might behave differently from a new interpreter, no fork is used (`Run.of`).
 
@@ -210,8 +210,8 @@ class EntryPoints:
 
     The original function reads the metadata of every package on each call.
 
-    setuptools calls `entry_points` up to fifteen times per run. Here, the metadata of the machine is read once. The
-    metadata in other folders on sys.path, such as the folder of the submission, is read on each call.
+    setuptools calls `entry_points` up to fifteen times per run. EntryPoints reads the metadata of the machine only
+    once. The metadata in other folders on sys.path, such as the folder of the submission, is read on each call.
     """
 
     def __init__(self) -> None:

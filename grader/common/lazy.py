@@ -31,7 +31,7 @@ class _Lazy:
         return getattr(self.load(), attribute)
 
     def load(self) -> ModuleType:
-        """Import the module now, if it has not been imported yet."""
+        """Import the module now, unless it has already been imported."""
         with IMPORTING:
             return importlib.import_module(self._name)
 

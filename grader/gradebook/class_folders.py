@@ -67,7 +67,10 @@ def _is_folder(path: Path) -> bool:
 
 
 def remember(folder: Path) -> None:
-    """Record that this user created the class in `folder`. Raises MachineError if this cannot be recorded."""
+    """Record that this user created the class in `folder`.
+
+    Raises MachineError if the file that lists the classes cannot be written.
+    """
     file = _made()
     try:
         file.parent.mkdir(parents=True, exist_ok=True)

@@ -32,7 +32,7 @@ def why_not(folder: Path, student: str, *, owned: bool) -> str:
 
 
 def owner(folder: Path) -> str:
-    """Return the name of the account to which a folder belongs, or a description of it."""
+    """Return the name of the account to which a folder belongs, or a description of the account."""
     user = None
     try:
         user = folder.lstat().st_uid

@@ -1,7 +1,7 @@
 """Prove causes: change a copy of the submission at the place named by a failed check, and run it again.
 
 Each fix stays in the copy while the next cause is tried, which also reveals mistakes that were hidden by other
-mistakes. Like the submission itself, the copy is built and run in the sandbox. It runs in simulated time.
+mistakes. Like the submission itself, the copy is built and run in the sandbox. The copy always runs in simulated time.
 """
 
 from __future__ import annotations

@@ -72,8 +72,9 @@ class Trials:
 
         Checks whose findings are `settled` are not judged again.
 
-        If the simulator fails once, the machine may be at fault. If it fails twice, the node is the cause. A node that
-        kept the simulator busy for minutes does not get a second trial, because a class would have to wait too long.
+        If the simulator fails once, the machine may be at fault. If the simulator fails twice, the node is the cause. A
+        node that kept the simulator busy for minutes does not get a second trial, because a class would have to wait
+        too long.
         """
         if evidence.trial.calls:
             return self._call(evidence, settled)

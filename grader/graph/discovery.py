@@ -1,4 +1,4 @@
-"""Create a node for one verb of `ros2`, and wait until it has discovered the whole graph, up to a deadline."""
+"""Create a node for one verb of `ros2`, and wait until the node has discovered the whole graph, up to a deadline."""
 
 from __future__ import annotations
 
@@ -161,7 +161,7 @@ def settle(node: Node, enough: Callable[[], bool] = lambda: False, deadline_s: f
 
 
 def published(node: Node, topic: str) -> bool:
-    """Return whether a node other than this one publishes on the topic. Every node publishes on /rosout."""
+    """Return whether another node than the given one publishes on the topic. Every node publishes on /rosout."""
     own = node.get_name()
     return any(publisher.node_name != own for publisher in node.get_publishers_info_by_topic(topic))
 
@@ -210,7 +210,7 @@ def _complete(node: Node, waited_s: float, named_s: float | None = None) -> bool
 
 
 def _participants(domain: int) -> int | None:
-    """Count the DDS participants on this machine in a domain by their open ports; None if they cannot be counted.
+    """Count the DDS participants on this machine in a domain by their open ports; None if counting them is impossible.
 
     The ports follow DDSI-RTPS, 9.6.1.1: metatraffic unicast = 7400 + 250 * domain + 10 + 2 * participant.
     """

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class End:
-    """A publisher or subscription. It resembles `grader.trial.recording.Endpoint`, whose module would import numpy."""
+    """A publisher or subscription, like `grader.trial.recording.Endpoint`, whose module would import numpy."""
 
     kind: str
     node: str

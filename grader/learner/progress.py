@@ -110,7 +110,7 @@ def _step(data: dict[str, Any]) -> StepProgress:
 
 
 def update(workspace: Path, change: Callable[[Progress], Progress]) -> Progress:
-    """Change the progress in a workspace atomically. Other processes may write at the same time.
+    """Change the progress in a workspace atomically. Other processes may write the progress at the same time.
 
         update(root, lambda known: known.at("03-circle-publisher"))
 

@@ -215,9 +215,9 @@ class Watched:
     def prove(self, tell: Callable[[str], None], give_up: Callable[[], bool]) -> Graded | None:
         """Prove the causes of the last report by trying to fix them in a copy (see `grader.grading.explain`).
 
-        Before each attempt, `give_up` returns whether other work must be done first. If other work must be done first,
-        the next call of `prove` starts again. Return the report with the results of the attempts, or None if the
-        attempts have changed nothing.
+        Before each attempt, the function `give_up` is asked whether other work must be done first. If other work must
+        be done first, the next call of `prove` starts again. Return the report with the results of the attempts, or
+        None if the attempts have changed nothing.
         """
         if self._unproved is None or give_up():
             return None

@@ -133,7 +133,10 @@ class _Screen:
         self._shown = proved.report
 
     def _render(self, report: Report, more: int) -> None:
-        """Print the full report if it and the lines below it fit into the window. Otherwise, print only what failed."""
+        """Print the full report if the report and the lines below it fit into the window.
+
+        Otherwise, print only what failed.
+        """
         with self._console.capture() as whole:
             terminal.render(report, self._console)
         fits = whole.get().count("\n") + more + BELOW <= self._console.height

@@ -101,7 +101,7 @@ class Bridge:
 
 
 def main() -> None:
-    """Start the kernel and forward its messages until it exits."""
+    """Start the kernel and forward its messages until the kernel exits."""
     folder, workspace = sys.argv[1:]
     unpacker, orders = Unpacker(), list[tuple[int, list[bytes]]]()
     while not orders:

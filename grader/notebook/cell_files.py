@@ -69,7 +69,7 @@ def part_path(magic: str, name: str, exercise: Exercise) -> str:
 def parts_of(sources: list[str], exercise: Exercise) -> list[Part]:
     """Return the files that cells with these sources write. A cell with an invalid name writes nothing.
 
-    If several cells write the same file, the last one counts.
+    If several cells write the same file, the last of these cells counts.
     """
     parts: dict[str, Part] = {}
     for source in sources:

@@ -131,7 +131,10 @@ def _end(worker: subprocess.Popen[bytes]) -> None:
 
 
 class _Progress:
-    """A line below the cell with the current stage, which is cleared at the end. Nothing is shown under nbgrader."""
+    """A line below the cell with the current stage, which is cleared at the end.
+
+    Nothing is shown when nbgrader runs the notebook.
+    """
 
     def __enter__(self) -> Self:
         from IPython.display import DisplayHandle

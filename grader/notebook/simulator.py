@@ -119,7 +119,7 @@ class Simulator:
             time.sleep(seconds)
 
     def picture(self) -> bytes:
-        """Return the current canvas as a PNG, or empty bytes under nbgrader."""
+        """Return the current canvas as a PNG, or empty bytes when nbgrader executes the notebook."""
         return self._picture
 
     def _end(self) -> str:

@@ -46,7 +46,7 @@ def _await_step(events: Events) -> bool:
 
 
 def _grade_until_another(desk: Desk, events: Events, watched: Watched, workspace: Path | None) -> bool:
-    """Grade a step until the learner starts another one. Return False at the end of the events."""
+    """Grade a step until the learner starts another step. Return False at the end of the events."""
     for happened in events:
         if happened.key == STEP:
             current = steps.current(workspace)

@@ -86,7 +86,7 @@ class PageProcess:
             ended.set()
 
     async def _look(self, tell: Callable[[str], None]) -> None:
-        """Detect changes to the progress made by a page or by another command such as `grader start`."""
+        """Detect changes to the learner's progress that were made by a page or by a command such as `grader start`."""
         before = _stamp()
         while True:
             await asyncio.sleep(_LOOK_S)

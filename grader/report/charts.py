@@ -151,7 +151,7 @@ def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> 
 
 
 def _s(seconds: float) -> str:
-    """Format a time with two decimals, or with two significant digits if it is shorter than 0.1 s."""
+    """Format a time with two decimals, or with two significant digits if the time is below 0.1 s."""
     return f"{seconds:.2f}" if seconds >= 0.1 else f"{seconds:.2g}"
 
 

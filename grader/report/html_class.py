@@ -66,7 +66,7 @@ class Entry:
 
     @property
     def failed(self) -> tuple[Outcome, ...]:
-        """The failed checks, without the checks that were skipped because of them."""
+        """The failed checks, without the checks that were skipped because another check failed."""
         return self.report.with_status(Status.FAILED)
 
     @property
@@ -222,7 +222,7 @@ def class_page(reports: ClassReports) -> str:
 
 
 def save_class_page(folder: Path, file: Path) -> None:
-    """Write the page for the reports below a folder. Raises UsageError if that is not possible."""
+    """Write the page for the reports below a folder. Raises UsageError if the page cannot be written."""
     save_page(class_page(read(read_class, folder)), file)
 
 

@@ -65,7 +65,11 @@ class Report:
 
     @property
     def exit_code(self) -> int:
-        """0 if all checks passed, 1 if a check with points did not pass, 3 if the grader or the machine is broken."""
+        """The exit code for the report.
+
+        The code is 0 if all checks passed, 1 if a check with points did not pass, and 3 if the grader or the machine is
+        broken.
+        """
         if self.with_status(Status.ERROR):
             return 3
         missing = self.with_status(Status.FAILED) or self.with_status(Status.SKIPPED)
@@ -126,7 +130,7 @@ def _in_one_line(difference: str) -> str:
 
 
 def _why_this_clock(evidence: Evidence) -> str:
-    """Return the reason for the first trial's clock, and for the clock of each trial judged on the other one."""
+    """Return the reason for the first trial's clock, and for the clock of each trial judged on another clock."""
     first = evidence.run.recording
     if first is None and evidence.run.called is not None:
         return "No node was run. Your code was called, without a simulator."

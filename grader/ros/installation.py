@@ -63,7 +63,7 @@ class Ros:
 
     @property
     def name(self) -> str:
-        """The name in a report. It contains no paths, so reports from different machines are identical."""
+        """The name in a report. The name contains no paths, so reports from different machines are identical."""
         return f"Jazzy (rclpy {self.version}, {'sourced' if self.kind == 'sourced' else 'wheels'})"
 
     @property
@@ -101,7 +101,7 @@ def _why_none(env: Mapping[str, str]) -> str:
 
 
 def made_for(prefix: Path) -> str | None:
-    """Return the prefix of the sourced ROS 2 that this environment was set up for, or None if it uses the wheels."""
+    """Return the prefix of the sourced ROS 2 that .venv was set up for, or None if .venv uses the wheels."""
     try:
         ros = json.loads((prefix / "course-setup.json").read_text(encoding="utf-8"))["ros"]
     except (OSError, ValueError, KeyError, TypeError):
@@ -164,10 +164,10 @@ def domain_of(uid: int) -> int:
 def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int | None = None) -> dict[str, str]:
     """Return the environment of a node that a user starts: the user's environment with the variables of ROS 2 added.
 
-    The user's settings are kept, and workspaces that the user sourced are searched first. The domain is `domain` if it
-    is not None, or else the domain that the user has set. If neither is set, each user gets a separate domain, so that
-    classmates on one machine do not drive each other's turtles. If the ROS 2 installation was sourced, however, the
-    domain is 0, as usual in ROS 2, so that these nodes reach nodes in terminals where the user only sourced the
+    The user's settings are kept, and workspaces that the user sourced are searched first. The ROS domain is `domain`,
+    or if `domain` is None, the domain that the user has set. If neither is set, each user gets a separate domain, so
+    that classmates on one machine do not drive each other's turtles. If the ROS 2 installation was sourced, however,
+    the domain is 0, as usual in ROS 2, so that these nodes reach nodes in terminals where the user only sourced the
     installation.
     """
     home = Path(env.get("HOME", "/"))
@@ -264,7 +264,7 @@ def _has(prefix: Path, package: str) -> bool:
 
 
 def has_turtlesim(ros: Ros) -> bool:
-    """Return whether this ROS 2 includes turtlesim. If it does, its interfaces need not be built."""
+    """Return whether this ROS 2 includes turtlesim, so that the turtlesim interfaces need not be built."""
     return any(_has(prefix, "turtlesim") for prefix in ros.prefixes)
 
 

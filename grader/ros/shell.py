@@ -37,7 +37,9 @@ def users_environment(
 
 
 def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sourced: bool = False) -> str:
-    """Return code for bash, zsh and sh that changes the environment `env` to `wanted` and completes our commands.
+    """Return code in the language of bash, zsh and sh that changes the environment `env` to `wanted`.
+
+    The code also sets up completion for our commands.
 
     `sourced` is True if the ROS 2 installation is a sourced one, which may have its own rqt_graph.
     """

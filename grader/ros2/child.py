@@ -1,4 +1,7 @@
-"""Run a program for `ros2 run`. The program uses the same terminal, and is terminated if the command exits."""
+"""Run a program for `ros2 run`.
+
+The program uses the terminal of the command, and is terminated if the command exits.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,9 @@ _PASSED_ON = (signal.SIGTERM, signal.SIGHUP)
 
 
 def run_child(command: Sequence[str]) -> int:
-    """Run a program until it exits. Return its exit code, which is negative if a signal terminated the program.
+    """Run a program until the program exits.
+
+    Return its exit code, which is negative if a signal terminated the program.
 
     The terminal sends Ctrl-C to the program directly. This function forwards SIGTERM and SIGHUP.
 

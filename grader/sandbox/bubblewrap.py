@@ -3,11 +3,12 @@
 bubblewrap creates two kinds of containers:
 
 - a **room** contains the grader's own processes for one trial (the simulator). These processes run as an ordinary user,
-  with separate pid and network namespaces, and only the loopback interface. They read the messages of a student's node
-  with libraries that may have security holes;
-- a **cell** contains a student's process. It has its own user, pid, ipc, uts, cgroup and mount namespaces, no network
-  except that of the room, no files from the disk except those in `View`, a system call filter (system_calls.py), and
-  limits on memory, processes, files, CPU and disk. usage.py watches totals that the kernel does not limit.
+  with separate pid and network namespaces, and only the loopback interface. The simulator reads the messages of a
+  student's node with libraries that may have security holes;
+- a **cell** contains a student's process. A cell has its own user, pid, ipc, uts, cgroup and mount namespaces, no
+  network except that of the room, no files from the disk except those in `View`, a system call filter
+  (system_calls.py), and limits on memory, processes, files, CPU and disk. usage.py watches totals that the kernel does
+  not limit.
 
 These functions only return command lines. The caller starts and stops the process. Input and output use pipes.
 """
@@ -52,7 +53,7 @@ class View:
 def ros_view(ros: Ros, *more: Path) -> View:
     """Return the view with the interpreter, ROS 2 and the folders or files `more`, without the grader.
 
-    The grader is hidden even if it is installed in the same folder.
+    The grader is hidden even if it is installed in one of these folders.
     """
     needed = [Path(sys.base_prefix), Path(sys.prefix), *ros.all_prefixes, *more]
     site = Path(sys.prefix) / f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
@@ -100,8 +101,8 @@ def cell(
     With `network`, the cell shares the network of the room in which the caller runs.
 
     `filter_fd` is the system call filter from system_calls.call_filter(). The process must inherit this descriptor. A
-    root caller must put the cell into a room, in which it is an ordinary user, because the limit on processes does not
-    apply to root. bubblewrap writes JSON with the pid of the cell's first process to `info_fd`.
+    root caller must put the cell into a room, in which the cell's user is an ordinary user, because the limit on
+    processes does not apply to root. bubblewrap writes JSON with the pid of the cell's first process to `info_fd`.
     """
     command = [_bwrap(), "--unshare-user", "--disable-userns", "--unshare-pid", "--unshare-ipc", "--unshare-uts"]
     command += ["--unshare-cgroup-try", "--uid", "1000", "--gid", "1000", "--hostname", "robot"]
@@ -160,7 +161,7 @@ def require(*, trusted: bool = False) -> bool:
 
 
 def why_unavailable() -> str | None:
-    """Try to start a cell. Return None if this works, and otherwise the reason and a remedy."""
+    """Try to start a cell. Return None if the cell starts, and otherwise the reason and a remedy."""
     if program() is None:
         return _not_installed()
     view = View(read_only=())

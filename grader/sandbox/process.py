@@ -131,7 +131,9 @@ def run(
     pass_fds: Sequence[int] = (),
     watch: Limits | None = None,
 ) -> Finished:
-    """Run `argv` in a new session until it exits. The beginning and the end of standard error are kept.
+    """Run the command `argv` in a new session until the command exits.
+
+    The beginning and the end of standard error are kept.
 
     With `watch`, the child is killed when its processes exceed these limits together.
 

@@ -1,7 +1,7 @@
 """The seccomp filter of submission/reader.py, the process that reads students' files.
 
-The process reads, computes, and writes its answer to an open pipe. It may not start a program or a process,
-open a connection, change a file or a limit, or send a signal, even if a parser has a security hole.
+The process reads, computes, and writes its answer to an open pipe. The process is not allowed to start a program or a
+process, open a connection, change a file or a limit, or send a signal, even if a parser has a security hole.
 """
 
 from __future__ import annotations

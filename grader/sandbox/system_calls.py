@@ -100,6 +100,6 @@ def program() -> bytes:
 
 
 def _one_of(index: int, values: Sequence[int], error: int) -> list[bpf.Line]:
-    """Return the lines that make a call fail unless this argument has one of the values."""
+    """Return the lines of the filter that make a call fail unless this argument has one of the values."""
     lines = [(bpf.EQUAL, len(values) - number, 0, value) for number, value in enumerate(values)]
     return [(bpf.LOAD, 0, 0, bpf.argument(index)), *lines, (bpf.RETURN, 0, 0, bpf.ERRNO | error)]

@@ -54,7 +54,7 @@ class Stamp(NamedTuple):
 
 
 def read_stamp(path: Path = STAMP) -> Optional[Stamp]:
-    """Return the stamp of a finished set-up, or None if this version of the course has written none."""
+    """Return the stamp of a finished set-up, or None if there is no stamp from this version."""
     try:
         return Stamp(**json.loads(path.read_text()))
     except (OSError, ValueError, TypeError):

@@ -102,7 +102,7 @@ def select(
 def split(entries: Iterable[Entry], needs: Mapping[str, Collection[str]]) -> str:
     """Return the content of the lock file. `needs` contains the names of the packages of each part.
 
-    If a package has several versions for different Pythons, a part contains all of them.
+    If a package has several versions for different Pythons, a part contains all these versions.
 
     Raises: MachineError: the packages of all parts are not exactly those in `entries`.
     """

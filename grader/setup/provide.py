@@ -52,7 +52,7 @@ def _groups(needs: Sequence[package_managers.Need]) -> List[List[package_manager
 
 
 def _rights(path: str) -> Optional[List[str]]:
-    """Return the prefix that runs a command as root, or None if this is not possible."""
+    """Return the words, such as sudo, that run a command as root, or None if there is no way."""
     if os.getuid() == 0:
         return []
     sudo = package_managers.find_program("sudo", path)
@@ -69,7 +69,7 @@ def _at_terminal() -> bool:
 
 
 def _run(command: Sequence[str], program: str, env: Mapping[str, str]) -> str:
-    """Run a package manager. Return its error message, or an empty string if it succeeded."""
+    """Run a package manager. Return the error message, or an empty string if the package manager succeeded."""
     try:
         # sudo opens the terminal for the password, so redirecting these streams does not affect the prompt.
         done = subprocess.run(

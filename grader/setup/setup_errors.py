@@ -71,7 +71,10 @@ def of_error(error: BaseException) -> Optional[str]:
 
 
 def of_output(said: str, folder: Path) -> Optional[str]:
-    """Return why an installer failed, or None. `said` is its output, and `folder` is the folder that it writes to."""
+    """Return why an installer failed, or None.
+
+    `said` is the installer's output, and `folder` is the folder that the installer writes to.
+    """
     found = _NUMBER.search(said)
     number = int(found.group(1) or found.group(2)) if found else 0
     if number in (errno.ENOSPC, errno.EDQUOT) or _fullest([folder]):

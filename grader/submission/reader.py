@@ -168,7 +168,7 @@ def _packed(*, fine: bool, value: object) -> bytes:
 
 
 def _received(pipe: int) -> bytes | None:
-    """Return everything that the child sends, or None if it takes too long or is too large."""
+    """Return everything that the child process sends, or None if the answer takes too long or is too large."""
     poll = select.poll()
     poll.register(pipe, select.POLLIN)
     until = time.monotonic() + TIMEOUT_S
@@ -223,7 +223,7 @@ class _Unpacker(pickle.Unpickler):
     """Accepts only our dataclasses, our errors and their parts, because the child has read untrusted files."""
 
     def find_class(self, module: str, name: str) -> Any:  # noqa: ANN401 - a class
-        """Return the class if it is allowed."""
+        """Return the class with this name if it is allowed."""
         if name in _STANDARD.get(module.partition(".")[0], ()):
             return super().find_class(module, name)
         found = getattr(import_module(module), name, None) if module.startswith("grader.") else None

@@ -26,7 +26,7 @@ MAX_NAMED = 10
 
 @dataclass
 class _Search:
-    """The results of the search. Paths are relative to the folder where it started."""
+    """The results of the search. Paths are relative to the folder in which the search started."""
 
     packages: list[str] = field(default_factory=list)
     nearly: list[str] = field(default_factory=list)
@@ -43,7 +43,7 @@ def find_package(root: int, name: str) -> str:
 
     `name` is the path as the user typed it.
 
-    Raises UsageError if there is no package or more than one.
+    Raises UsageError if there is no package or more than one package.
     """
     search = _Search()
     _visit(search, root, ".", 0, name)

@@ -97,7 +97,9 @@ def open_folder(name: str, parent: int | None = None, *, follow: bool = False) -
 
 
 def open_file(path: Path, *, at: Path | None = None) -> IO[bytes]:
-    """Open a regular file. Never follow a link to it, and never wait for a pipe. `at` is as in `require_path`.
+    """Open a regular file. A link to the file is never followed, and a pipe is never waited for.
+
+    `at` is as in `require_path`.
 
     Raises:
         OSError: the file cannot be opened.

@@ -1,7 +1,7 @@
 """The bench: run a student's tests on the correct node several times and on each broken node once, in random order.
 
-The student's process reports whether its tests passed, and it could lie. But this process does not know which node it
-tests, so a lie does not help: tests that always pass, always fail, or pass by chance earn no points.
+The student's process reports whether the tests passed, and this process could lie. But this process does not know which
+node it tests, so a lie does not help: tests that always pass, always fail, or pass by chance earn no points.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ MOST_HANGS = 2
 
 
 class Bench:
-    """The runs of one submission. `start` runs them in threads, and `result` waits for them."""
+    """The runs of one submission. `start` starts the runs in threads, and `result` waits for the runs."""
 
     def __init__(
         self,

@@ -159,7 +159,7 @@ class Lane:
     def _converse(self, brain: Brain, until: float) -> bytes | None:
         """Answer requests about the node until the session reports the end of the run.
 
-        Return None if it reports no end.
+        Return None if there is no such report.
         """
         assert self._process.stdout is not None
         reports = self._process.stdout.fileno()

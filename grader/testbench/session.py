@@ -186,7 +186,7 @@ def _end_all(group: int | None) -> None:
 
 
 class _Disk:
-    """A disk of the cell. Its initial entries are kept, because other disks are mounted there."""
+    """A disk of the cell. The initial entries of the disk are kept, because other disks are mounted there."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -194,7 +194,7 @@ class _Disk:
         self._first = set(self._entries(folder))
 
     def empty(self) -> None:
-        """Remove everything that a run left behind. Exit if that fails, because the next run could find it."""
+        """Remove everything that a run left behind. Exit if something remains, because the next run could find it."""
         # in this order, the contents of a folder are removed before the folder itself
         for path in sorted(self._entries(self._folder), reverse=True):
             if path in self._first:
@@ -210,7 +210,7 @@ class _Disk:
             sys.exit("the disks of the cell could not be emptied")
 
     def _entries(self, folder: Path) -> Iterator[Path]:
-        """Yield all files and folders below this one that are on this disk."""
+        """Yield all files and folders below this folder that are on this disk."""
         for path in folder.iterdir():
             about = path.lstat()
             if about.st_dev != self._device:

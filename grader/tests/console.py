@@ -1,8 +1,8 @@
 """Run the command blocks of a Markdown text, to test that README and the lessons show the real output.
 
-A block begins with ```console. It contains lines of the form `$ command`, each followed by the command's output. A line
-`...` matches any number of lines. The real output can have more lines at the end than the page shows. Numbers may
-differ.
+A block begins with ```console. The block contains lines of the form `$ command`, each followed by the command's output.
+A line `...` matches any number of lines. The real output can have more lines at the end than the page shows. Numbers
+may differ.
 """
 
 from __future__ import annotations

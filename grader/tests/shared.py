@@ -1,4 +1,7 @@
-"""Folders that several test processes of a session share. The first process creates them, and the others wait."""
+"""Folders that several test processes of a session share.
+
+The first process creates such a folder, and the others wait.
+"""
 
 from __future__ import annotations
 

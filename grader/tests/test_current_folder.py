@@ -38,7 +38,7 @@ class Folder:
         self.env = {**careless(), "HOME": str(folder / "home"), "XDG_CACHE_HOME": str(folder / "cache")}
 
     def run(self, *command: object, code: int = 0, cwd: Path | None = None, **env: str) -> str:
-        """Run a command in the folder. Check its exit code and that it touched no trap. Return its output."""
+        """Run a command in the folder. Check the exit code, and that the command touched no trap. Return its output."""
         done = subprocess.run(
             [*map(str, command)],
             cwd=cwd or self.here,

@@ -1,4 +1,4 @@
-"""Correct submissions that differ from our solutions get full marks. Their reports contain no criticism except advice.
+"""Correct submissions that differ from our solutions get full marks. The reports contain no criticism except advice.
 
 `make test` grades every third submission, and leaves out submissions that wall time judges, since each takes ten
 seconds.

@@ -89,7 +89,7 @@ def _clues(path: str, tree: ast.Module) -> Iterator[Clue]:
 
 
 def _short(node: ast.Attribute) -> str:
-    """Return the source of the expression, or only its last name if it is long.
+    """Return the source of the expression, or only its last name if the source is long.
 
     Each part of the expression may be a clue.
     """

@@ -25,7 +25,7 @@ class NodeGroup:
         return tuple(process.pid for process in self.processes)
 
     def await_ready(self) -> None:
-        """Wait until all launchers are ready. Raises LaunchError if one of them exited."""
+        """Wait until all launchers are ready. Raises LaunchError if a launcher exited."""
         for process in self.processes:
             process.await_ready()
 

@@ -63,7 +63,10 @@ class TickPatience:
         self._request_s = now_s + REQUEST_EVERY_S
 
     def ended(self, now_s: float) -> bool:
-        """Return whether the node has worked too long. CPU time is counted from the first call that reads it."""
+        """Return whether the node has worked too long.
+
+        CPU time is counted from the first call that reads the CPU time.
+        """
         if now_s < self._request_s:
             return False
         self._request_s = now_s + REQUEST_EVERY_S

@@ -96,7 +96,7 @@ class Recorder(Node):
             self.commands.append(Command(last.t_s, last.mono_s, linear, angular))
 
     def nodes(self) -> list[str]:
-        """Return the full names of all nodes in the graph except this one.
+        """Return the full names of all nodes in the graph except the recorder.
 
         A name that two nodes share appears twice.
         """
@@ -174,7 +174,7 @@ class Recorder(Node):
     def _endpoints(
         self, kind: Literal["publisher", "subscription"], topic: str, found: list[TopicEndpointInfo]
     ) -> set[Endpoint]:
-        """Return the endpoints of other nodes. They are identified by their participant, since names can be faked."""
+        """Return the endpoints of other nodes. Nodes are identified by their participant, since names can be faked."""
         own_name = self.get_fully_qualified_name()
         result = set()
         for info in found:

@@ -100,7 +100,10 @@ def only_sends(thread: str) -> bool:
 
 
 class Threads:
-    """The threads of a process, or only those whose names are `wanted`. Their files in /proc are kept open."""
+    """The threads of a process, or only those whose names are `wanted`.
+
+    The files of the threads in /proc are kept open.
+    """
 
     def __init__(self, pid: int, wanted: Callable[[str], bool] = lambda _: True) -> None:
         self.pid = pid

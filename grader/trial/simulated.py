@@ -185,7 +185,7 @@ class SimulatedTrial(Simulation):
                 return
 
     def _take_in(self) -> bool:
-        """Handle everything that has arrived. Return whether the node may react to it."""
+        """Handle everything that has arrived. Return whether the node may react to what was handled."""
         if not self.may_request():
             self.hear()
             return False

@@ -50,7 +50,7 @@ def draw_targets(count: int, start: Pose, seed: int) -> tuple[Target, ...]:
 
 
 def nearest_first(targets: tuple[Target, ...], start: Pose) -> tuple[Target, ...]:
-    """Return the targets in the order in which a turtle reaches them if it always goes to the nearest one."""
+    """Return the targets in the order in which a turtle reaches them if it always goes to the nearest target."""
     order: list[Target] = []
     x, y = start.x, start.y
     left = list(targets)

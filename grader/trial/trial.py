@@ -87,7 +87,7 @@ class OverwhelmedError(Exception):
 
 @cache
 def compile_conductor() -> None:
-    """Compile the modules that the conductor imports if they changed.
+    """If the modules that the conductor imports have changed, compile them.
 
     The conductor itself cannot store compiled files in its room.
     """
@@ -122,7 +122,10 @@ class Trial:
         self._stack.close()
 
     def start(self) -> None:
-        """Start the simulator and the launcher before entering. The caller must enter later, or call `close`."""
+        """Start the simulator and the launcher before the context is entered.
+
+        The caller must enter later, or call `close`.
+        """
         if self._started:
             return
         self._started = True

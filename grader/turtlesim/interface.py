@@ -198,7 +198,10 @@ class TurtleInterface:
 
 
 class _Sender:
-    """A publisher that serializes its message only if it has changed. An idle turtle always sends the same message."""
+    """A publisher that serializes a message only if the message has changed.
+
+    An idle turtle always sends the same message.
+    """
 
     def __init__(self, node: Node, message_type: type, topic: str, parts: ExitStack) -> None:
         publisher = node.create_publisher(message_type, topic, QOS)

@@ -39,7 +39,7 @@ _FRAMES_TO_LEAVE = 4
 
 
 def _nobody(*_: object) -> None:
-    """Do nothing. This is the default callback."""
+    """Do nothing, as the default callback."""
 
 
 class TurtlesimNode(Node):

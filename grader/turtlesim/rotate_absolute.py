@@ -1,4 +1,4 @@
-"""The action rotate_absolute of one turtle. It accepts goals, and sends feedback and results."""
+"""The action rotate_absolute of one turtle. The server accepts goals, and sends feedback and results."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ def together(held: list[str]) -> Drive:
 
 
 class Hands:
-    """Passes keys to ROS and buttons to the simulator. `state` contains the turtles.
+    """Passes key presses to ROS, and button presses to the simulator. `state` contains the turtles.
 
     `listen` is called when a page requests the log messages of all nodes.
     """
@@ -81,7 +81,7 @@ class Hands:
             self._ears.drive(topic, Drive(0.0, 0.0))
 
     def gone(self, page: object) -> None:
-        """Remove a closed page. If it was the last page that drove a turtle, the driving node leaves the graph."""
+        """Remove a closed page. After the last page that drove a turtle, the driving node leaves the graph."""
         self.let_go(page)
         if page in self._drivers:
             self._drivers.discard(page)

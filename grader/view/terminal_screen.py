@@ -65,7 +65,7 @@ def side_for(console: Console) -> int:
 
 
 class Screen:
-    """The whole screen for rich."""
+    """The whole screen, as an object that the library rich can print."""
 
     def __init__(self, shown: Shown) -> None:
         self._shown = shown

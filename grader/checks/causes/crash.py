@@ -69,7 +69,7 @@ class Crash:
 
     @property
     def meaning(self) -> str:
-        """The usual meaning of the exception, or an empty string if it is unknown."""
+        """The usual meaning of the exception, or an empty string if the meaning is unknown."""
         if self.error == "AssertionError" and "field must be of type 'float'" in self.message:
             return "This field is a float. Write the number with a decimal point."
         return MEANINGS.get(self.error, "")
@@ -132,7 +132,7 @@ def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:
 
 
 def read_tracebacks(text: str, files: Mapping[str, bytes]) -> Iterable[tuple[bool, Crash]]:
-    """Yield every exception in stderr, and whether it occurred while the previous one was being handled."""
+    """Yield every exception in stderr, and whether it occurred while the previous exception was being handled."""
     for chained, lines in _blocks(text.splitlines()):
         crash = _crash(lines, files)
         if crash is not None:

@@ -39,7 +39,7 @@ class CrashScene:
 
     @property
     def line(self) -> int:
-        """The line number, or 0 if it is unknown."""
+        """The line number of the exception, or 0 if the line is unknown."""
         where = self.crash.where
         return (where.line if where is not None else None) or 0
 

@@ -1,4 +1,4 @@
-"""Names in ROS 2 Jazzy that beginners use. They are used to suggest the right spelling."""
+"""Names in ROS 2 Jazzy that beginners use. The grader uses these names to suggest the right spelling."""
 
 from __future__ import annotations
 

@@ -123,7 +123,7 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
 
 
 def _fix(diagnosis: Diagnosis, file: str, unreadable: Unreadable, data: bytes) -> tuple[Edit, ...]:
-    """Return the edit that adds a colon or closing bracket at the end of the line, if one of them may be missing."""
+    """Return the edit that adds a colon or closing bracket at the end of the line, if one of these may be missing."""
     missing = {"colon-missing": ":", "bracket-open": ")"}.get(diagnosis)
     line = _line(unreadable, data).rstrip()
     if missing is None or not line.strip():

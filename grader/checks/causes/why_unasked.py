@@ -30,7 +30,7 @@ def why_unasked(evidence: Evidence, service: str) -> Cause:
 
 
 def waits_in_callback(evidence: Evidence) -> Cause | None:
-    """Return the cause if a callback, or a method that it calls, waits for a response. Otherwise return None."""
+    """Return the cause if a callback, or a method called by a callback, waits for a response. Otherwise return None."""
     methods = {method.name: (module, method) for module, method in methods_of(evidence)}
     reached = {name for _, name in callbacks_of(evidence, *CALLBACKS)}
     waiting = sorted(reached)

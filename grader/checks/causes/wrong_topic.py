@@ -39,7 +39,7 @@ def why_topic(wanted: str, topic: str, evidence: Evidence) -> Cause:
 
 
 def _is_absolute(evidence: Evidence, topic: str) -> bool:
-    """Return whether the source contains this full name, which means that no namespace was added to it."""
+    """Return whether the source contains this full name, so that ROS 2 did not add a namespace to the name."""
     calls = evidence.code.calls("create_publisher")
     return any(evaluate(call.argument(1, "topic"), call.module.names) == topic for call in calls)
 

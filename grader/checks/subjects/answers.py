@@ -206,7 +206,7 @@ def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
 
 
 def _given(evidence: Evidence, name: str, form: str, kind: type) -> Answer | Finding:
-    """Return the answer, or a failed finding if it is missing or has the wrong type."""
+    """Return the answer, or a failed finding if the answer is missing or has the wrong type."""
     found = evidence.answers
     where = Where(FILE, found.lines.get(name) if found is not None else None)
     answer = found.given.get(name) if found is not None else None

@@ -24,7 +24,7 @@ STROKE_M = 0.3
 
 @dataclass(frozen=True, kw_only=True)
 class Goal:
-    """The goal (m), and the largest allowed distance (m) from it at the end."""
+    """The goal (m), and the largest allowed distance (m) from the goal at the end."""
 
     x_m: float = number(about="x of the goal.")
     y_m: float = number(about="y of the goal.")

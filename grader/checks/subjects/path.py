@@ -44,7 +44,7 @@ POLYGON_SHARE = 0.6
 
 @dataclass(frozen=True, kw_only=True)
 class CircleParams:
-    """The circle. Its centre is `radius_m` to the left of the turtle's start pose (clockwise: to the right).
+    """The circle. The circle's centre is `radius_m` to the left of the start pose (or to the right if clockwise).
 
     `residual_m` is the largest allowed root mean square distance between the trajectory and the fitted circle; `turns`
     is the smallest allowed number of turns.
@@ -218,7 +218,7 @@ def _too_short(evidence: Evidence, trajectory: Trajectory, turns: float, expecte
 
 
 def _steady(evidence: Evidence) -> tuple[float, float] | None:
-    """Return linear.x (m/s) and angular.z (rad/s) if they are the same in all commands, else None."""
+    """Return linear.x (m/s) and angular.z (rad/s) if these are the same in all commands, else None."""
     found = {(command.linear[0], command.angular[2]) for command in evidence.commands}
     return next(iter(found)) if len(found) == 1 else None
 

@@ -48,7 +48,7 @@ class Spawns:
 
 @dataclass(frozen=True, kw_only=True)
 class PlacesDiffer:
-    """Another trial (an id) in which the same node ran, and the prefix of its turtles' names."""
+    """The id of another trial in which the same node ran, and the prefix of its turtles' names."""
 
     other: str = string("the id of a trial", about="Another trial of the same node.")
     name: str = string("the beginning of a name", default="target", about="What the names of the turtles begin with.")

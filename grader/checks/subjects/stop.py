@@ -27,7 +27,7 @@ class Stop:
 
 
 def stop(evidence: Evidence, params: Stop) -> Finding:
-    """The node runs until SIGINT and exits soon after it. Its exit code and any traceback do not matter."""
+    """The node runs until SIGINT and exits soon after it. The exit code and any traceback do not matter."""
     end = evidence.recording.end
     expected = f"The node runs until Ctrl-C and then stops within {params.within_s:.0f} s."
     if end.by == "itself":

@@ -1,4 +1,4 @@
-"""Checks of the topic: only messages of the right type arrive on it."""
+"""Checks of a topic: only messages of the right type arrive on the topic."""
 
 from __future__ import annotations
 

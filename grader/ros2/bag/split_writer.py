@@ -61,7 +61,7 @@ class SplitWriter:
         self._topics.append((topic, kind, offered))
 
     def write(self, topic: str, kind: str, stamp_ns: int, data: bytes) -> None:
-        """Write a message to this file, or to a new file if this one is full. See `BagWriter.write`."""
+        """Write a message to this file, or to a new file if this file is full. See `BagWriter.write`."""
         size = len(data) + _RECORD_BYTES
         begun_ns = stamp_ns if self._begun_ns is None else self._begun_ns
         large = self._most_bytes and self._bytes and self._bytes + size > self._most_bytes

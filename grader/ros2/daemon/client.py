@@ -45,7 +45,7 @@ def is_running() -> bool:
 
 
 def start(*, debug: bool = False) -> None:
-    """Start a daemon, which exits immediately if another one is running.
+    """Start a daemon, which exits immediately if another daemon is running.
 
     With `debug`, the daemon logs to this terminal.
     """

@@ -106,7 +106,7 @@ def _answer_all(listening: socket.socket, node: Node, settling: Settling, wanted
 
 
 def _answer(connection: socket.socket, node: Node, settling: Settling, debug: IO[str] | None) -> bool:
-    """Answer a request. Return False if it is the request to stop."""
+    """Answer a request. Return False for the request to stop."""
     from grader.graph.snapshot import snapshot
 
     connection.settimeout(_REQUEST_S)

@@ -77,7 +77,7 @@ class Arrivals:
         return self._last_ns >= self._reported_ns + PRINTED_EVERY_NS
 
     def news(self) -> Rate:
-        """Return the current rate, and record that it was reported. Call this only if `have_news` returns True."""
+        """Return the current rate, and record that a rate was reported. Call this only if `have_news` returns True."""
         self._reported_ns = self._last_ns
         return rate(self._gaps_ns)
 

@@ -25,7 +25,7 @@ class Run:
 
 @pytest.fixture(scope="session")
 def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Run:
-    """Return a shared run. Tests in several processes use it, so they must not change its folders."""
+    """Return a shared run. Tests in several processes use the same run, so they must not change its folders."""
     if not bubblewrap.usable():
         pytest.skip("there is no sandbox here")
 

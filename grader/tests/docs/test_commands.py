@@ -37,7 +37,7 @@ ELSEWHERE = {
 
 @pytest.fixture
 def checkout(tmp_path: Path) -> Path:
-    """Return a copy of the repository. The commands of the pages may create files in it."""
+    """Return a copy of the repository. The commands of the pages may create files in this copy."""
     for name in ("course", "exercises", "solutions"):
         shutil.copytree(ROOT / name, tmp_path / name)
     (tmp_path / "home").mkdir()

@@ -110,7 +110,7 @@ def regraded(folder: Path) -> None:
 
 
 def graded_files(files: dict[str, bytes], step: str = STEP, **more: Any) -> Report:  # noqa: ANN401
-    """Return the report on our package with these files in it."""
+    """Return the report on our package with these files added."""
     ours = submission()
     return graded(type(ours)("anna", ours.package_dir, {**ours.files, **files}, (), "0" * 64), step, **more)
 

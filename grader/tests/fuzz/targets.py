@@ -100,7 +100,7 @@ def install_tree(data: bytes) -> None:
 
 
 def output(data: bytes) -> None:
-    """Run `check` on a node that prints this."""
+    """Run `check` on a node that prints these bytes."""
     text = data.decode("utf-8", "replace")
     recording = dataclasses.replace(good(), stderr=Output(text), stdout=Output(text))
     graded_files({}, recording=recording)

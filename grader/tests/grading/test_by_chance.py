@@ -1,4 +1,7 @@
-"""A trial in simulated time that stopped by chance is repeated once. After that, a trial in wall time decides."""
+"""A trial in simulated time that stopped by chance is repeated once.
+
+If it stops again, a trial in wall time decides.
+"""
 
 from __future__ import annotations
 

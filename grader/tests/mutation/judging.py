@@ -153,7 +153,7 @@ def who_runs(mutant: Mutant, lines: Lines) -> set[str]:
 
 
 def requested(mutant: Mutant, lines: Lines, alike: int) -> list[str]:
-    """Return the cases or tests that run the mutant's lines, but not all that run the same lines of the file.
+    """Return some of the cases or tests that run the mutant's lines. Many that run the same lines are left out.
 
     Hundreds of cases pass a check with the same lines. A mutant may seem to survive although a case that was left out
     would notice it. Leaving out cases can never make a mutant seem noticed.
@@ -184,7 +184,10 @@ def install(mutant: Mutant) -> None:
 
 
 def in_children(jobs: Iterable[Job], at_once: int) -> Iterator[tuple[Mutant, bool]]:
-    """Run each job in a child process with its mutant. Yield whether it was noticed, in the order of completion."""
+    """Run each job in a child process with its mutant.
+
+    Yield whether each mutant was noticed, in the order of completion.
+    """
     waiting = iter(jobs)
     running: dict[int, Mutant] = {}
     while True:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def stop_clock(page: Page) -> None:
-    """Stop the clock of the page. After this, only `page.clock.run_for` advances it."""
+    """Stop the clock of the page. Once stopped, this clock is advanced only by `page.clock.run_for`."""
     page.clock.install(time=0)
     page.clock.pause_at(1)
 

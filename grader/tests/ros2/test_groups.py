@@ -1,4 +1,4 @@
-"""The other groups of `ros2`: doctor, lifecycle, multicast, component, and groups that need a full ROS 2."""
+"""Groups of `ros2` without recordings: doctor, lifecycle, multicast, component, and groups that need a full ROS 2."""
 
 from __future__ import annotations
 

@@ -155,7 +155,7 @@ def environment(home: Path, domain: int | None = None) -> dict[str, str]:
 
 
 def world(home: Path) -> Iterator[World]:
-    """Yield a world for a fixture. Its processes end when the tests that use it have ended."""
+    """Yield a world for a fixture. The processes of the world end when the tests that use the world have ended."""
     home.mkdir(parents=True, exist_ok=True)
     made = World(home, environment(home))
     try:

@@ -19,7 +19,10 @@ SUDO_ASKS = '[ "$1" = -n ] && exit 1; exec "$@"'
 
 
 class Machine:
-    """A machine without python3. Its PATH contains stand-ins and the few programs that the script runs."""
+    """A machine without python3.
+
+    The PATH of the machine contains stand-ins and the few programs that the script runs.
+    """
 
     def __init__(self, folder: Path, user: int) -> None:
         self.folder = folder

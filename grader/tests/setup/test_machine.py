@@ -24,7 +24,7 @@ JAZZY = SourcedRos("/opt/ros/jazzy", (3, 12), turtlesim=False)
 
 @pytest.fixture
 def closed() -> Iterator[Path]:
-    """Create a folder in /tmp that only its owner can access, and another folder in it."""
+    """Create a folder in /tmp that only its owner can access, and another folder inside that folder."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name, "home")
         (folder / "bin").mkdir(parents=True)

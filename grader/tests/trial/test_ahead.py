@@ -21,7 +21,7 @@ SEEN = good()
 
 
 class Made:
-    """A replacement for a trial. Its `run` calls `runs`, and it is ready when `ready` is set."""
+    """A replacement for a trial. The method `run` calls `runs`, and the trial is ready when `ready` is set."""
 
     def __init__(self, runs: Callable[[], Recording]) -> None:
         self.runs = runs

@@ -1,4 +1,7 @@
-"""The simulator sends to its view through a real socket. It continues even if the other end does not read."""
+"""The simulator sends to its view through a real socket.
+
+The simulator continues even if the other end does not read.
+"""
 
 from __future__ import annotations
 
