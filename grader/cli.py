@@ -99,7 +99,11 @@ def check(
     ] = False,
     explain: Annotated[
         bool,
-        typer.Option("--explain", help="For instructors: change each cause in a copy, run it, and show the change."),
+        typer.Option(
+            "--explain",
+            help="For instructors: fix each reported cause in a copy of the submission, run the copy, and show what "
+            "was changed.",
+        ),
     ] = False,
     verbose: Verbose = False,
 ) -> None:

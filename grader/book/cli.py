@@ -19,7 +19,7 @@ def add_to(app: typer.Typer) -> None:
 def book(
     out: Out,
     repository: Annotated[
-        str, typer.Option(help="The URL of your course's repository. Each page links to it.", metavar="URL")
+        str, typer.Option(help="The URL of your course's repository, to which each page links.", metavar="URL")
     ] = "",
 ) -> None:
     """Write the lessons as static pages. They load nothing from other sites, and any web server can serve them."""

@@ -107,5 +107,6 @@ class _Run:
 def _in_words(why: str) -> str:
     return (
         f"The grader's process was lost twice while it graded this submission ({why}). This is reported as an error, "
-        "which does not depend on its quality. Grade it alone with `grader check`, or run the same command again."
+        "which says nothing about the quality of the submission. Grade the submission alone with `grader check`, or "
+        "run the same command again."
     )

@@ -96,15 +96,15 @@ def grade(
         bool,
         typer.Option(
             "--explain/--no-explain",
-            help="Prove the causes of failed checks: fix them in a copy and run it again. A failed "
-            "submission then takes longer, up to 1.5 times a build and a run.",
+            help="Prove the causes of failed checks: fix each cause in a copy of the submission, and run the copy. "
+            "For a failed submission, this takes up to 1.5 times the time of a build and a run.",
         ),
     ] = True,
     trusted: Annotated[
         bool,
         typer.Option(
             "--trust-submissions",
-            help="Run submissions even without a sandbox. They can then read and change all files of your user.",
+            help="Run submissions even without a sandbox. Submissions can then read and change all files of your user.",
         ),
     ] = False,
     repository_folder: Annotated[

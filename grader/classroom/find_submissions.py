@@ -108,7 +108,10 @@ def _one_of(alike: Sequence[Found]) -> Found:
         return alike[0]
     paths = a_list([shown(str(each.path)) for each in alike])
     name = shown(alike[0].student)
-    return replace(alike[0], refused=f"{name} has {len(alike)} submissions: {paths}. Remove or rename all but one.")
+    return replace(
+        alike[0],
+        refused=f"{name} has {len(alike)} submissions: {paths}. Remove or rename all of these submissions but one.",
+    )
 
 
 def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:

@@ -107,7 +107,7 @@ def _engine_is_known(request: Request) -> bool:
     """Return whether the engine is this machine. Raises UsageError for an unknown engine."""
     local = request.engine == "local"
     if not local and not request.engine.startswith(DASK):
-        message = f'--engine is "{request.engine}". It must be local or {DASK}HOST:PORT.'
+        message = f'--engine is "{request.engine}". The engine must be local or {DASK}HOST:PORT.'
         raise UsageError(message)
     return local
 

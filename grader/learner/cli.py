@@ -46,7 +46,7 @@ def start(
         ),
     ],
     workspace: Workspace = None,
-    student: Annotated[Optional[str], typer.Option(help="Your student id. Your numbers depend on it.")] = None,  # noqa: UP045
+    student: Annotated[Optional[str], typer.Option(help="Your student id, which determines your numbers.")] = None,  # noqa: UP045
     fresh: Annotated[
         bool,
         typer.Option(

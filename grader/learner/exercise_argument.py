@@ -64,6 +64,6 @@ def _step(name: str, root: Path) -> tuple[Exercise, Path]:
     exercise = find_exercise(name)
     place = workspace.work_folder(exercise, root)
     if not place.is_dir():
-        message = f"{exercise.id} has not been started in {root}. Start it with `grader start {exercise.id[:2]}`."
+        message = f"{exercise.id} has not been started in {root}. Start the step with `grader start {exercise.id[:2]}`."
         raise UsageError(message)
     return exercise, place

@@ -154,7 +154,8 @@ def _read(file: Path) -> dict[str, Any]:
         raise MachineError(message) from error
     if not isinstance(data, dict) or data.get("schema") != _SCHEMA:
         message = (
-            f"{file} was written by another version of the grader. Move it away to start again. Your work is not lost."
+            f"{file} was written by another version of the grader. Move the file away to start again. Your work is not "
+            "lost."
         )
         raise MachineError(message)
     return data

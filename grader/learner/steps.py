@@ -115,7 +115,7 @@ def note(exercise: Exercise, submission: Path, report: Report, folder: Path | No
     if report.exit_code != 0:
         return ""
     if all(known.step(name).passed for name in catalogue()):
-        return "That was the last step. You have passed all of them."
+        return "That was the last step. You have passed all steps."
     waiting = _waiting(known)
     part = next((title for title, names in parts().items() if exercise.id == names[-1]), "")
     lines = [f"That was the last step of {part.lower()}."] if part else []
@@ -193,7 +193,7 @@ def _next(known: progress.Progress) -> Exercise:
         message = (
             f"{known.current} has not passed yet: `grader check` shows what is missing, and `grader hint` helps. To "
             "skip "
-            "this step for now, name another one, as in `grader start 04`."
+            "this step for now, name another step, as in `grader start 04`."
         )
         raise UsageError(message)
     waiting = _waiting(known)

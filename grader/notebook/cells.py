@@ -91,7 +91,9 @@ class Cells:
             return
         worked_on = cell_files.counts(present, start) == "file"
         if worked_on and (grading() or (start is not None and text == cell_files.ended(start))):
-            self._say(f"{path} contains your work. It stays unchanged, because this cell is still the starting point.")
+            self._say(
+                f"{path} contains your work. The file stays unchanged, because this cell is still the starting point."
+            )
             return
         if worked_on and self._written.get(file) != present:
             self._say(f"{path} was changed outside this notebook. The old version is kept in {_keep(file)}.")

@@ -46,7 +46,7 @@ def solved_away(source: str, cell_type: str, *, solution: bool, name: str) -> st
     """
     text = stripped(source, _syntax(source, cell_type), name)
     if solution and text == source:
-        message = f"{name}: a solution cell has no BEGIN SOLUTION. All of it would be released."
+        message = f"{name}: a solution cell has no BEGIN SOLUTION. The whole cell would be released."
         raise UsageError(message)
     return text
 

@@ -70,7 +70,10 @@ class Actions:
         """Start or stop turtlesim."""
         if request.get("on") is True:
             if await self.programs.beside_another():
-                message = "A turtlesim runs already, in a terminal. To see one here, end that one first, with Ctrl-C."
+                message = (
+                    "A turtlesim runs already, in a terminal. To see a turtlesim here, first end the other turtlesim "
+                    "with Ctrl-C."
+                )
                 raise UsageError(message)
             await self.programs.start_turtlesim()
         else:

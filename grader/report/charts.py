@@ -129,7 +129,7 @@ def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> 
     low, high = min(measured.intervals), max(measured.intervals)
     caption = f"{len(series)} intervals, {_s(measured.mean_s)} s on average, from {_s(low)} to {_s(high)} s."
     if stalled:
-        caption += f" {stalled} more were longer because of the machine, not because of the node. They are left out."
+        caption += f" {stalled} longer intervals, caused by the machine and not by the node, are left out."
     drawn = ""
     if wanted:
         caption += f" Required: {middle_s:.2f} s; allowed: {low_s:.2f} to {high_s:.2f} s (the green band)."

@@ -51,7 +51,7 @@ def run_child(command: Sequence[str]) -> int:
     except (OSError, subprocess.SubprocessError) as error:
         message = (
             f"{command[0]} could not be started: {getattr(error, 'strerror', error)}. Is the interpreter "
-            "in its first line installed?"
+            "in the first line of the file installed?"
         )
         raise Ros2Error(message) from error
 

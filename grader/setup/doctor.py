@@ -212,7 +212,7 @@ def look_at_sandbox() -> Line:
     """
     why = bubblewrap.why_unavailable()
     if why is None:
-        return Line("sandbox", "bubblewrap makes cells")
+        return Line("sandbox", "bubblewrap makes sandboxes")
     return Line("sandbox", f"none: {machine.NO_SANDBOX}", "advice", why)
 
 
@@ -220,10 +220,10 @@ def look_at_limits() -> Line:
     """Return a line about how the memory and the processes of a sandbox cell are counted."""
     with control_group(NODE_LIMITS) as group:
         if group:
-            return Line("limits", "memory and processes of a cell are counted by the kernel")
+            return Line("limits", "the kernel counts the memory and the processes of a sandbox")
     return Line(
         "limits",
-        "the grader counts a cell's memory ten times per second, since it may not create control groups",
+        "the grader counts a sandbox's memory ten times per second, since the system allows it no control groups",
     )
 
 
@@ -235,13 +235,13 @@ def look_at_node(ros: Ros, *, confined: bool = True) -> Line:
     why = why_not_heard(ros, confined=confined)
     if why is None:
         return Line(
-            "a node", "starts in a cell; its messages arrive outside" if confined else "starts; its messages arrive"
+            "a node", "starts in a sandbox; its messages arrive outside" if confined else "starts; its messages arrive"
         )
     closed = machine.closed_folder(os.path.realpath(sys.executable))
     todo = "please report this with all lines above"
     if closed and os.getuid() == 0:
         todo += f"; or allow other users to access {closed}, which contains this Python"
-    return Line("a node", f"its messages do not arrive{' from a cell' if confined else ''}: {why}", "broken", todo)
+    return Line("a node", f"its messages do not arrive{' from a sandbox' if confined else ''}: {why}", "broken", todo)
 
 
 def _distribution() -> str:

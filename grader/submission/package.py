@@ -154,7 +154,7 @@ def write_copy(submission: Submission, destination: Path) -> None:
         message = f"{error.filename} exists already: a copy needs a new folder, on a disk with case-sensitive names."
         raise MachineError(message) from error
     except OSError as error:
-        todo = "Make room and try again." if error.errno in (errno.ENOSPC, errno.EDQUOT) else "Try again."
+        todo = "Free some space and try again." if error.errno in (errno.ENOSPC, errno.EDQUOT) else "Try again."
         message = f"A copy of the submission could not be written to {destination}: {error.strerror}. {todo}"
         raise MachineError(message) from error
 

@@ -110,7 +110,7 @@ def _is_folder_behind(name: str, folder: int) -> bool:
 def _several(packages: list[str], name: str) -> str:
     paths = [shown(posixpath.join(name, package)) for package in packages]
     return (
-        f"{shown(name)} contains {len(paths)} packages: {_listed(paths)}. Give the one to grade, for example "
+        f"{shown(name)} contains {len(paths)} packages: {_listed(paths)}. Give the package to grade, for example "
         f"{paths[0]}."
     )
 

@@ -23,7 +23,7 @@ _FORMATS = (".svg", ".png", ".dot")
 _OURS = ("-o", "--output", "--text", "--port", "--active", "--debug", "--hidden", "--all")
 """The options that the rqt_graph of a sourced ROS 2 does not support."""
 _NOTHING = (
-    "No node is running (ROS_DOMAIN_ID is {domain}). Start one in another terminal, with the same domain id: "
+    "No node is running (ROS_DOMAIN_ID is {domain}). Start a node in another terminal, with the same domain id: "
     "ros2 run turtlesim turtlesim_node"
 )
 

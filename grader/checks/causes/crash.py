@@ -42,7 +42,7 @@ MEANINGS = {
     "InvalidTopicNameException": "A topic name may contain only letters, digits, underscores and slashes.",
     "KeyError": "The dictionary has no such key.",
     "ModuleNotFoundError": "No module with that name is installed. Compare the name letter by letter.",
-    "NameError": "This name was never defined. Check its spelling, and check whether an import is missing.",
+    "NameError": "This name was never defined. Check the spelling of the name, and the imports.",
     "NotInitializedException": "ROS 2 was used before rclpy.init or after rclpy.shutdown.",
     "ParameterNotDeclaredException": "Declare a parameter with declare_parameter before you read the parameter.",
     "SyntaxError": "Python cannot read this line or the line before it.",

@@ -268,7 +268,7 @@ def _ended(facts: Facts, _: re.Match[str], __: Outcome) -> bool:
 
 NAME = r"(?P<word>[A-Za-z_][\w.]*\w|\w)"
 FACTS: dict[str, Callable[[Facts, re.Match[str], Outcome], bool]] = {
-    rf"(?:There is|called) (?:a name |a module |a folder )?{NAME}\. (?:Compare|Upper)": _is_right_word,
+    rf"(?:There is|the name is) (?:a name |a module |a folder )?{NAME}\. (?:Compare|Upper)": _is_right_word,
     rf"Did you mean {NAME}\?": _is_right_word,
     rf"but there is {NAME}\.": _stands_in,
     r'The file declares "(?P<word>[^"]+)"': _stands_in,

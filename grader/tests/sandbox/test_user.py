@@ -42,7 +42,7 @@ def test_two_cells_never_have_the_same_user_at_the_same_time() -> None:
     with ExitStack() as stack:
         users = [stack.enter_context(cell_user()) for _ in FEW_USERS]
         assert sorted(map(str, users)) == sorted(map(str, FEW_USERS))
-        with pytest.raises(MachineError, match="All user ids for cells are in use"):
+        with pytest.raises(MachineError, match="All user ids for sandboxes are in use"):
             stack.enter_context(cell_user())
     with cell_user() as again:
         assert again in FEW_USERS

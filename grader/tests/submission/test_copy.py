@@ -65,5 +65,5 @@ def test_a_full_disk_is_the_machines_fault(package: Path, tmp_path: Path, monkey
 
     submission = open_submission(package)
     monkeypatch.setattr(os, "open", full)
-    with pytest.raises(MachineError, match=r"No space left on device\. Make room"):
+    with pytest.raises(MachineError, match=r"No space left on device\. Free some space"):
         write_copy(submission, tmp_path / "copy")
