@@ -1,8 +1,8 @@
 """The stable id of each known mistake, with a one-line explanation.
 
-Each failed check has one of these ids. Reports, class pages and instructors' scripts count these ids, so the meaning of
-an id never changes, although the wording of its message may change. `python -m grader.tests.catalogue` writes the table
-of all ids to grader/checks/README.md.
+Each failed check has one of the ids in this table. Reports, class pages and instructors' scripts count these ids, so
+the meaning of an id never changes, although the wording of its message may change. `python -m grader.tests.catalogue`
+writes the table of all ids to grader/checks/README.md.
 """
 
 from __future__ import annotations

@@ -204,7 +204,7 @@ class Evidence:
 
     @property
     def bench(self) -> BenchResult:
-        """The result of the student's tests. Only checks of a trial that runs tests may use this."""
+        """The result of the student's tests. Only checks of a trial that runs tests may use this result."""
         if self.run.bench is None:
             message = "a check of tests was judged without their result"
             raise ValueError(message)

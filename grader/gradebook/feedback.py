@@ -66,7 +66,7 @@ def _points(cell: NotebookNode) -> str:
 
 
 class GraderReasons(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
-    """After a sync, replaces the kernel's output below each cell that contains a check by the grader's reasons."""
+    """After a sync, shows the grader's reasons below cells with checks, in place of the kernel's output."""
 
     def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:
         """Replace the outputs if the submission was synced."""

@@ -147,7 +147,7 @@ def report_missing(needs: Sequence[Need], why: str) -> bool:
 
 
 def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool:
-    """Create .venv, replacing an existing one. Return False if Python could not create it."""
+    """Create .venv, replacing an existing folder. Return False if Python could not create .venv."""
     say("Creating .venv with Python {}.{}.{} ({})".format(*python.version, python.path))
     options = ["--clear"]
     if ros:

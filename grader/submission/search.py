@@ -100,7 +100,7 @@ def _visit_below(search: _Search, folder: int, entry: Entry, path: str, depth: i
 
 
 def _is_folder_behind(name: str, folder: int) -> bool:
-    """Return, for a message, whether the link leads to a folder. The link is not followed."""
+    """For an error message, return whether the link leads to a folder. The link is not followed."""
     try:
         return stat.S_ISDIR(os.stat(name, dir_fd=folder).st_mode)
     except OSError:

@@ -221,7 +221,7 @@ class Recording:
         return sum(end - begin for begin, end in self.stalls)
 
     def stalled(self, t_s: float) -> bool:
-        """Return whether this time was in a stall or right after one.
+        """Return whether this time was in a stall or right after a stall.
 
         At such times, the arrival time of a message depends on the machine, not on the node.
         """

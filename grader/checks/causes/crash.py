@@ -56,7 +56,10 @@ MEANINGS = {
 
 @dataclass(frozen=True)
 class Crash:
-    """An exception in the student's node. `error` is its class; `where` is the last line of the student's own code."""
+    """An exception in the student's node.
+
+    `error` is the exception's class; `where` is the last line of the student's own code.
+    """
 
     error: str
     message: str

@@ -13,7 +13,7 @@ def add(_: argparse.ArgumentParser) -> None:
 
 
 def run(_: argparse.Namespace) -> int:
-    """Print whether the daemon is running. Return 0 in both cases."""
+    """Print whether the daemon is running. Return 0 whether or not the daemon is running."""
     from grader.ros2.daemon import client
 
     print("The daemon is running" if client.is_running() else "The daemon is not running")

@@ -76,7 +76,7 @@ class Parameters:
         return {name: parameter_value_to_python(value) for name, value in zip(names, found, strict=False)}
 
     def set(self, parameters: Sequence[Parameter]) -> list[Any]:
-        """Set parameters. Return a SetParametersResult for each."""
+        """Set parameters. Return a SetParametersResult for each parameter."""
         request = SetParameters.Request(parameters=list(parameters))
         return list(self._call(SetParameters, "set_parameters", request).results)
 

@@ -40,7 +40,10 @@ class Killer:
         self.struck: list[Blow] = []
 
     def until_struck(self, blows: list[Blow], within_s: float) -> None:
-        """Interrupt the run once with each of these methods. If a run finishes before that, start another run."""
+        """Interrupt the run once with each of these methods.
+
+        If a run finishes before it is interrupted, start another run.
+        """
         for blow in blows:
             with subprocess.Popen(
                 command(*self._arguments),

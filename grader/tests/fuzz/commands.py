@@ -72,7 +72,10 @@ def graded(
     clock: ClockChoice = "wall",
     unjudged: Collection[str] = (),
 ) -> Report:
-    """Return the report. Sometimes write it in every format. Only the checks `unjudged` may end with `error`."""
+    """Return the report. Sometimes write the report in every format.
+
+    Only the checks `unjudged` may end with `error`.
+    """
     options = Options(in_cell=False, clock=clock, trials_at_once=1)
     trials = Trials(recording or good())
     done = grade(find_exercise(step), given, options, build=lambda *_, **__: Built(build, b""), trial=trials)

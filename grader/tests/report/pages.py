@@ -29,7 +29,7 @@ GIVEN: dict[str, Evidence] = {
 
 
 def opened(page: Page, pages: Path, name: str) -> Page:
-    """Open the page of this name."""
+    """Open the page with this name."""
     page.goto((pages / f"{name}.html").as_uri())
     return page
 

@@ -255,7 +255,7 @@ def hooks() -> dict[str, Any]:
 
 
 def late_frames() -> list[float]:
-    """Run in wall time without a client. Computing a frame takes as long as ten frames."""
+    """Run in wall time without a client. Computing each frame takes as long as ten frames last."""
     times: list[float] = []
     stop = threading.Event()
 
