@@ -14,7 +14,8 @@ how often each of these statements is true:
 Each statement is counted twice: according to the diagnoses that the operators expect, and according to facts without
 diagnoses (the difference between the two packages, the source and the recording; grader/tests/operators/facts.py). The
 benchmark also lists each wrong package whose report missed the cause, with the difference from the correct package.
-`--keep` stores recordings, and `--again` judges stored recordings again without running anything.
+`--keep` stores recordings, and `--again` judges stored recordings again without running anything. A run with `--keep`
+that was stopped continues where it was.
 """
 
 from __future__ import annotations
@@ -148,8 +149,16 @@ def judged(made: Made, folder: Path, builds: Builds, keep: Path | None) -> Judge
     if keep is not None:
         mistakes = [(operator.name, change) for operator, change in made.mistakes]
         kept = (dataclasses.replace(made, mistakes=()), mistakes, dataclasses.replace(graded.evidence))
-        (keep / f"{made.name}.pickle").write_bytes(pickle.dumps(kept))
+        unfinished = keep / f"{made.name}.unfinished"
+        unfinished.write_bytes(pickle.dumps(kept))
+        unfinished.replace(keep / f"{made.name}.pickle")
     return Judged(made, graded.evidence, graded.report.outcomes, seconds)
+
+
+def once(made: Made, folder: Path, builds: Builds, keep: Path | None) -> Judged:
+    """Judge a wrong package. If its recording is already stored, judge the recording instead of running the package."""
+    kept = keep and keep / f"{made.name}.pickle"
+    return again(kept) if kept and kept.is_file() else judged(made, folder, builds, keep)
 
 
 def again(kept: Path) -> Judged:
@@ -222,7 +231,7 @@ def main() -> None:
             if wanted.keep:
                 wanted.keep.mkdir(parents=True, exist_ok=True)
             builds = Builds()
-            found = list(pool.map(lambda made: judged(made, Path(name) / "made", builds, wanted.keep), mades))
+            found = list(pool.map(lambda made: once(made, Path(name) / "made", builds, wanted.keep), mades))
         tell(found, everything=wanted.all)
         print(f"{len(right)} right packages, seed {wanted.seed}: {time.monotonic() - begun:.0f} s")
 

@@ -117,6 +117,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "super-init-late": "the node is used before super().__init__ is called",
         "node-name-missing": "super().__init__ is called without a node name",
         "class-for-object": "a class is used where an object is needed",
+        "object-for-class": "an object is used where a class is needed",
         "not-called": "a function is named but not called: its parentheses are missing",
         "callback-called": "a callback is called instead of passed: it has parentheses after its name",
         "callback-parameters": "a callback has too many or too few parameters",

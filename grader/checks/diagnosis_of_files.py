@@ -107,6 +107,7 @@ DiagnosisOfFiles = Literal[
     "super-init-late",
     "node-name-missing",
     "class-for-object",
+    "object-for-class",
     "not-called",
     "callback-called",
     "callback-parameters",

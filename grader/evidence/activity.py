@@ -11,6 +11,8 @@ if TYPE_CHECKING:
 
 ROS_TOPICS = ("/rosout", "/parameter_events", "/clock")
 """Topics on which every node, or the grader, publishes."""
+OF_LIFECYCLE = "lifecycle_msgs/msg/TransitionEvent"
+"""The type of the topic on which each lifecycle node publishes."""
 SPINS = re.compile(r'executors\.py", line \d+, in (?:await_or_execute|handler|_execute_\w+)\b')
 """A traceback entry for the code in rclpy's executor that calls callbacks."""
 START_S = 0.2
@@ -64,6 +66,7 @@ def endpoints(recording: Recording, kind: str) -> tuple[Endpoint, ...]:
         endpoint: None
         for graph in recording.graphs
         for endpoint in graph.endpoints
-        if endpoint.kind == kind and endpoint.node not in recording.own_nodes and endpoint.topic not in ROS_TOPICS
+        if endpoint.kind == kind and endpoint.node not in recording.own_nodes
+        if endpoint.topic not in ROS_TOPICS and endpoint.type != OF_LIFECYCLE
     }
     return tuple(sorted(found, key=lambda endpoint: (endpoint.topic, endpoint.type, endpoint.node)))

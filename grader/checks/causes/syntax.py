@@ -95,11 +95,12 @@ OTHERWISE = "The mistake is often at the end of the previous line: a bracket, a 
 def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
     """Return the cause of a SyntaxError, with the line to look at if Python names a different line."""
     conflict = line_of(data, CONFLICT)
-    if conflict is not None:
+    open_string = "unterminated string" in unreadable.message and unreadable.line != conflict
+    if conflict is not None and not open_string:
         text = (
             "Git left two versions in the file, between <<<<<<< and >>>>>>>. Keep one version and delete the markers."
         )
-        return Cause("merge-conflict", text)
+        return Cause("merge-conflict", text, Where(file, conflict))
     unquoted = _unquoted(unreadable, data)
     if unquoted:
         return Cause("syntax-error", "An entry point is a string, so it needs quotation marks.", Where(file, unquoted))

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
+from grader.checks.causes.no_entry_point import line as entry_point_line
 from grader.checks.causes.why_calls import CREATE_OBJECT
 from grader.checks.edit import at
 from grader.common.words import a_list, nearest, shorten
@@ -93,6 +94,9 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
 
 
 def _of_module(scene: CrashScene, module: str, name: str) -> Cause | None:
+    if scene.evidence.entry_point() == f"{module}:{name}":
+        text = f"The entry point names {shorten(name)}, which the module {shorten(module)} does not contain."
+        return Cause("entry-point-function", text, entry_point_line(scene.evidence))
     if module == "rclpy" and name in ros_names.MODULE_OF:
         return Cause("import-wrong-place", f"{name} is in the module {ros_names.MODULE_OF[name]}.")
     if module == "rclpy" and name in ros_names.OF_ROS_1:

@@ -11,7 +11,7 @@ from grader.checks.causes import ros_names
 from grader.checks.causes.crash_scene import attributes_set, methods
 from grader.checks.causes.why_parameters import too_few, too_many
 from grader.checks.edit import at
-from grader.common.words import a_list, shorten
+from grader.common.words import a_list, count, shorten
 from grader.submission.constants import dotted
 
 if TYPE_CHECKING:
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 MISSING = re.compile(r"(?:\w+\.)*(?P<function>\w+)\(\) missing \d+ required .*arguments?: (?P<names>.*)")
 TOO_MANY = re.compile(
-    r"(?:(?P<of>\w+)\.)?(?P<function>\w+)\(\) takes (?:from \d+ to )?\d+ positional arguments?"
-    r" but \d+ (?:was|were) given"
+    r"(?:(?P<of>\w+)\.)?(?P<function>\w+)\(\) takes (?:from \d+ to )?(?P<most>\d+) positional arguments?"
+    r" but (?P<given>\d+) (?:was|were) given"
 )
 KEYWORD = re.compile(r"(?:\w+\.)*(?P<function>\w+)\(\) got an unexpected keyword argument '(?P<name>\w+)'")
 NOT_CALLABLE = re.compile(r"'(?P<type>\w+)' object is not callable")
@@ -101,7 +101,7 @@ def why_type(scene: CrashScene) -> Cause | None:
     if many is not None:
         if many["function"] == "__init__" and many["of"] in ros_names.FIELDS:
             return Cause("message-arguments", "Create the message without arguments, then set its fields one by one.")
-        return _too_many(scene, many["function"])
+        return _too_many(scene, many)
     if keyword is not None:
         more = f" It takes {TAKES[keyword['function']]}." if keyword["function"] in TAKES else ""
         return Cause("unexpected-keyword", f"{keyword['function']} has no parameter {keyword['name']}.{more}")
@@ -113,6 +113,8 @@ def why_type(scene: CrashScene) -> Cause | None:
 
 
 def _by_message(scene: CrashScene, text: str) -> Cause | None:
+    if "isinstance() arg 2 must be a type" in text:
+        return _made_object(scene)
     if "'property' object is not iterable" in text:
         spun = next(iter(scene.calls_on_line("spin")), None)
         name = ast.unparse(spun.args[0]) if spun is not None and spun.args else "It"
@@ -136,6 +138,20 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
         )
     if "Expected QoSProfile or int" in text:
         return Cause("queue-size", "The last argument is the queue size, a whole number.")
+    return None
+
+
+def _made_object(scene: CrashScene) -> Cause | None:
+    """Return the cause if a publisher is created with a message instead of its class, else None."""
+    for call in scene.evidence.code.calls("create_publisher"):
+        given = call.argument(0, "msg_type")
+        if isinstance(given, ast.Call):
+            name = ast.unparse(given.func)
+            text = (
+                f"create_publisher needs the class {shorten(name)} itself. With () after its name, it gets an object."
+            )
+            fix = at(call.where, f"{ast.unparse(given)},", f"{name},")
+            return Cause("object-for-class", text, call.where).fixed_by(fix)
     return None
 
 
@@ -185,7 +201,8 @@ def _init_misspelt(scene: CrashScene) -> Cause | None:
     return None
 
 
-def _too_many(scene: CrashScene, function: str) -> Cause | None:
+def _too_many(scene: CrashScene, many: re.Match[str]) -> Cause | None:
+    function = many["function"]
     own = too_many(scene, function)
     if own is not None:
         return own
@@ -197,7 +214,20 @@ def _too_many(scene: CrashScene, function: str) -> Cause | None:
         )
     if function in TAKES:
         return Cause("too-many-arguments", f"{function} takes {TAKES[function]}, and nothing else.")
-    return None
+    calls = scene.calls_on_line(function)
+    if len(calls) != 1 or any(isinstance(each, ast.Starred) for each in calls[0].args):
+        return None
+    passed = len(calls[0].args)
+    # Python counts the object of a method as an argument, too.
+    most = int(many["most"]) - (int(many["given"]) - passed)
+    takes = f"at most {count(most, 'argument')}" if most else "no arguments"
+    text = (
+        f"{function} takes {takes}, but {passed} {'is' if passed == 1 else 'are'} passed here.{MORE.get(function, '')}"
+    )
+    return Cause("too-many-arguments", text)
+
+
+MORE = {"get_logger": " It returns the logger, and the methods of the logger take the text."}
 
 
 def _published(wanted: str, got: str) -> Cause:

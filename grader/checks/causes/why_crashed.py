@@ -9,6 +9,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash_scene import CrashScene
 from grader.checks.causes.why_attributes import why_no_attribute
 from grader.checks.causes.why_calls import why_refused, why_type
+from grader.checks.causes.why_ended import named_only
 from grader.checks.causes.why_fields import why_field
 from grader.checks.causes.why_imports import why_no_import
 from grader.checks.causes.why_interface import why_interface
@@ -43,6 +44,10 @@ def _why_no_topic(scene: CrashScene) -> Cause:
     return Cause("topic-name-invalid", next(rules, scene.crash.meaning))
 
 
+def _why_no_init(scene: CrashScene) -> Cause:
+    return named_only(scene.evidence, "rclpy.init") or Cause("no-init", scene.crash.meaning)
+
+
 def _why_undeclared(scene: CrashScene) -> Cause:
     calls = scene.evidence.code.calls("declare_parameter")
     names = [
@@ -67,7 +72,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "InvalidTopicNameException": _why_no_topic,
     "ModuleNotFoundError": why_no_import,
     "NameError": why_no_name,
-    "NotInitializedException": _always("no-init"),
+    "NotInitializedException": _why_no_init,
     "ParameterNotDeclaredException": _why_undeclared,
     "RCLError": why_refused,
     "RuntimeError": why_refused,

@@ -70,6 +70,9 @@ def _why_no_float(field: str, value: ast.expr | None) -> Cause:
             "numpy-for-float",
             f"The field {field} needs a Python float, not a NumPy number. Convert it with float(...).",
         )
+    if isinstance(value, ast.Call) and getattr(value.func, "attr", "") == "get_parameter_value":
+        text = f"The field {field} is a float, but this is a ParameterValue, which has the number in its double_value."
+        return Cause("field-type", text)
     if isinstance(value, ast.Call) and names[0].endswith(("get_parameter", "declare_parameter")):
         text = (
             f"The field {field} is a float, but this is the parameter itself. The value of the parameter is in .value."

@@ -101,6 +101,25 @@ def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: fl
     return None
 
 
+def late_cause(evidence: Evidence) -> str:
+    """Return a sentence about what may delay the first message or line, or an empty string."""
+    if evidence.code.calls("sleep"):
+        return "A sleep at the start may be the reason."
+    waits = evidence.code.calls("wait_for_service")
+    return "The wait for a service (wait_for_service) may be the reason." if waits else ""
+
+
+def sends_each_time(evidence: Evidence, call: str) -> bool:
+    """Return whether the callback of a timer calls `call` once, and not in a branch or a loop."""
+    for module, name in callbacks_of(evidence, "create_timer"):
+        for node in module.nodes:
+            if isinstance(node, ast.FunctionDef) and node.name == name:
+                statements = [each for each in node.body if isinstance(each, ast.Expr) and _calls(each, call)]
+                if len(statements) == 1 and sum(_calls(each, call) for each in node.body) == 1:
+                    return True
+    return False
+
+
 def _length(sleep: Call) -> float | None:
     return number(sleep.argument(0, "secs"), sleep.module.names)
 

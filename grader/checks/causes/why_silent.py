@@ -9,6 +9,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.timers import timer_fault
 from grader.checks.causes.why_ended import SPINS, named_only
+from grader.checks.causes.why_inactive import never_activated
 from grader.checks.causes.why_rate import callbacks_of
 from grader.common.words import nearest, shorten
 from grader.submission.constants import dotted, evaluate
@@ -46,7 +47,8 @@ def why_nothing(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
     if fault is not None:
         return fault
     return (
-        named_only(evidence, "rclpy.spin")
+        never_activated(evidence)
+        or named_only(evidence, "rclpy.spin")
         or _stuck(evidence)
         or _never_called(evidence, sends)
         or _no_spin(evidence)

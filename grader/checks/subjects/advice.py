@@ -6,6 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.why_ended import loops
 from grader.checks.kind import Kind, NoParams
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.submission.where import Where
@@ -29,7 +30,9 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
         return Finding(Status.SKIPPED, "Not judged, because the file of the node is not known yet.")
     if evidence.code.node_file not in {module.file for module in evidence.code.modules if module.tree is not None}:
         return Finding(Status.SKIPPED, "Not judged, because the file of the node cannot be read.")
-    cause = "A node that runs its own loop receives no messages. With a timer, rclpy.spin does the waiting."
+    cause = "A timer calls a method at a period that the node chooses, whatever else happens."
+    if loops(evidence):
+        cause = "A node that runs its own loop receives no messages. With a timer, rclpy.spin does the waiting."
     if evidence.code.calls("create_rate"):
         cause = "A rate from create_rate only works while another thread spins the node. A timer needs no thread."
     if evidence.code.calls("create_timer"):

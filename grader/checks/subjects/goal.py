@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -31,6 +32,10 @@ class Goal:
     tolerance_m: float = number(0.1, above=0, about="The maximum distance from the goal at the end.")
 
 
+NEARLY_M = 1.0
+"""A turtle that stops this near to its goal (m), which is in the code, may have stopped too early."""
+
+
 def goal(evidence: Evidence, params: Goal) -> Finding:
     """The turtle drives to the goal and stops there."""
     expected = f"The turtle stops within {params.tolerance_m:g} m of x={params.x_m:g} y={params.y_m:g}."
@@ -56,6 +61,11 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
                 "The last command has all values 0, as if the turtle had arrived. "
                 "Compare the numbers of the goal in the code with those of the task."
             )
+            if end <= NEARLY_M and _in_code(evidence, params.x_m, params.y_m):
+                cause = (
+                    "The last command has all values 0, as if the turtle had arrived. "
+                    f"At which distance from the goal does the node stop? It is {end:.1f} m here."
+                )
             return failed(observed, expected, Cause("not-there", cause, where), near_edge=near)
         if end >= away[0] - MOVED_M:
             cause = "The direction to the goal is atan2(goal_y - y, goal_x - x). The direction of the turtle is theta."
@@ -68,6 +78,13 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
         return moving
     start = math.dist((float(trajectory.x[0]), float(trajectory.y[0])), (params.x_m, params.y_m))
     return passed(f"The turtle drove to its goal, {start:.1f} m away, and stopped.", near_edge=near)
+
+
+def _in_code(evidence: Evidence, *numbers: float) -> bool:
+    """Return whether all these numbers are constants in the code of the node."""
+    nodes = [node for module in evidence.code.modules for node in module.nodes]
+    found = {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, float)}
+    return found.issuperset(numbers)
 
 
 def requested_goal(_: Evidence, params: Goal) -> Requested:

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 EARLY_S = 0.02
 """Slightly more than one frame, because the frame and the log line get their timestamps at different moments."""
 FEWEST = 3
+LENGTHS = ("hypot", "sqrt", "dist")
+"""Functions that compute the length of a step."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,7 +111,8 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
         f"At {worst.t_s:.0f} s the line shows distance={worst.numbers['distance']:.2f}, "
         f"but the turtle had driven {_at(recording, worst.t_s, driven):.2f} m."
     )
-    where = evidence.place("hypot", "sqrt", "dist", "info")
+    computed = any(evidence.code.calls(name) for name in LENGTHS)
+    where = (None if computed else _added(evidence)) or evidence.place(*LENGTHS, "info")
     numbers = [line.numbers["distance"] for line in logged]
     if not any(numbers):
         why = _overwritten(evidence) or Cause(
@@ -141,7 +144,22 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
         "Between two poses the turtle moves by the square root of dx * dx + dy * dy. "
         "The distance is the sum of these steps."
     )
+    if holds(np.cumsum(np.abs(np.diff(x)) + np.abs(np.diff(y))), lambda line: line.numbers["distance"]):
+        cause = f"This is the sum of all dx and dy, without their signs. {cause}"
     return failed(observed, expected, Cause("wrong-distance", cause, where))
+
+
+def _added(evidence: Evidence) -> Where | None:
+    """Return the line that adds to an attribute which the node logs, or None."""
+    for module in evidence.code.modules:
+        for node in module.nodes:
+            if isinstance(node, ast.AugAssign) and isinstance(node.op, ast.Add):
+                name = dotted(node.target) or ""
+                if name.startswith("self.") and any(
+                    name in ast.unparse(each.node) for each in evidence.code.calls("info")
+                ):
+                    return Where(module.file, node.lineno)
+    return None
 
 
 def _overwritten(evidence: Evidence) -> Cause | None:
@@ -150,16 +168,23 @@ def _overwritten(evidence: Evidence) -> Cause | None:
         for method in (node for node in module.nodes if isinstance(node, ast.FunctionDef)):
             given = {argument.arg for argument in method.args.args} - {"self"}
             inside = list(ast.walk(method))
-            for kept in inside:
-                if not (isinstance(kept, ast.Assign) and isinstance(kept.value, ast.Name) and kept.value.id in given):
+            for kept in method.body:
+                if not (isinstance(kept, ast.Assign) and (dotted(kept.value) or "").partition(".")[0] in given):
                     continue
                 name = dotted(kept.targets[0]) or ""
                 steps = [node for node in inside if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Sub)]
-                reads = [node.lineno for node in steps if f"{name}." in ast.unparse(node)]
+                whole = isinstance(kept.value, ast.Name)
+                reads = [node.lineno for node in steps if _reads(node, f"{name}." if whole else name)]
                 if name.startswith("self.") and reads and kept.lineno < min(reads):
                     text = f"Line {kept.lineno} replaces {shorten(name)} before the step from it is calculated."
                     return Cause("distance-zero", text, Where(module.file, kept.lineno))
     return None
+
+
+def _reads(step: ast.BinOp, begin: str) -> bool:
+    """Return whether a difference contains an attribute whose full name begins like this."""
+    names = [dotted(node) or "" for node in ast.walk(step) if isinstance(node, ast.Attribute)]
+    return any(name.startswith(begin) if begin.endswith(".") else name == begin for name in names)
 
 
 def _trusted(recording: Recording, format_: str) -> list[Line]:

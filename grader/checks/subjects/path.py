@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed, ended_early
 from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_stopped import cancelled
 from grader.checks.kind import Kind, NoParams, choice, number
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.requested import Requested
@@ -208,7 +209,7 @@ def _too_short(evidence: Evidence, trajectory: Trajectory, turns: float, expecte
         observed = (
             f"The turtle drove {turns:.2f} of a turn; the last command arrived at {evidence.commands[-1].t_s:.1f} s."
         )
-        why = Cause("stopped-early", "The turtle stops when no command arrives for 1 s.")
+        why = Cause("stopped-early", "The turtle stops when no command arrives for 1 s.", cancelled(evidence))
     else:
         speed = _steady(evidence)
         turn_s = 2.0 * math.pi / abs(speed[1]) if speed and speed[1] else 0.0

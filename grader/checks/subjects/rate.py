@@ -11,12 +11,15 @@ from grader.checks.causes.crash import crash_of, end_observed, ended_early
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_rate import (
+    late_cause,
+    sends_each_time,
     why_often,
     why_publishers_grow,
     why_several_calls,
     why_sleep_in_callback,
     why_timers_grow,
 )
+from grader.checks.causes.why_stopped import CANCELS, cancelled
 from grader.checks.edit import at
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, Status, failed, passed
@@ -129,7 +132,7 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
         return failed(
             observed,
             wanted,
-            Cause("late-start", _late_cause(evidence), evidence.place("sleep", what.call)),
+            Cause("late-start", late_cause(evidence), evidence.place("sleep", what.call)),
             near_edge=near,
         )
     if not measured.rest_s <= params.max_interval_s:
@@ -186,9 +189,9 @@ def _few(evidence: Evidence, params: Rate, what: Subject, measured: Measured, ex
         return failed(observed, expected, slow)
     if amount == 1:
         cause = f"A timer calls a method repeatedly, so that {what.call} is called more than once."
-        if evidence.code.calls("create_timer") and evidence.code.calls("cancel"):
-            cause, where = "cancel stops the timer, so it does not call its method again.", evidence.place("cancel")
-        return failed(observed, expected, Cause("published-once" if what is COMMAND else "logged-once", cause, where))
+        stop = cancelled(evidence)
+        why = Cause("published-once" if what is COMMAND else "logged-once", CANCELS if stop else cause, stop)
+        return failed(observed, expected, why.at(where))
     return failed(
         observed,
         expected,
@@ -246,6 +249,8 @@ def _why_mean(evidence: Evidence, what: Subject, mean: float, params: Rate) -> C
             f"There are {len(timers)} timers. Each timer calls its method at its own rate.",
             timers[1][0].where,
         )
+    if timers and timers[0][1] is None and sends_each_time(evidence, what.call):
+        return Cause("timer-period", PERIOD, timers[0][0].where)
     where = timers[0][0].where if timers else evidence.place(what.call)
     return Cause("wrong-rate", f"The time between two calls of {what.call} sets the rate.", where)
 
@@ -257,24 +262,16 @@ def _uneven_cause(evidence: Evidence, what: Subject) -> str:
     return f"The method that calls {what.call} sometimes takes longer than the period." if code.calls("sleep") else ""
 
 
-def _late_cause(evidence: Evidence) -> str:
-    if evidence.code.calls("sleep"):
-        return "A sleep at the start may be the reason."
-    return (
-        "The wait for a service (wait_for_service) may be the reason."
-        if evidence.code.calls("wait_for_service")
-        else ""
-    )
-
-
 def _stopped(evidence: Evidence, what: Subject, measured: Measured, expected: str, *, near_edge: bool) -> Finding:
     observed = f"The last {what.noun} arrived at {measured.arrivals[-1]:.1f} s, {measured.rest_s:.1f} s before the end."
     wanted = f"{expected[:-1]}, until Ctrl-C."
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, f"{observed} {end_observed(evidence)}", wanted)
+    stop = cancelled(evidence)
+    cause = ended_early(evidence) or (CANCELS if stop else "")
     return failed(
-        observed, wanted, Cause("stopped-early", ended_early(evidence), evidence.place(what.call)), near_edge=near_edge
+        observed, wanted, Cause("stopped-early", cause, stop or evidence.place(what.call)), near_edge=near_edge
     )
 
 

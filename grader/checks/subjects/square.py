@@ -170,7 +170,10 @@ def _drives_on(evidence: Evidence, params: Square, sides: Sides, sign: float, ex
         observed = f"After the fourth side, the turtle turns by {turned:.0f} degrees."
     else:
         return no_standstill(evidence, expected)
-    if silent_while_moving(evidence):
+    unfinished = sides.more_m <= SHORT_M and 0.0 < turned < 90.0 and bool(evidence.trajectory.turn[-1])
+    if unfinished:
+        cause = "At the end of the trial, the turtle was still turning: the square took too long."
+    elif silent_while_moving(evidence):
         cause = f"The last command is not 0, so the turtle continues for one second. {ZEROS}"
     return failed(observed, "After four sides, the turtle stands still.", Cause("drives-on", cause, where))
 

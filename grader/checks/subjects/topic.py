@@ -9,6 +9,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import loops, why_ended
+from grader.checks.causes.why_inactive import never_activated
 from grader.checks.causes.why_silent import WAKES, hidden_error, returns_before, why_nothing, why_qos
 from grader.checks.causes.wrong_topic import right_name, why_topic
 from grader.checks.kind import Kind, string
@@ -97,7 +98,9 @@ def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
             f"The node subscribes to {params.topic}.", _expected(params), Cause("subscription-instead", cause, where)
         )
     observed = end_observed(evidence) or "The node has no publisher."
-    why = why_nothing(evidence, ("publish",)) if evidence.code.calls("create_publisher") else None
+    why = never_activated(evidence)
+    if why is None and evidence.code.calls("create_publisher"):
+        why = why_nothing(evidence, ("publish",))
     if why is not None:
         return failed(observed, _expected(params), why)
     cause = "" if evidence.code.calls("create_publisher") else "create_publisher is never called."

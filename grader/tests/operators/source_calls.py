@@ -47,7 +47,7 @@ OPERATORS = (
     _source("publisher-without-type", PUBLISHER, r"create_publisher(\g<topic>, \g<queue>)", "argument-missing"),
     _source("publisher-queue-a-string", PUBLISHER, r'create_publisher(\g<type>, \g<topic>, "\g<queue>")', "queue-size"),
     _source(
-        "publisher-made-object", PUBLISHER, r"create_publisher(\g<type>(), \g<topic>, \g<queue>)", "class-for-object"
+        "publisher-made-object", PUBLISHER, r"create_publisher(\g<type>(), \g<topic>, \g<queue>)", "object-for-class"
     ),
     _source(
         "subscription-swapped",

@@ -127,6 +127,8 @@ def test_a_node_without_a_timer_is_shown_what_takes_its_place() -> None:
     loops = NODE.replace("self.create_timer(0.5, self.send)", "None")
     finding = found(USES_TIMER, evidence(package=submission({NODE_FILE: loops})))
     assert (finding.diagnosis, str(finding.where)) == ("no-timer", f"{NODE_FILE}:16")
+    assert "loop" not in finding.cause
+    finding = found(USES_TIMER, evidence(package=submission({NODE_FILE: f"{loops}\nwhile True:\n    pass\n"})))
     assert "receives no messages" in finding.cause
 
 

@@ -22,13 +22,15 @@ def test_a_timer_with_that_period_is_pointed_at() -> None:
     assert (found.diagnosis, str(found.where)) == ("timer-period", f"{NODE_FILE}:10")
 
 
+def test_the_only_timer_sets_the_rate_unless_its_callback_chooses_when_to_publish() -> None:
+    unknown = (TIMER, "self.create_timer(self.period, self.send)")
+    found = rate("one hertz", unknown)
+    assert (found.diagnosis, str(found.where)) == ("timer-period", f"{NODE_FILE}:10")
+    chooses = ("        self.publisher.publish(", "        if self.due():\n            self.publisher.publish(")
+    assert rate("one hertz", unknown, chooses).diagnosis == "wrong-rate"
+
+
 def test_a_period_by_a_name_is_found() -> None:
-    found = rate(
-        "one hertz",
-        (TIMER, "self.create_timer(self.period, self.send)"),
-        ("def send", "period = 1 / 1\n\n    def send"),
-    )
-    assert found.diagnosis == "wrong-rate"
     found = rate(
         "one hertz", (f"self.timer = {TIMER}", f"period = 2 / 2\n        self.timer = {TIMER.replace('0.5', 'period')}")
     )

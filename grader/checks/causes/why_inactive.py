@@ -1,0 +1,39 @@
+"""Why a lifecycle node is silent: it is never activated."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.submission.constants import dotted
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+
+LIFECYCLE = "LifecycleNode"
+TRANSITIONS = ("on_activate", "on_configure")
+"""The methods of a lifecycle node that another program causes to run, the more important one first."""
+
+
+def never_activated(evidence: Evidence) -> Cause | None:
+    """Return the cause if the node is a lifecycle node that does not activate itself, else None.
+
+    The grader never activates a node: an exercise asks for a node that works as soon as it is started.
+    """
+    if evidence.code.calls("trigger_activate"):
+        return None
+    for module in evidence.code.modules:
+        for node in module.nodes:
+            if isinstance(node, ast.ClassDef) and LIFECYCLE in [
+                (dotted(b) or "").rpartition(".")[2] for b in node.bases
+            ]:
+                methods = {each.name: each.lineno for each in node.body if isinstance(each, ast.FunctionDef)}
+                name = next((each for each in TRANSITIONS if each in methods), None)
+                text = "A lifecycle node does nothing until it is activated, and nothing activates this one."
+                more = f" So {name} is never called." if name else ""
+                return Cause(
+                    "method-never-called", text + more, Where(module.file, methods.get(name or "", node.lineno))
+                )
+    return None
