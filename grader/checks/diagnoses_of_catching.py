@@ -16,6 +16,7 @@ OF_CATCHING: dict[str, dict[Diagnosis, str]] = {
         "target-format": "the names in an announcement are not separated by spaces only",
         "still-announced": "a turtle that was caught, or never existed, is announced",
         "not-killed": "a turtle that was caught is not removed",
+        "killed-uncaught": "a turtle is removed although nobody caught it",
         "loop-variable": "a function created in a loop uses the loop variable, which then has its last value",
         "never-drives": "the turtle does not move at all",
         "stands-still": "the turtle stands still although a target is left",

@@ -12,6 +12,7 @@ DiagnosisOfCatching = Literal[
     "target-format",
     "still-announced",
     "not-killed",
+    "killed-uncaught",
     "loop-variable",
     "never-drives",
     "stands-still",

@@ -123,7 +123,8 @@ class Recorder(Node):
         """The services of other nodes, as found in snapshots, if `follows_services` is set."""
         return tuple(sorted(self._offers, key=lambda offer: (offer.service, offer.type, offer.node)))
 
-    def _follow_services(self) -> None:
+    def follow_services(self) -> None:
+        """Store the services that other nodes offer now."""
         for name, space in self.get_node_names_and_namespaces():
             node = f"{space.rstrip('/')}/{name}"
             if node in OWN_NODES or len(self._offers) >= MOST_SERVICES:
@@ -135,7 +136,7 @@ class Recorder(Node):
     def snapshot(self) -> None:
         """Store a snapshot of the current graph."""
         if self.follows_services:
-            self._follow_services()
+            self.follow_services()
         # The judged topics come first, because a hundred other topics must not crowd them out.
         topics = sorted((topic not in self._judged, topic) for topic, _ in self.get_topic_names_and_types())
         shown = [topic for beside, topic in topics if not beside]

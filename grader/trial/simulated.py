@@ -92,7 +92,7 @@ class SimulatedTrial(Simulation):
                     self._take_in()
                 if frame % GRAPH_EVERY == 0:
                     self.spin()
-                    self.recorder.follow_graph()
+                    self.follow_graph()
                     self.recorder.snapshot()
                     if self._node.run_time_s() > MOST_CPU * duration_s:
                         self._doubt("it uses too much CPU time")
@@ -186,10 +186,9 @@ class SimulatedTrial(Simulation):
 
     def _take_in(self) -> bool:
         """Handle everything that has arrived. Return whether the node may react to what was handled."""
-        if not self.may_request():
-            self.hear()
-            return False
         # Plain messages and acknowledgements get no answer, so the node stays idle.
+        if not self.may_act():
+            return self.take_in() > 0
         return not all(isinstance(source, Subscription) for source in self.spin())
 
     # --- handshake --------------------------------------------------------------------------------------------
@@ -210,7 +209,7 @@ class SimulatedTrial(Simulation):
         if len(self.recorder.commands) >= 2:
             self._doubt("the node published again and again while the clock stood still")
         self._doubt_sleepers()
-        self.recorder.follow_graph()
+        self.follow_graph()
         self.recorder.snapshot()
         self.tick(0.0)
 
@@ -228,7 +227,7 @@ class SimulatedTrial(Simulation):
                     return False
         finally:
             quiet.close()
-        if not before or self.recorder.follow_graph():
+        if not before or self.follow_graph():
             return False
         amount = len(self.node.pids)
         main = [wait for wait in self._node.waits() if wait.tid in self.node.pids]

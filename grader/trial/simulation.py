@@ -13,10 +13,12 @@ from rclpy.service import Service
 from rclpy.subscription import Subscription
 
 from grader.ros.message_values import plain
+from grader.trial.arrivals import MOST_AT_ONCE, take_messages, take_requests
 from grader.trial.caller import Caller
 from grader.trial.goals import GoalLog
 from grader.trial.observed import Call
 from grader.trial.recorder import Recorder
+from grader.trial.silent_servers import SilentServers
 from grader.trial.target_keeper import TargetKeeper
 from grader.trial.turtles import TurtleWatch
 from grader.turtlesim.node import TurtlesimNode
@@ -35,9 +37,8 @@ if TYPE_CHECKING:
 
 COMMANDS = "/turtle1/cmd_vel"
 PUBLISHED = {"/turtle1/pose": "turtlesim/msg/Pose", "/turtle1/color_sensor": "turtlesim/msg/Color"}
-_MOST_AT_ONCE = 2000
-"""The maximum number of callbacks before the trial checks its clock again. A flood of messages must not stop time."""
 _MOST_AT_ONCE_S = 0.5
+"""The maximum time for which callbacks run before the trial checks its clock again (s)."""
 _MOST_INTERVENTIONS = 1000
 """The maximum number of interventions that are kept in order. After that, each name is kept once, and the others are
 counted."""
@@ -46,8 +47,9 @@ counted."""
 class Simulation:
     """The ROS side of a trial. `frame` moves the turtle, and `spin` handles everything that has arrived.
 
-    Each time it runs, an executor checks every service and every event, which takes longer than anything else in a
-    frame. `hear` handles only messages. `hear` is sufficient while no other node `may_request` a service.
+    Each time it runs, an executor checks every entity and every event, which takes longer than anything else in a
+    frame. `take_in` handles only messages and service requests. `take_in` is sufficient while no other node `may_act`
+    on an action of ours.
     """
 
     held = False
@@ -83,6 +85,8 @@ class Simulation:
         self.caller = Caller(self.recorder, inputs.calls, self.now) if inputs.calls else None
         self.recorder.follows_services = self.caller is not None
         self._calls: list[Call] = []
+        several = node is not None and len(node.processes) > 1
+        self._silent_servers = SilentServers(self.recorder, prefixes, self._overheard) if several else None
         self._in_company_s: float | None = None
         leave_out_events(self.recorder)
         leave_out_events(self.turtlesim)  # before there are other turtles, which can be removed
@@ -100,7 +104,7 @@ class Simulation:
         """The number of service and action requests that were answered."""
         self.seconds: dict[str, float] = {}
         self._since = time.monotonic()
-        self._services: list[str] = []
+        self._actions: list[str] | None = None
 
     def lap(self, part: str) -> None:
         """Record the duration of the part of the trial that has just ended."""
@@ -161,7 +165,7 @@ class Simulation:
         """
         handled: list[object] = []
         until = time.monotonic() + timeout_s + _MOST_AT_ONCE_S
-        while time.monotonic() < until and len(handled) < _MOST_AT_ONCE:
+        while time.monotonic() < until and len(handled) < MOST_AT_ONCE:
             some = self._handle_ready(0.0 if handled else timeout_s)
             handled += some
             # While the simulator answers a request, it may log something that the recorder receives.
@@ -169,41 +173,60 @@ class Simulation:
                 break
         return handled
 
-    def may_request(self) -> bool:
-        """Return whether any node has a client for a service or action of ours, or has not responded to us yet."""
+    def may_act(self) -> bool:
+        """Return whether any node has a client for an action of ours, or has not responded to us yet."""
         if self.caller is not None and self.caller.pending:
             return True
-        if not self._services:
-            self._services = [
+        if self._actions is None:
+            self._actions = [
                 name
                 for node in self._nodes
                 for name, _ in node.get_service_names_and_types_by_node(node.get_name(), node.get_namespace())
+                if "/_action/" in name
             ]
         # This does not use Node.count_clients, which validates the name each time and takes four times as long.
         count = self.turtlesim.handle.get_count_clients
-        return any(count(name) for name in self._services)
+        return any(count(name) for name in self._actions)
 
-    def hear(self) -> None:
-        """Handle the messages that have arrived."""
-        for node in self._nodes:
-            for subscription in list(node.subscriptions):
-                _handle_messages(subscription)
+    def take_in(self) -> int:
+        """Handle the messages and the requests that have arrived. Return the number of requests."""
+        answered = 0
+        while answered < MOST_AT_ONCE:
+            for node in self._nodes:
+                for subscription in list(node.subscriptions):
+                    take_messages(subscription)
+            more = sum(take_requests(service) for node in self._nodes for service in list(node.services))
+            if not more:
+                break
+            # While the simulator answers a request, it may log something that the recorder receives.
+            answered += more
+        self._count_requests(answered)
+        return answered
+
+    def _count_requests(self, answered: int) -> None:
+        if answered:
+            self.requests += answered
+            self._actions = None  # a turtle may have been added or removed
 
     def _handle_ready(self, timeout_s: float) -> list[object]:
         """Handle everything that is ready within `timeout_s`, and any further messages on the same topics."""
         handled: list[object] = []
         with suppress(TimeoutException):
-            while len(handled) < _MOST_AT_ONCE:
+            while len(handled) < MOST_AT_ONCE:
                 handler, source, _ = self.executor.wait_for_ready_callbacks(0.0 if handled else timeout_s)
                 handler()
                 handler.result()
                 handled.append(source)
                 if isinstance(source, Subscription):
-                    _handle_messages(source)  # the executor takes only one message at a time
+                    take_messages(source)  # the executor takes only one message at a time
                 else:
-                    self.requests += isinstance(source, Service)
-                    self._services = []  # a turtle may have been added or removed
+                    self._count_requests(isinstance(source, Service))
         return handled
+
+    def follow_graph(self) -> bool:
+        """Record new topics, and calls of new services between several nodes. Return whether there were any."""
+        fresh = self.recorder.follow_graph()
+        return (self._silent_servers is not None and self._silent_servers.follow()) or fresh
 
     def students_nodes(self) -> list[str]:
         """Return the names of the nodes in the graph that do not belong to the grader."""
@@ -228,6 +251,10 @@ class Simulation:
         if len(self._calls) < _MOST_INTERVENTIONS:
             now_s = self.now()
             self._calls.append(Call(now_s - waited_s, service, type_name, plain(request), plain(response), now_s))
+
+    def _overheard(self, service: str, type_name: str, request: Any) -> None:  # noqa: ANN401 - a ROS message
+        if len(self._calls) < _MOST_INTERVENTIONS:
+            self._calls.append(Call(self.now(), service, type_name, plain(request)))
 
     def _intervened(self, name: str) -> None:
         # A thousand calls to a harmless service must not hide the next teleport.
@@ -254,16 +281,6 @@ class Simulation:
     def tick(self, now_s: float) -> None:
         """Run one frame, and publish the time if the clock is simulated."""
         self.frame(now_s)
-
-
-def _handle_messages(subscription: Subscription) -> None:
-    """Pass the waiting messages to the subscription's callback."""
-    with subscription.handle:
-        for _ in range(_MOST_AT_ONCE):
-            taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
-            if taken is None:
-                break
-            subscription.callback(taken[0])
 
 
 def leave_out_events(node: Node) -> None:

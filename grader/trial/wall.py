@@ -43,7 +43,7 @@ class WallTrial(Simulation):
             self.frame(frame * FRAME_S)
             frame += 1
             if frame % GRAPH_EVERY == 1:
-                self.recorder.follow_graph()
+                self.follow_graph()
                 self.recorder.snapshot()
         stopped_s = self.now()
         worked_s = self.node.worked_s(self._begun, time.monotonic())
@@ -73,7 +73,7 @@ class WallTrial(Simulation):
             self.node.read_output(self.now())
             if self.recorder.commands:
                 return
-            found = self.all_nodes_found() and not self.recorder.follow_graph()
+            found = self.all_nodes_found() and not self.follow_graph()
         # Handle earlier arrivals before the clock starts, so that no interval contains them. Reading the graph is slow.
         self.spin()
         self.node.read_output(self.now())

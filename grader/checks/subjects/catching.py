@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_killed import SAME_TIME_S, why_killed
 from grader.checks.causes.why_not_caught import why_not_caught
 from grader.checks.causes.why_unasked import why_unasked
 from grader.checks.kind import Kind, NoParams, number, string
@@ -38,9 +39,15 @@ OFTEN = 3
 
 @dataclass(frozen=True, kw_only=True)
 class Catches:
-    """The minimum number of targets."""
+    """The minimum number of targets, and the service that catches one."""
 
     turtles: float = number(1, at_least=1, about="The minimum number of turtles to catch.")
+    service: str = string(
+        "the full name of a service",
+        default=" ",
+        about="The service with a field `name` that must be called before a turtle is removed, if another node of the "
+        "trial offers it.",
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,6 +73,12 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
         text = "Only the spawner may remove a target. Call its service /catch."
         cause = Cause("not-driven", text, evidence.place("create_client"))
         return failed("The node removed a target itself, with /kill.", expected, cause)
+    uncaught = _uncaught(recording, gone, params.service.strip())
+    if uncaught is not None:
+        observed = f"{shorten(uncaught.turtle)} was removed at {uncaught.gone_s:.1f} s, although nobody caught it."
+        other = next(iter(evidence.exercise.beside(evidence.trial.id)), evidence.trial)
+        cause = why_killed(evidence.from_trial(other.id), uncaught, params.service.strip())
+        return failed(observed, expected, cause)
     if len(gone) == len(tracks) >= params.turtles:
         return passed(f"All {count(len(gone), 'target')} were caught, the last one at {gone[-1].gone_s:.0f} s.")
     crash = crash_of(evidence)
@@ -79,6 +92,18 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
     left = [track for track in tracks if track not in gone]
     finding = failed(observed, expected, why_not_caught(evidence, left))
     return unless_starved(finding, recording, off=0.1, per_s=1.0)
+
+
+def _uncaught(recording: Recording, gone: list[Track], service: str) -> Track | None:
+    """Return the first target that was removed before the service was called with its name, or None."""
+    if not service:
+        return None
+    asked_s: dict[object, float] = {}
+    for call in recording.calls:
+        if call.service == service:
+            asked_s.setdefault(call.request.get("name"), call.t_s)
+    late = (each for each in gone if asked_s.get(each.turtle, math.inf) > (each.gone_s or 0.0) + SAME_TIME_S)
+    return next(late, None)
 
 
 def _forbidden(recording: Recording) -> str | None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_killed import why_killed
 from grader.checks.causes.why_rate import callbacks_of
 from grader.checks.causes.why_silent import methods_of, why_nothing
 from grader.checks.causes.why_unasked import waits_in_callback, why_unasked
@@ -222,11 +223,8 @@ def removes(evidence: Evidence, params: Removes) -> Finding:
         if call.response is None:
             return no_response(evidence, params.service, params.type, call, expected)
         track = next((each for each in recording.tracks if each.turtle == name), None)
-        kills = [
-            each
-            for each in calls_of(evidence)
-            if not each.by_trial and each.service == "/kill" and each.t_s >= call.t_s
-        ]
+        own = [each for each in calls_of(evidence) if not each.by_trial and each.t_s >= call.t_s]
+        kills = [each for each in own if each.service == "/kill"]
         gone_s = track.gone_s if track is not None else None
         if track is not None and (gone_s is None or gone_s - call.t_s > LATE_S):
             return _not_killed(evidence, name, params.topic, kills, expected)
@@ -234,7 +232,7 @@ def removes(evidence: Evidence, params: Removes) -> Finding:
         wrong = [each for each in others if each.turtle not in {str(other.request["name"]) for other in calls}]
         if wrong:
             observed = f"{shorten(wrong[0].turtle)} was removed, although nobody caught it."
-            return failed(observed, expected, Cause("not-killed", "", evidence.place("create_service")))
+            return failed(observed, expected, why_killed(evidence, wrong[0], params.service))
     return passed(f"A call of {params.service} removes the turtle.")
 
 

@@ -5,23 +5,21 @@ from __future__ import annotations
 import os
 from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import rclpy
 from geometry_msgs.msg import Twist
 from rclpy.action import ActionClient
 from turtlesim.action import RotateAbsolute
-from turtlesim.srv import SetPen, Spawn
+from turtlesim.srv import Spawn
 
 from grader.tests.waiting import until
 from grader.trial.inputs import Inputs
 from grader.trial.recording import Pose
+from grader.trial.silent_servers import SilentServers
 from grader.trial.simulated import QUIET_S
 from grader.trial.wall import WallTrial
 from grader.trial.without_node import AloneTrial
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 
 def what_one_spin_handles() -> dict[str, Any]:
@@ -53,7 +51,8 @@ def a_line_while_the_graph_is_looked_at() -> list[float]:
 
     stage: Any = WallTrial.__new__(WallTrial)
     stage.node = SimpleNamespace(pids=(1,), ended=lambda: False, read_output=read)
-    stage.recorder = SimpleNamespace(commands=[], follow_graph=lambda: written.append("a line"))
+    stage.recorder = SimpleNamespace(commands=[])
+    stage.follow_graph = lambda: written.append("a line")
     stage.spin = lambda _=0.0: []
     stage.students_nodes = lambda: ["/draw_circle"]
     stage._discover()
@@ -65,36 +64,77 @@ def a_node_that_drives_before_it_is_found() -> int:
     commands: list[str] = []
     stage: Any = WallTrial.__new__(WallTrial)
     stage.node = SimpleNamespace(pids=(1,), ended=lambda: False, read_output=lambda _: 0)
-    stage.recorder = SimpleNamespace(commands=commands, follow_graph=lambda: True)
+    stage.recorder = SimpleNamespace(commands=commands)
+    stage.follow_graph = lambda: True
     stage.spin = lambda _=0.0: commands.append("a command")
     stage.students_nodes = lambda: ["/draw_square"]
     stage._discover()
     return len(commands)
 
 
-def who_may_request() -> bool:
-    """Return whether a request is possible before any client exists.
-
-    Check that a request is possible while a client exists.
-    """
+def who_may_act() -> bool:
+    """Return whether an action may be used before any client exists. Check that it may be used while one exists."""
     stage = _stage()
     student = rclpy.create_node("student")
-    anybody = stage.may_request()
+    anybody = stage.may_act()
 
-    def request(client: Any, destroy: Callable[[Any], object]) -> None:  # noqa: ANN401 - of many types
-        until(stage.may_request)
-        destroy(client)
-        until(lambda: not stage.may_request())
+    def act(turtle: str) -> None:
+        client = ActionClient(student, RotateAbsolute, f"/{turtle}/rotate_absolute")
+        until(stage.may_act)
+        client.destroy()
+        until(lambda: not stage.may_act())
 
-    request(student.create_client(SetPen, "/turtle1/set_pen"), student.destroy_client)
-    request(ActionClient(student, RotateAbsolute, "/turtle1/rotate_absolute"), ActionClient.destroy)
+    act("turtle1")
     spawn = student.create_client(Spawn, "/spawn")
     until(spawn.service_is_ready)
+    anybody |= stage.may_act()
     spawn.call_async(Spawn.Request(x=1.0, y=1.0, name="turtle2"))
-    until(lambda: bool(stage.spin(0.1)) and bool(stage.interventions))
-    request(spawn, student.destroy_client)
-    request(student.create_client(SetPen, "/turtle2/set_pen"), student.destroy_client)
+    until(lambda: bool(stage.take_in()))
+    act("turtle2")
     return anybody
+
+
+def a_request_without_an_executor() -> dict[str, Any]:
+    """Return what is recorded of a request that is answered by take_in, and the response that the client gets."""
+    stage = _stage()
+    student = rclpy.create_node("student")
+    spawn = student.create_client(Spawn, "/spawn")
+    until(spawn.service_is_ready)
+    stage.recorder.follow_graph()
+    until(lambda: bool(stage.take_in()) or bool(stage.recorder.log))  # from here on, /rosout is received
+    future = spawn.call_async(Spawn.Request(x=1.0, y=1.0, name="turtle2"))
+    until(lambda: stage.take_in() > 0)
+    rclpy.spin_until_future_complete(student, future, timeout_sec=10.0)
+    response = future.result()
+    return {
+        "requests": stage.requests,
+        "calls": [(call.service, dict(call.request)["name"]) for call in stage.calls],
+        "log": stage.recorder.log[-1].text,
+        "name": response and response.name,
+    }
+
+
+def a_call_between_two_nodes() -> dict[str, Any]:
+    """Return what a silent server records of a call between two nodes, and the response that the client gets."""
+    stage = _stage()
+    recorded: list[tuple[str, str, str]] = []
+    prefixes = [Path(prefix) for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep)]
+    silent = SilentServers(stage.recorder, prefixes, lambda *call: recorded.append((*call[:2], call[2].name)))
+    student = rclpy.create_node("student")
+
+    def spawn(request: Any, response: Any) -> Any:  # noqa: ANN401 - ROS messages
+        response.name = request.name.upper()
+        return response
+
+    student.create_service(Spawn, "/lay", spawn)
+    until(lambda: not stage.spin(0.1) and silent.follow())
+    client = student.create_client(Spawn, "/lay")
+    until(lambda: stage.recorder.count_clients("/lay") == 1 and client.service_is_ready())
+    future = client.call_async(Spawn.Request(name="egg"))
+    until(lambda: bool(stage.take_in() or recorded))
+    rclpy.spin_until_future_complete(student, future, timeout_sec=10.0)
+    response = future.result()
+    return {"recorded": recorded, "again": silent.follow(), "name": response and response.name}
 
 
 def quiet_s() -> float:

@@ -13,5 +13,18 @@ def test_all_that_has_come_is_handled_at_once_and_what_is_said_about_it_too(in_r
     assert handled["after"] == 0
 
 
-def test_who_has_a_client_may_ask_and_nobody_else(in_ros: InRos) -> None:
-    assert in_ros.run("trial.scenarios:who_may_request").result is False
+def test_only_a_client_of_an_action_may_act(in_ros: InRos) -> None:
+    assert in_ros.run("trial.scenarios:who_may_act").result is False
+
+
+def test_a_request_is_answered_and_recorded_without_an_executor(in_ros: InRos) -> None:
+    handled = in_ros.run("trial.scenarios:a_request_without_an_executor").result
+    assert handled["requests"] == 1
+    assert handled["calls"] == [["/spawn", "turtle2"]]
+    assert handled["log"].startswith("Spawning turtle [turtle2]")
+    assert handled["name"] == "turtle2"
+
+
+def test_a_call_between_two_nodes_is_recorded_and_answered_by_its_server_alone(in_ros: InRos) -> None:
+    overheard = in_ros.run("trial.scenarios:a_call_between_two_nodes").result
+    assert overheard == {"recorded": [["/lay", "turtlesim/srv/Spawn", "egg"]], "again": False, "name": "EGG"}

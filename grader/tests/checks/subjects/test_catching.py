@@ -86,6 +86,22 @@ def test_the_end_of_the_other_node_is_named() -> None:
     assert diagnosis(finding) == "other-node-ended"
 
 
+@pytest.mark.parametrize(
+    ("calls", "text"),
+    [
+        (CALLS, None),
+        (CALLS[:1], "Remove a target only"),
+        ((*CALLS[:1], catch(5.0, "far")), "Remove a target only"),
+        ((*CALLS[:1], Call(3.3, "/kill", "turtlesim/srv/Kill", {"name": "far"}, {}, 3.3)), "/kill was called for far"),
+        ((*CALLS[:1], Call(3.3, "/reset", "std_srvs/srv/Empty", {}, {}, 3.3)), "/reset was called"),
+    ],
+)
+def test_a_target_that_the_referee_removed_by_itself_is_not_caught(calls: tuple[Call, ...], text: str | None) -> None:
+    finding = found(CATCHES, given(calls=calls), turtles=2, service="/catch")
+    assert diagnosis(finding) == (text and "killed-uncaught")
+    assert not text or finding.cause.startswith(text)
+
+
 def test_a_teleport_is_not_driving() -> None:
     jumped = given(interventions=("teleport_absolute",))
     frames = jumped.recording.frames

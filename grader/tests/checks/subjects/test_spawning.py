@@ -129,6 +129,14 @@ def test_who_was_caught_must_be_removed_and_nobody_else(calls: list[Call], gone:
     assert diagnosis(of_removes(given(calls=calls, gone=gone))) == "not-killed"
 
 
+def test_who_was_not_caught_must_stay() -> None:
+    removed = of_removes(
+        given(calls=[catch(), kill("target2"), kill("target3")], gone={"target2": CAUGHT_S, "target3": CAUGHT_S})
+    )
+    assert diagnosis(removed) == "killed-uncaught"
+    assert removed.cause.startswith("/kill was called for target3")
+
+
 def test_places_that_are_the_same_each_time_are_not_random() -> None:
     twice = given()
     finding = found(PLACES_DIFFER, twice, other=twice.trial.id)

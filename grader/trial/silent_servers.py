@@ -1,0 +1,67 @@
+"""Record the service calls between the nodes of a trial, with servers that receive each request and never respond.
+
+In DDS, a request reaches every server of the service, and the client takes the response that arrives.
+"""
+
+from __future__ import annotations
+
+import importlib
+import re
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from grader.trial.observed import Offer
+    from grader.trial.recorder import Recorder
+
+MOST_SERVICES = 20
+"""The maximum number of services with a silent server. A node must not fill the memory of the grader."""
+_TYPE = re.compile(r"([a-z][a-z0-9_]*)/srv/([A-Z][A-Za-z0-9]*)")
+
+
+class SilentServers:
+    """Servers of the recorder, one for each service that a node of the submission offers.
+
+    A service exists in the graph before its silent server, so a client never finds the silent server alone.
+    """
+
+    def __init__(self, recorder: Recorder, prefixes: list[Path], on_request: Callable[[str, str, Any], object]) -> None:
+        """Create no server yet. `on_request(service, type, request)` is called for each request."""
+        self._recorder = recorder
+        self._prefixes = prefixes
+        self._on_request = on_request
+        self._known: set[str] = set()
+
+    def follow(self) -> bool:
+        """Create a server for each service that is new in the graph, and return whether there were any."""
+        self._recorder.follow_services()
+        fresh = [offer for offer in self._recorder.offers if offer.service not in self._known]
+        fresh = fresh[: MOST_SERVICES - len(self._known)]
+        self._known |= {offer.service for offer in fresh}
+        served = [self._serve(offer) for offer in fresh]
+        return any(served)
+
+    def _serve(self, offer: Offer) -> bool:
+        service_type = self._load(offer.type)
+        if service_type is None:
+            return False
+
+        def received(request: Any, response: Any) -> Any:  # noqa: ANN401 - ROS messages
+            self._on_request(offer.service, offer.type, request)
+            return response
+
+        service = self._recorder.create_service(service_type, offer.service, received)
+        service.send_response = lambda *_: None
+        return True
+
+    def _load(self, type_name: str) -> Any | None:  # noqa: ANN401 - a service class
+        """Return the class of an installed service type, or None. A node of the submission chose the name."""
+        match = _TYPE.fullmatch(type_name)
+        if match is None:
+            return None
+        package, name = match.groups()
+        if not any((prefix / "share" / package / "srv" / f"{name}.srv").is_file() for prefix in self._prefixes):
+            return None
+        return getattr(importlib.import_module(f"{package}.srv"), name)
