@@ -77,7 +77,7 @@ def _making(submission: Path, folder: Path, times: int) -> None:
 
 
 def page_cost(recording: Path, page: Path) -> tuple[float, float]:
-    """Write the page of a recording. Return the time that this took (s), and the size of the page (KB)."""
+    """Write the page of a recording. Return the time for writing (s), and the size of the page (KB)."""
     start = interpreter("-c", _PAGE, str(recording), str(page))
     done = subprocess.run(start.argv, check=True, capture_output=True, text=True)
     seconds, size = done.stdout.split()
@@ -113,7 +113,7 @@ def _showing(folder: Path, times: int) -> None:
 
 
 def _opening(tab: Page, address: str) -> tuple[float, float]:
-    """Open a page. Return the time for which its scripts ran, and the time until the page was loaded (s)."""
+    """Open a page. Return the time for which the page's scripts ran, and the time until the page was loaded (s)."""
     session = tab.context.new_cdp_session(tab)
     session.send("Performance.enable")
     tab.goto(address)

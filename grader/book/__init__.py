@@ -1,1 +1,1 @@
-"""The lessons as HTML pages. `grader book` writes them to a folder, and `grader open` serves them."""
+"""The lessons as HTML pages. `grader book` writes the pages to a folder, and `grader open` serves them."""

@@ -48,7 +48,7 @@ class Judgement:
     def wants(self, trial: str) -> bool:
         """Return whether any check would use a recording of the trial with this id.
 
-        If no check would, the trial need not run.
+        The trial need not run if no check would use its recording.
         """
         return any(
             _judges_trial(self.exercise, spec, trial) and not any(_blocks(self.findings[need]) for need in spec.needs)

@@ -46,7 +46,9 @@ def stem(name: str) -> str | None:
 
 @contextmanager
 def unpacked(archive: Path) -> Iterator[Path]:
-    """Yield a temporary folder with the content of the archive. Its absolute path must not contain a link.
+    """Yield a temporary folder with the content of the archive.
+
+    The absolute path of the archive must not contain a link.
 
     Raises:
         NotUnpackedError: the archive cannot be unpacked, or is larger than a submission may be.
@@ -78,7 +80,7 @@ def _open(archive: Path) -> IO[bytes]:
 
 
 def _run(archive: IO[bytes], folder: str) -> subprocess.CompletedProcess[bytes] | None:
-    """Run the script in a separate process, so that an archive that takes too much time or memory stops only that."""
+    """Run the script in a separate process, so that an archive that takes too much time or memory stops only this."""
     start = interpreter("-S", str(_SCRIPT), "/dev/stdin", folder)
     try:
         return subprocess.run(

@@ -1,4 +1,4 @@
-"""Grade all submissions in an order, even if worker processes die."""
+"""Grade all submissions of an `Order`, even if worker processes die."""
 
 from __future__ import annotations
 

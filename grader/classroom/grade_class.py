@@ -34,7 +34,7 @@ DASK = "dask://"
 
 @dataclass(frozen=True)
 class Request:
-    """The options of the command."""
+    """The options of the command `grader grade`."""
 
     submissions: Sequence[Path]
     out: Path

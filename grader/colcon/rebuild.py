@@ -42,7 +42,10 @@ class Rebuild:
         in_cell: bool,
         tell: Callable[[str], None],
     ) -> runner.Built:
-        """Build the submission, with or without colcon. `tell` is called with a message about the choice."""
+        """Build the submission, with or without colcon.
+
+        `tell` is called with a message that says whether colcon runs.
+        """
         built = read(renewed, submission, *self._last) if self._last else None
         if built is not None:
             tell("Using the last build with the changed modules")

@@ -40,7 +40,7 @@ def moved_by(recording: Recording, *, from_start: bool) -> str | None:
 
 
 def first_driven(recording: Recording) -> int:
-    """Return the index of the first frame that a command can have moved."""
+    """Return the index of the first frame in which a command can have moved the turtle."""
     begin_s = min((command.t_s for command in recording.commands), default=0.0)
     return int(np.searchsorted(recording.frames.t_s, begin_s))
 

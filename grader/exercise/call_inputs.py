@@ -30,7 +30,7 @@ class Arc:
     noise_m: float
 
     def points(self, name: str, seed: int) -> tuple[Floats, Floats]:
-        """Return x and y (m), each of shape (count,). The noise is drawn from `seed` and `name`."""
+        """Return x and y (m), each of shape (count,). The random noise depends on `seed` and `name`."""
         angle = self.angles()
         noise = np.random.default_rng([seed, zlib.crc32(name.encode())]).normal(0.0, self.noise_m, (2, self.count))
         x = self.x_m + self.radius_m * np.cos(angle) + noise[0]
@@ -44,7 +44,7 @@ class Arc:
     def deviations(self) -> tuple[float, float, float]:
         """Return the standard deviations of centre x, centre y and radius (m) of the best fit to such points.
 
-        These deviations follow from the noise through the Cramér-Rao bound, as in N. Chernov, "Circular and Linear
+        These deviations follow from the noise through the Cramér-Rao bound, as in Chernov, "Circular and Linear
         Regression" (2010), section 7.2.
         """
         angle = self.angles()
@@ -69,7 +69,7 @@ class BagInput:
     """One run of a program that takes the name of a bag as its argument.
 
     The bag contains poses of turtle1 on an arc, at `rate_hz`, and `commands` velocity commands in the same period. If
-    `poses` is false, it contains only the commands.
+    `poses` is false, the bag contains only the commands.
     """
 
     id: str

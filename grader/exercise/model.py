@@ -71,9 +71,9 @@ class Scenario:
     is published at `pose_from_s` (s), to simulate a late simulator. Services respond `answers_after_s` (s) after a
     call. The node starts with `parameters` on its command line and with `params_file` in a parameter file.
 
-    The simulator adds `targets` turtles at random places, and the trial plays the part of the node that announces them
-    (grader/trial/target_keeper.py). If `alone_s` is set, the trial ends early once the other turtles are gone and
-    turtle1 has been alone for this long (s).
+    The simulator adds `targets` turtles at random places, and the trial itself runs the node that announces these
+    turtles (grader/trial/target_keeper.py). If `alone_s` is set, the trial ends early once the other turtles are gone
+    and turtle1 has been alone for this long (s).
     """
 
     duration_s: float
@@ -98,7 +98,7 @@ class TrialSpec:
     the executable is called once for each call listed. With `tests`, the student's tests run without a simulator.
 
     If `beside` is the id of another trial, the node of this trial runs in that trial as an additional node, with the
-    same scenario. The checks of this trial judge that trial from the viewpoint of the additional node.
+    same scenario. The checks of this trial judge the other trial from the viewpoint of the additional node.
     """
 
     id: str

@@ -46,7 +46,7 @@ class ClassFolders:
         return Path(self.course.root) / CLASS / HANDED_IN / student / step
 
     def autograded(self, student: str, step: str) -> Path:
-        """Return the path of the notebook that autograde ran. It is possible that no such file exists."""
+        """Return the path of the notebook that autograde ran. It is possible that there is no such notebook."""
         return Path(self.course.format_path(self.course.autograded_directory, student, step)) / f"{step}.ipynb"
 
     def submissions(self, steps: Sequence[str]) -> list[tuple[str, str]]:
@@ -96,10 +96,12 @@ def _made() -> Path:
 
 
 def open_class(folder: Path | None) -> ClassFolders:
-    """Open the class whose nbgrader_config.py is in `folder` or its course/. The default is the current folder.
+    """Open the class whose nbgrader_config.py is in `folder` or in its subfolder course/.
 
-    nbgrader_config.py is a program that this function executes. The current folder may belong to a student, so it
-    is used only if it is the folder of a class that this user created.
+    The default is the current folder.
+
+    nbgrader_config.py is a program that this function executes. The current folder may belong to a student, so it is
+    used only if it is the folder of a class that this user created.
 
     Raises:
         UsageError: nbgrader_config.py does not exist, or this user did not create the class.

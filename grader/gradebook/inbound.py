@@ -1,4 +1,7 @@
-"""The folders in nbgrader's exchange. `nbgrader submit` creates them, but students can create any others."""
+"""The folders in nbgrader's exchange.
+
+`nbgrader submit` creates such folders, but students can create any other folders.
+"""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ def notebook(path: Path) -> str:
     """Return the notebook as JSON in the newest format that nbgrader uses.
 
     Raises:
-        TooLargeError: the notebook exceeds one of the limits above.
+        TooLargeError: the notebook exceeds one of the limits in this module.
         UnreadableError: the path is not a regular file, or not a notebook.
     """
     import nbformat

@@ -138,8 +138,8 @@ class Settling:
     def settle(self, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> bool:
         """Wait until nothing new has arrived for 0.2 s and all participants on this machine have sent their data.
 
-        `enough` can end the wait earlier. `deadline_s` is the longest wait; None means the default. Returns False if
-        the deadline passes first.
+        The wait ends earlier if `enough` returns true. `deadline_s` is the longest wait; None means the default.
+        Returns False if the deadline passes first.
         """
         begun = time.monotonic()
         most = deadline_s if deadline_s is not None else DEADLINE_S
@@ -161,7 +161,7 @@ def settle(node: Node, enough: Callable[[], bool] = lambda: False, deadline_s: f
 
 
 def published(node: Node, topic: str) -> bool:
-    """Return whether another node than the given one publishes on the topic. Every node publishes on /rosout."""
+    """Return whether a node other than the given node publishes on the topic. Every node publishes on /rosout."""
     own = node.get_name()
     return any(publisher.node_name != own for publisher in node.get_publishers_info_by_topic(topic))
 

@@ -93,7 +93,7 @@ class Events:
         return not self._queue.empty()
 
     def press(self, key: str) -> None:
-        """Add a key press, as if it came from the keyboard. Any thread may call this."""
+        """Add a key press, as if it came from the keyboard. Any thread may call this method."""
         self._queue.put(Happened("key", key))
 
     def close(self) -> None:

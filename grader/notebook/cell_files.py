@@ -93,7 +93,8 @@ def ended(text: str) -> str:
 def counts(file: str | None, start: str | None) -> Literal["cell", "file"]:
     """Return the text that counts: that of the file if the student has changed the file, or else that of the cell.
 
-    `file` is the text of the file, and `start` is its text in the starting point. Both are None for a missing file.
+    `file` is the text of the file, and `start` is its text in the starting point. A text is None if the file is
+    missing.
     """
     if file is None or (start is not None and ended(file) == ended(start)):
         return "cell"
@@ -101,7 +102,7 @@ def counts(file: str | None, start: str | None) -> Literal["cell", "file"]:
 
 
 def starting_text(exercise: Exercise, path: str) -> str | None:
-    """Return the text of a file in the step's starting point, or None if the file is not part of that."""
+    """Return the text of a file in the step's starting point, or None if the starting point lacks the file."""
     file = workspace.starting_point(exercise) / path
     try:
         return file.read_text("utf-8")

@@ -45,7 +45,7 @@ class Verdict:
     reasons: Mapping[str, str]
 
     def points(self, check: str) -> float:
-        """Return the points of a check, and print the reason for them.
+        """Return the points of a check, and print the reason for these points.
 
         Raises UsageError if the check does not exist.
         """

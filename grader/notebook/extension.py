@@ -49,7 +49,7 @@ def _tell(
 
 
 def _guard() -> None:
-    """Mark the future child processes of the kernel, and start the guardian that stops them after it exits."""
+    """Mark the future child processes of the kernel, and start the guardian that stops marked processes later."""
     mark = f"{os.getpid()}-{secrets.token_hex(8)}"
     # Only this process has the write end of the pipe, because Python does not pass descriptors to child processes.
     # The guardian must not inherit the kernel's folder or mark.

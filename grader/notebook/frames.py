@@ -1,4 +1,4 @@
-"""The format of a kernel's messages on the pipe between the relay (outside the cell) and the bridge (inside).
+"""The format of a kernel's messages on the pipe between the relay (outside the cell) and the bridge (inside it).
 
 A frame is a ZeroMQ message with its channel: one byte for the channel, two for the number of parts, and four for the
 size of each part, all big-endian, followed by the parts. The reader gets the size of a message before its content.

@@ -1,4 +1,4 @@
-"""Grade for a notebook, in a separate process that cells cannot change.
+"""Grade the work next to a notebook, in a separate process that the notebook's cells cannot change.
 
     python -m grader.notebook.grading_process EXERCISE FOLDER
 

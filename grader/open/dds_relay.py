@@ -1,8 +1,8 @@
 """Forward DDS datagrams between a node in a cell, which has a separate network, and the nodes of this machine.
 
-A node in a cell can reach only this relay, and the relay can reach only 127.0.0.1: the ports of the
-participants of one ROS domain, and ports that one of these participants has announced. To the other nodes, the node
-looks like any other node of this machine.
+A node in a cell can reach only this relay, and the relay can reach only 127.0.0.1: the ports of the participants of one
+ROS domain, and ports that one of these participants has announced. Other nodes cannot distinguish the node in the cell
+from a node of this machine.
 """
 
 from __future__ import annotations

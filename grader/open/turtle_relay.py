@@ -24,7 +24,7 @@ LARGEST = 1 << 24
 
 
 async def relay(page: WebSocket, address: Address) -> None:
-    """Forward messages in both directions until one side closes. The page has already been accepted."""
+    """Forward messages in both directions until one side closes. The guard has already accepted the page."""
     here = f"{HOST}:{address.port}"
     try:
         async with connect(

@@ -68,7 +68,7 @@ class ShownCheck:
 
     @property
     def kind(self) -> str:
-        """Passed, failed, skipped, error, or advice that was not followed."""
+        """The result of the check: passed, failed, skipped, error, or advice that was not followed."""
         if self.outcome.advice and self.outcome.status is Status.FAILED:
             return "advice"
         return self.outcome.status.value

@@ -24,7 +24,10 @@ UNREADABLE = "unreadable"
 
 
 def suspicions(graded: Sequence[tuple[Report, int]]) -> list[str]:
-    """Return the reason to look at each submission (usually empty), given (report, number of consecutive errors)."""
+    """Return for each submission the reason to look at it, which is usually an empty string.
+
+    `graded` contains the report of each submission with the number of consecutive errors.
+    """
     judged = sum(not report.with_status(Status.ERROR) for report, _ in graded)
     return [_suspicion(report, errors, judged) for report, errors in graded]
 

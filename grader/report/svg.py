@@ -96,7 +96,7 @@ def pixel(point: Point) -> Point:
 
 
 def scene_svg(scene: Scene, *, turtle: bool = False, name: str = "canvas") -> str:
-    """Draw the canvas with its axes; `turtle` adds a turtle and its trajectory so far, which a player can move."""
+    """Draw the canvas with its axes; `turtle` adds a turtle that a player can move, and its trajectory so far."""
     scale = SIDE / SIDE_M
     shapes = "".join(_shape(shape, scale) for shape in scene.shapes)
     inside = [tag("rect", x=LEFT, y=TOP, width=SIDE, height=SIDE, fill=rgb(SEA)), tag("g", shapes)]

@@ -165,8 +165,8 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
     """Return the environment of a node that a user starts: the user's environment with the variables of ROS 2 added.
 
     The user's settings are kept, and workspaces that the user sourced are searched first. The ROS domain is `domain`,
-    or if `domain` is None, the domain that the user has set. If neither is set, each user gets a separate domain, so
-    that classmates on one machine do not drive each other's turtles. If the ROS 2 installation was sourced, however,
+    or if `domain` is None, the domain that the user has set. Without such a setting, each user gets a separate domain,
+    so that classmates on one machine do not drive each other's turtles. If the ROS 2 installation was sourced, however,
     the domain is 0, as usual in ROS 2, so that these nodes reach nodes in terminals where the user only sourced the
     installation.
     """

@@ -35,7 +35,7 @@ def _report_nothing(_: str) -> None:
 
 
 def with_turtlesim(ros: installation.Ros, tell: Callable[[str], None] = _report_nothing) -> installation.Ros:
-    """Return this ROS 2 with the turtlesim interfaces added. Build them first if necessary (see `ensure`).
+    """Return this ROS 2 with the turtlesim interfaces added. Build the interfaces first if necessary (see `ensure`).
 
     Raises:
         MachineError: the interfaces could not be built.

@@ -25,7 +25,7 @@ _PASSED_ON = (signal.SIGTERM, signal.SIGHUP)
 def run_child(command: Sequence[str]) -> int:
     """Run a program until the program exits.
 
-    Return its exit code, which is negative if a signal terminated the program.
+    Return the exit code, which is negative if a signal terminated the program.
 
     The terminal sends Ctrl-C to the program directly. This function forwards SIGTERM and SIGHUP.
 

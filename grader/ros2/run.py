@@ -72,7 +72,10 @@ def _path(args: argparse.Namespace) -> Path:
 
 
 def _program(path: Path) -> list[str]:
-    """Return the command for a script. setuptools quotes interpreter paths with spaces, but Linux cannot run these."""
+    """Return the command for a script.
+
+    setuptools quotes interpreter paths that contain spaces, but Linux cannot run quoted paths.
+    """
     try:
         with path.open("rb") as file:
             quoted = _QUOTED.match(file.readline(4096).decode("utf-8", "replace"))

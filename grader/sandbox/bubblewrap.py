@@ -143,7 +143,7 @@ def usable() -> bool:
 
 
 def require(*, trusted: bool = False) -> bool:
-    """Return whether student code will run in a sandbox. Call this before running code of untrusted students.
+    """Return whether student code will run in a sandbox. Call this function before running code of untrusted students.
 
     With `trusted`, a missing sandbox is not an error.
 

@@ -18,7 +18,10 @@ def remove_incomplete(folder: Path) -> None:
 
 
 def is_complete(path: Path) -> bool:
-    """Return whether Python can load this compiled module. A module of another Python version may not load."""
+    """Return whether Python can load this compiled module.
+
+    Python is often unable to load a module of another Python version.
+    """
     try:
         marshal.loads(path.read_bytes()[HEADER:])
     except (EOFError, ValueError, TypeError):

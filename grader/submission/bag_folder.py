@@ -39,7 +39,7 @@ class Poses:
 
 @dataclass(frozen=True)
 class BagFolder:
-    """A bag. `problem` is the reason why it cannot be read, and `detail` the folder, file or error that caused it.
+    """A bag. `problem` is the reason why the bag cannot be read, and `detail` the folder, file or error that caused it.
 
     `types` holds the type of each topic, `counts` the number of its messages, and `poses` the messages of type Pose.
     """

@@ -231,7 +231,7 @@ def _left_out(path: str) -> bool:
 
 
 def read_module(file: str, data: bytes) -> Module:
-    """Parse one file. If Python cannot read it, `unreadable` says why.
+    """Parse one file. If Python cannot read the file, `unreadable` says why.
 
     Raises:
         TooLargeError: the file is too large, or nested too deeply.

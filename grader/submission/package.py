@@ -28,7 +28,9 @@ MAX_REJECTED = 20
 
 @dataclass(frozen=True)
 class Submission:
-    """A package. `package_dir` is its folder, and `files` maps POSIX paths relative to that folder to bytes.
+    """A package.
+
+    `package_dir` is the folder of the package, and `files` maps POSIX paths relative to that folder to bytes.
 
     `files` leaves out build/, install/, log/, hidden folders, virtual environments, caches and everything that is not a
     regular file in the folder. `rejected` names the files that make the submission invalid, each with the reason, for
@@ -95,7 +97,9 @@ def _opened(name: str, exactly: bool) -> Iterator[int]:
 
 
 def open_answers(path: str | os.PathLike[str], *, exactly: bool = False) -> Submission:
-    """Read only answers.toml in this folder, for an exercise without a package. `exactly` is as in `open_submission`.
+    """Read only answers.toml in this folder, for an exercise without a package.
+
+    `exactly` has the same meaning as in `open_submission`.
 
     Raises UsageError if there is no such folder or file, and MachineError if the disk fails.
     """

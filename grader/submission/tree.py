@@ -99,11 +99,11 @@ def open_folder(name: str, parent: int | None = None, *, follow: bool = False) -
 def open_file(path: Path, *, at: Path | None = None) -> IO[bytes]:
     """Open a regular file. A link to the file is never followed, and a pipe is never waited for.
 
-    `at` is as in `require_path`.
+    `at` has the same meaning as in `require_path`.
 
     Raises:
         OSError: the file cannot be opened.
-        ValueError: it is not a regular file.
+        ValueError: the entry is not a regular file.
     """
     with ExitStack() as stack:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
@@ -173,7 +173,7 @@ def _exists(path: str, folder: int) -> bool:
 
 
 def read_folder(folder: str | os.PathLike[str], *, follow: bool = True) -> Tree:
-    """Call `read_tree` for the folder at this path. With `follow`, it may be a link to a folder.
+    """Call `read_tree` for the folder at this path. With `follow`, the path may be a link to a folder.
 
     Raises:
         OSError: the folder cannot be opened.

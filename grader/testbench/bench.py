@@ -59,7 +59,7 @@ class Bench:
     def start(self) -> None:
         """Start the cells, up to `lanes` in parallel, and the runs in them.
 
-        If that fails, `result` raises the error.
+        If the start fails, `result` raises the error.
         """
         pool = self._stack.enter_context(ThreadPoolExecutor(self._count))
         self._done = [pool.submit(self._work) for _ in range(self._count)]
@@ -109,8 +109,8 @@ class _Queue:
     def take(self) -> tuple[str, Behaviour] | None:
         """Return the next run, or None.
 
-        If the tests rejected the correct node, they earn no points for rejecting broken nodes. In that case, the
-        remaining runs use the correct node.
+        If the tests rejected the correct node, they earn no points for rejecting broken nodes. After such a rejection,
+        the remaining runs use the correct node.
         """
         with self._lock:
             if self._closed or sum(each.over for each in self.ended) >= MOST_HANGS:

@@ -56,7 +56,7 @@ class Package:
 
 
 class Lane:
-    """The cell with its session, as a context manager. On entry, it starts the imports.
+    """The cell with its session, as a context manager. On entry, the lane starts the imports.
 
     Without a cell, the lane uses `folder`, which no other lane uses. The nodes of such a lane discover no other nodes
     on the machine.

@@ -210,7 +210,7 @@ class _Disk:
             sys.exit("the disks of the cell could not be emptied")
 
     def _entries(self, folder: Path) -> Iterator[Path]:
-        """Yield all files and folders below this folder that are on this disk."""
+        """Yield all files and folders on this disk that are below the given folder."""
         for path in folder.iterdir():
             about = path.lstat()
             if about.st_dev != self._device:

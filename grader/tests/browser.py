@@ -39,7 +39,7 @@ def find_browser() -> str | None:
 def browser_or_reason() -> str:
     """Return the path of Chromium. Without Chromium, the test is skipped and the reason is shown.
 
-    In CI, the test fails.
+    In CI, the test fails if Chromium is missing.
     """
     found = find_browser()
     if found is None:

@@ -3,8 +3,8 @@
 The effects of a submission stay in this host. So an attack can also run without a sandbox: programs that do nothing
 replace bubblewrap and prlimit, usage.py measures nothing, and the command finds no sandbox.
 
-This file also runs inside the host, as a script. There, the script offers what an attacker would like to reach
-(services, secrets), runs the command, and reports what is left.
+This file also runs inside the host, as a script. Inside the host, the script offers what an attacker would like to
+reach (services, secrets), runs the command, and reports what is left.
 """
 
 from __future__ import annotations

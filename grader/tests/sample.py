@@ -48,8 +48,8 @@ def sample(cases: Sequence[Case]) -> frozenset[str]:
 def shows(case: Case) -> frozenset[object]:
     """Return what a case adds to the sample.
 
-    That is: the groups of its diagnoses, its exercise with the place where the mistake shows ("files" or "behaviour"),
-    and those of its diagnoses that are in `without_test()`.
+    The result contains the groups of the case's diagnoses, its exercise with the place where the mistake shows ("files"
+    or "behaviour"), and those of its diagnoses that are in `without_test()`.
     """
     exercise = case.exercise or (OF_BASES if (BASES / case.base).is_dir() else case.base)
     diagnoses = frozenset(case.diagnosis.values())

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], Any]) -> tuple[Path, Any]:
     """Return the folder with this name, filled by `make`, and what `make` returned (JSON).
 
-    Tests must not change this.
+    Tests must not change this folder.
     """
     base = factory.getbasetemp()
     folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / f"shared-{name}"

@@ -1,4 +1,4 @@
-"""The solutions pass with both clocks and from any start. Regrading their recordings gives the same result."""
+"""The solutions pass with both clocks and from any start. Regrading the recordings gives the same result."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ def make_honest(folder: Path, names: tuple[str, ...]) -> Path:
 
 
 def is_crowded_by_others(out: Path) -> bool:
-    """Return whether other programs keep this machine busy, and every error in the reports has this reason."""
+    """Return whether other programs keep this machine busy and are the reason for every error in the reports."""
     outcomes = [outcome for report in reports(out).values() for outcome in report["outcomes"]]
     errors = [str(outcome) for outcome in outcomes if outcome["status"] == "error"]
     return os.getloadavg()[0] > 2.0 * (os.cpu_count() or 1) and all(

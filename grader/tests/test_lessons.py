@@ -145,7 +145,7 @@ def test_lesson_05_is_typed_as_it_stands(tmp_path: Path) -> None:
 
 @pytest.fixture
 def kitchen(tmp_path: Path) -> Iterator[dict[str, str]]:
-    """Run the thermometer and the heater. Yield the environment of a shell whose ros2 finds them."""
+    """Run the thermometer and the heater. Yield the environment of a shell whose ros2 finds both nodes."""
     ros, domain = find_ros(), own_domain()
     with subprocess.Popen(
         [ros.python, Path(__file__).with_name("kitchen.py")],

@@ -1,4 +1,4 @@
-"""Only one kind of process reads the files of students: that of submission/reader.py."""
+"""Only one kind of process reads the files of students: the process of submission/reader.py."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ OURS = {
 
 
 def reading(tree: ast.Module) -> Iterator[tuple[str, str]]:
-    """Yield the functions that read a file or a stream, and the functions that they call for it."""
+    """Yield the functions that read a file or a stream, and the functions that they call for reading."""
     for function, node in in_functions(tree):
         if isinstance(node, ast.Call):
             name = ast.unparse(node.func)

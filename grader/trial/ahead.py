@@ -1,4 +1,4 @@
-"""The trials of one submission. The trials start during the build, and run in parallel if in simulated time.
+"""The trials of one submission. The trials start during the build, and those in simulated time run in parallel.
 
 The trials start one after the other, so that most of a processor is left for the build, for which all trials wait.
 Simulated time does not depend on the speed of the machine, so parallel trials do not affect each other. A trial in wall
@@ -50,7 +50,7 @@ class _Started:
 
 
 class Ahead:
-    """The trials of a submission, as a context manager. On exit, it stops every trial that it started.
+    """The trials of a submission, as a context manager. On exit, the manager stops every trial that it started.
 
     The name of a trial is its id. Up to `at_once` trials run in parallel.
     """
@@ -81,7 +81,7 @@ class Ahead:
     def start(self, name: str, trial: Trial) -> None:
         """Start the simulator and the launcher as soon as those of the previous trials are ready.
 
-        If that fails, the trial's `run` raises the error.
+        If the start fails, the trial's `run` raises the error.
         """
         self._started[name] = _Started(trial, self._starter.submit(self._begin, trial))
 
@@ -97,7 +97,7 @@ class Ahead:
         self._under_way[name] = self._pool.submit(self._started[name].run, package, executable, tree)
 
     def trial(self, name: str) -> Runs | None:
-        """Return the trial, whose `run` returns the recording; None if it was not started."""
+        """Return the trial, whose `run` returns the recording; None if the trial was not started."""
         if name in self._under_way:
             return _UnderWay(self._under_way[name])
         return self._started.get(name)

@@ -73,7 +73,7 @@ def _called(order: dict[str, Any], call: dict[str, Any]) -> dict[str, Any]:
 
 
 def _text(file: int) -> str:
-    """Return the text of the file, or its beginning and end if it is long."""
+    """Return the text of the file, or its beginning and end if the text is long."""
     size = os.fstat(file).st_size
     if size <= MOST_TEXT:
         return os.pread(file, MOST_TEXT, 0).decode("utf-8", "replace")

@@ -1,7 +1,9 @@
-"""Find clues in the source which suggest that a node follows wall time. Simulated time would misjudge such a node.
+"""Find clues in the source which suggest that a node follows wall time.
 
-Only the executable's module and the modules of the package that it imports are searched. A sleep in another node of
-the package does not matter.
+Simulated time would misjudge a node that follows wall time.
+
+Only the executable's module and the modules of the package that it imports are searched. A sleep in another node of the
+package does not matter.
 """
 
 from __future__ import annotations

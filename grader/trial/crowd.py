@@ -66,7 +66,7 @@ class Stalls:
 
         A stall is a period in which threads waited for a processor, or in which the hypervisor gave the processor to
         another virtual machine. A late frame alone is not a stall, because a node that keeps the simulator busy could
-        cause it.
+        cause the delay.
         """
         passed_s = max(now_s - self._since_s, 1e-3)
         now = [_times(threads) for threads in self._parts]
@@ -131,5 +131,5 @@ def _machine_worked_s() -> float:
 
 
 def _machine_s() -> list[float]:
-    """Return the total times of all processors (s). These are the columns of /proc/stat; see proc(5)."""
+    """Return the total times of all processors (s). The times are the columns of /proc/stat; see proc(5)."""
     return [int(column) * _TICK_S for column in Path("/proc/stat").read_text().split(maxsplit=9)[1:9]]

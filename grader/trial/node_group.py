@@ -48,7 +48,10 @@ class NodeGroup:
             process.interrupt()
 
     def escalate(self) -> None:
-        """Send SIGTERM or SIGKILL to processes that do not exit in time. Call this repeatedly after `interrupt`."""
+        """Send SIGTERM or SIGKILL to processes that do not exit in time.
+
+        Call this method repeatedly after `interrupt`.
+        """
         for process in self.processes:
             if not process.ended():
                 process.escalate()

@@ -86,7 +86,10 @@ class Stream:
 
 
 class NodeProcess:
-    """The process of a node with its pipes, as a context manager. On exit, it kills all processes of the node."""
+    """The process of a node with its pipes, as a context manager.
+
+    On exit, the manager kills all processes of the node.
+    """
 
     def __init__(self, command: Callable[[int, int | None], Sequence[str]], limits: Limits, *, in_cell: bool) -> None:
         """Start the launcher.
@@ -195,7 +198,10 @@ class NodeProcess:
             self._signal(signal.SIGINT)
 
     def escalate(self) -> None:
-        """Send SIGTERM, and later SIGKILL, if the node does not exit in time. Call this repeatedly after SIGINT."""
+        """Send SIGTERM, and later SIGKILL, if the node does not exit in time.
+
+        Call this method repeatedly after SIGINT.
+        """
         assert self._interrupted is not None
         passed = time.monotonic() - self._interrupted
         if passed > STOP_S + 1.0 and self._by != "SIGKILL":
@@ -207,7 +213,7 @@ class NodeProcess:
             self._signal(signal.SIGTERM)
 
     def end(self, now_s: float) -> ProcessEnd:
-        """Return how the process ended. Call this only after `ended` has returned True."""
+        """Return how the process ended. Call this method only after `ended` has returned True."""
         code = self._process.returncode
         stopped = None if self._interrupted is None else time.monotonic() - self._interrupted
         # Like a shell, bwrap reports a signal as 128 + the signal number.

@@ -49,10 +49,10 @@ class HandshakePatience:
 
 
 class TickPatience:
-    """The limit for the node and the simulator to respond to each other at one instant of simulated time.
+    """The time limit for the node and the simulator to respond to each other at one instant of simulated time.
 
-    Reading the CPU time of the node costs as much as checking its threads. Most instants end before this is necessary,
-    so the CPU time is read late.
+    Reading the CPU time of the node costs as much as checking its threads. Therefore, the CPU time is not read at
+    first, and most instants end before it is needed.
     """
 
     def __init__(self, node: Threads | GroupThreads, now_s: float) -> None:

@@ -17,7 +17,7 @@ class ProcessGroup:
         self._may_be_suspended = True
 
     def suspend(self) -> None:
-        """Suspend the processes until `resume` or `kill`. After one of these, do nothing."""
+        """Suspend the processes until `resume` or `kill`. After `resume` or `kill`, do nothing."""
         with self._changing:
             if self._may_be_suspended:
                 self._signal(signal.SIGSTOP)
@@ -30,7 +30,10 @@ class ProcessGroup:
                 self._signal(signal.SIGCONT)
 
     def kill(self) -> None:
-        """Kill the processes. The caller must not have waited for the leader yet, because its id can be used again."""
+        """Kill the processes.
+
+        The caller must not have waited for the leader yet, because the leader's id can then be used again.
+        """
         with self._changing:
             self._may_be_suspended = False
             self._signal(signal.SIGKILL)

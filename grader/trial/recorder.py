@@ -105,7 +105,7 @@ class Recorder(Node):
         return found
 
     def follow_graph(self) -> bool:
-        """Subscribe to new topics, and return whether there were any."""
+        """Subscribe to new topics, and return whether there were any new topics."""
         fresh = False
         for topic, types in self.get_topic_names_and_types():
             if topic not in self.topics and len(self.topics) >= 10 * MOST_TOPICS and topic not in self._judged:

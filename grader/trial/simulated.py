@@ -237,7 +237,7 @@ class SimulatedTrial(Simulation):
     def _wake(self) -> None:
         """Publish time 0 until each node has woken up twice.
 
-        Then the simulator and the nodes have discovered each other.
+        After that, the simulator and the nodes have discovered each other.
         """
         rest = GroupThreads(self.node.pids, not_of_dds)
         try:

@@ -47,9 +47,9 @@ counted."""
 class Simulation:
     """The ROS side of a trial. `frame` moves the turtle, and `spin` handles everything that has arrived.
 
-    Each time it runs, an executor checks every entity and every event, which takes longer than anything else in a
-    frame. `take_in` handles only messages and service requests. `take_in` is sufficient while no other node `may_act`
-    on an action of ours.
+    An executor checks every entity and every event each time it runs, which takes longer than anything else in a frame.
+    `take_in` handles only messages and service requests. `take_in` is sufficient while no other node `may_act` on an
+    action of the simulator.
     """
 
     held = False
@@ -174,7 +174,7 @@ class Simulation:
         return handled
 
     def may_act(self) -> bool:
-        """Return whether any node has a client for an action of ours, or has not responded to us yet."""
+        """Return whether a node has a client of the simulator's actions, or has not responded to the simulator yet."""
         if self.caller is not None and self.caller.pending:
             return True
         if self._actions is None:

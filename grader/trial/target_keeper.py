@@ -1,4 +1,4 @@
-"""The node `spawner`, with which a trial plays the other half of a game: it announces and removes targets.
+"""The node `spawner`, with which a trial completes the game of catching turtles: it announces and removes targets.
 
 The node of the trial receives the names on /targets twice a second, and calls /catch to have a turtle removed.
 """

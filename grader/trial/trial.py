@@ -124,7 +124,7 @@ class Trial:
     def start(self) -> None:
         """Start the simulator and the launcher before the context is entered.
 
-        The caller must enter later, or call `close`.
+        The caller must enter the context later, or call `close`.
         """
         if self._started:
             return

@@ -13,7 +13,10 @@ GRAPH_EVERY = 31
 
 
 class WallTrial(Simulation):
-    """A simulation on CLOCK_MONOTONIC. Frames keep their schedule: a late frame runs immediately; none is skipped."""
+    """A simulation on CLOCK_MONOTONIC.
+
+    Frames keep their schedule: a late frame runs immediately; no frame is skipped.
+    """
 
     _begun: float | None = None
     _crowded = False

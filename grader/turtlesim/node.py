@@ -1,7 +1,7 @@
 """The node `turtlesim`: a headless turtlesim for ROS 2.
 
-The owner of the node spins it and calls `frame` once per frame with the time of the owner's clock. The owner is a trial
-or, in wall time, standalone.py. The node uses no timer and no ROS clock.
+The owner of the node spins the node, and calls `frame` once per frame with the time of the owner's clock. The owner is
+a trial or, in wall time, standalone.py. The node uses no timer and no ROS clock.
 """
 
 from __future__ import annotations

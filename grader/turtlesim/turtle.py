@@ -62,7 +62,7 @@ class Pen:
 class State(NamedTuple):
     """The state of a turtle after a frame, in m, m, rad, m/s (never negative) and rad/s.
 
-    `wall`: the turtle hit a wall.
+    `wall` is true if the turtle hit a wall.
     """
 
     x: float

@@ -40,7 +40,7 @@ def from_elsewhere(port: int) -> str:
 
 
 def open_page(url: str) -> bool:
-    """Open a page. Return whether this was successful. Text browsers are never used."""
+    """Open a page. Return whether opening the page was successful. Text browsers are never used."""
     if not there_is_one():
         return False
     opener = shutil.which("xdg-open")

@@ -62,7 +62,7 @@ class Hands:
         return page in self._driving
 
     def held(self, page: object, turtle: str, keys: list[str]) -> None:
-        """Drive while keys are held. Stop when they are released."""
+        """Drive while keys are held. Stop when the keys are released."""
         topic = self._full(turtle)
         if topic is None:
             return

@@ -74,7 +74,7 @@ def see_that_it_can_be_served(instead: str = "--view terminal works without it")
 
 @contextmanager
 def view(kind: Kind, port: int | None = None) -> Iterator[View]:
-    """Start a view. Stop it when the context exits.
+    """Start a view. Stop the view when the context exits.
 
     Raises:
         UsageError: the port is not available, or no terminal is available to draw in.

@@ -100,7 +100,10 @@ class _Server(uvicorn.Server):
         self._ends.set()
 
     async def main_loop(self) -> None:
-        """Wait for the end. uvicorn wakes up ten times per second, which costs 0.1 % of a core on an idle page."""
+        """Wait for the end.
+
+        uvicorn itself wakes up ten times per second, which costs 0.1 % of a core on an idle page.
+        """
         await self._ends.wait()
 
     @contextmanager

@@ -55,7 +55,8 @@ class System:
 class Ears:
     """A thread that spins `node`. The thread reads the graph at regular intervals and passes the graph to `tell`.
 
-    `known` returns the topics that are counted elsewhere. `looking` returns whether a page shows the rates.
+    `known` returns the topics that are already counted by the simulator. `looking` returns whether a page shows the
+    rates.
     """
 
     def __init__(

@@ -83,7 +83,10 @@ class Trail:
         self._points = 0
 
     def draw(self, lines: Iterable[Line]) -> list[Stroke]:
-        """Add lines, and return them as strokes. A line that starts at the end of a stroke continues that stroke."""
+        """Add lines, and return the lines as strokes.
+
+        A line that starts at the end of a stroke continues that stroke.
+        """
         new: dict[int, Stroke] = {}
         for x0, y0, x1, y1, red, green, blue, width in lines:
             pen = (red, green, blue, width)

@@ -1,6 +1,6 @@
 """`python -m grader.view.turtlesim_node`: the program of `ros2 run turtlesim turtlesim_node` and `grader sim`.
 
-The simulator itself does not import the view. This module adds the view for `--view`.
+The simulator itself does not import the view. This module adds the view that the option --view requests.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ UNITS = {"messages": "", "duration": "s", "rate": "Hz", "radius": "m"}
 
 @dataclass(frozen=True, kw_only=True)
 class BagAnswer:
-    """A quantity of the student's bag."""
+    """A quantity that the student reads or calculates from the bag."""
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
     bag: str = string("the name of a folder", about=BAG)

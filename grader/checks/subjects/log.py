@@ -100,7 +100,7 @@ def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expe
 
 
 def _same_words(line: str, format_: str) -> bool:
-    """Return whether only the numbers differ."""
+    """Return whether the line has the words of the format, so that only the numbers can differ."""
     words = re.sub(r"[-+]?[\d.]+(e[-+]?\d+)?|\bnan\b|\binf\b", "", line)
     return "".join(words.split()) == "".join(student_log.FIELD.sub("", format_).split())
 

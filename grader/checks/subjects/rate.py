@@ -227,7 +227,7 @@ def _timers(evidence: Evidence) -> list[tuple[Call, float | None]]:
 
 
 def _why_mean(evidence: Evidence, what: Subject, mean: float, params: Rate) -> Cause:
-    """Return the cause: a timer or a sleep with that period, or neither."""
+    """Return the cause of a wrong mean rate, for example a timer or a sleep with a wrong period."""
     code = evidence.code
     timers = _timers(evidence)
     for timer, period in timers:

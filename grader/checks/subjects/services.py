@@ -30,7 +30,7 @@ CLOSE = 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class CallsService:
-    """A call to a simulator service with these fields. `after` names a service that must be called before that."""
+    """A call to a simulator service with these fields. `after` names a service that must be called earlier."""
 
     service: str = string("the full name of a service", start="/", about="The service.")
     fields: tuple[tuple[str, Any], ...] = table(about="The relevant fields of the request, with their values.")

@@ -36,7 +36,7 @@ _ENDINGS = {"mcap": ".mcap", "sqlite3": ".db3"}
 
 
 class BagWriter:
-    """A new bag as a context manager. On exit, it writes the remaining messages and the metadata.
+    """A new bag as a context manager. On exit, the writer writes the remaining messages and the metadata.
 
     Args:
         folder: The folder of the bag, which must not exist.
@@ -66,8 +66,8 @@ class BagWriter:
     def add_topic(self, topic: str, kind: str, offered: Sequence[Qos] = (), definition: str | None = None) -> None:
         """Add a topic, so that its messages can be written.
 
-        `definition` is the definition of the type in another bag, used if the type is not installed. This text may be
-        empty.
+        `definition` is the definition of the type in another bag, used if the type is not installed. The definition may
+        be an empty string.
 
         Raises:
             Ros2Error: the type of the topic is not installed, and `definition` is None.

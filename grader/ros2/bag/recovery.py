@@ -115,7 +115,7 @@ def _sqlite(file: Path) -> Iterator[Saved]:
 
 
 def _sqlite_definitions(database: sqlite3.Connection) -> dict[str, str]:
-    """Return the definitions of the types. Before ROS 2 Iron, rosbag2 did not store them."""
+    """Return the definitions of the types. Before ROS 2 Iron, rosbag2 did not store definitions."""
     tables = {name for (name,) in database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
     if "message_definitions" not in tables:
         return {}

@@ -60,7 +60,10 @@ class Parameters:
             self._node.destroy_client(client)
 
     def names(self, prefixes: Sequence[str] = ()) -> list[str]:
-        """Return the sorted names of the parameters. If `prefixes` are given, leave out names without them."""
+        """Return the sorted names of the parameters.
+
+        If `prefixes` are given, leave out names that begin with none of these.
+        """
         answer = self._call(ListParameters, "list_parameters", ListParameters.Request(prefixes=list(prefixes)))
         return sorted(answer.result.names)
 

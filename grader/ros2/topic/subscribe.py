@@ -46,7 +46,10 @@ def subscribe(
     profile: Any,  # noqa: ANN401
     args: argparse.Namespace,
 ) -> None:
-    """Call `show` with each message and its information. Report lost messages unless the options disable this."""
+    """Call `show` with each message and its information.
+
+    Report lost messages unless the options disable such reports.
+    """
     lost = None if args.no_lost_messages else SubscriptionEventCallbacks(message_lost=_report_lost)
     try:
         node.create_subscription(kind, topic, show, profile, event_callbacks=lost, raw=args.raw)

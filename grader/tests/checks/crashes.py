@@ -51,7 +51,7 @@ def line_with(comment: str, source: str) -> int | None:
 
 
 def to_look_at(source: str) -> int | None:
-    """Return the line that is marked as the expected one, or else the line that crashed."""
+    """Return the line that is marked as expected in the report, or else the line that crashed."""
     return line_with(LOOK, source) or line_with(CRASHED, source)
 
 

@@ -140,7 +140,7 @@ def exercise() -> Exercise:
 
 
 def submission(files: Mapping[str, str | bytes | None] | None = None, rejected: tuple[str, ...] = ()) -> Submission:
-    """Return the good package with these files in place of its own. None removes a file."""
+    """Return the correct package with these files in place of its own files. None removes a file."""
     given = {**FILES, **(files or {})}
     data = {path: text.encode() if isinstance(text, str) else text for path, text in given.items() if text is not None}
     digest = hashlib.sha256(repr(sorted(data.items())).encode()).hexdigest()
@@ -148,7 +148,7 @@ def submission(files: Mapping[str, str | bytes | None] | None = None, rejected: 
 
 
 def node(*changes: tuple[str, str]) -> Submission:
-    """Return the good package with parts of the node's source replaced."""
+    """Return the correct package with parts of the node's source replaced."""
     text = NODE
     for old, new in changes:
         assert old in text, old
@@ -254,7 +254,7 @@ def evidence(
 
 
 def finding(check: str, given: Evidence) -> Finding:
-    """Return the finding of the exercise's check with this id. The other checks are not run."""
+    """Return the finding of the exercise's check with this id. No other checks are run."""
     spec = next(each for each in exercise().checks if each.id == check)
     alone = replace(given.exercise, checks=(replace(spec, needs=()),))
     return judge(replace(given, exercise=alone))[0].finding

@@ -1,4 +1,4 @@
-"""Every failure in the list below has a message with words that a beginner understands."""
+"""Every failure in the list of this module has a message with words that a beginner understands."""
 
 from __future__ import annotations
 

@@ -85,7 +85,7 @@ def test_the_submission_of_a_lost_worker_is_graded_by_another(cluster: Cluster, 
     copy_solution(STEP, tmp_path / "class" / "anna")
 
     class Striking(DaskEngine):
-        """An engine that loses its only worker during a submission and gets another one later."""
+        """An engine that loses its only worker during a submission and gets another worker later."""
 
         def events(self, timeout_s: float) -> list[Event]:
             if self._running and lost.poll() is None:

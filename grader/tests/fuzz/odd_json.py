@@ -20,7 +20,7 @@ MOST_OF_A_LIST = 2
 
 
 def paths(data: Any, path: Path = ()) -> Iterator[Path]:  # noqa: ANN401 - JSON
-    """Yield the path to each value. Of a list, use only the first elements."""
+    """Yield the path to each value. For a list, yield only the first elements."""
     yield path
     inside = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
     for key, value in list(inside)[: None if isinstance(data, dict) else MOST_OF_A_LIST]:

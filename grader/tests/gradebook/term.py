@@ -44,7 +44,10 @@ class Term:
             )
 
     def run(self, *command: str, fails: bool = False, cwd: Path | None = None) -> str:
-        """Run a command of nbgrader, or of the grader if the first word is "grader". Return its output and errors."""
+        """Run a command of nbgrader, or of the grader if the first word is "grader".
+
+        Return the output and the errors of the command.
+        """
         path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
         if command[0] == "grader":
             argv = [sys.executable, "-m", "grader.cli", *command[1:], "--course", str(self.course)]

@@ -1,4 +1,4 @@
-"""Folders in nbgrader's exchange that claim to be another student's."""
+"""Folders in nbgrader's exchange that claim to belong to another student."""
 
 from __future__ import annotations
 

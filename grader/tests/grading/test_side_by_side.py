@@ -1,4 +1,7 @@
-"""The trials of an exercise start during its build and run in parallel. Trials in wall time run afterwards."""
+"""The trials of an exercise start during its build and run in parallel.
+
+Trials in wall time run after the trials in simulated time.
+"""
 
 from __future__ import annotations
 

@@ -153,7 +153,7 @@ def who_runs(mutant: Mutant, lines: Lines) -> set[str]:
 
 
 def requested(mutant: Mutant, lines: Lines, alike: int) -> list[str]:
-    """Return some of the cases or tests that run the mutant's lines. Many that run the same lines are left out.
+    """Return some of the cases or tests that run the mutant's lines. Many cases that run the same lines are left out.
 
     Hundreds of cases pass a check with the same lines. A mutant may seem to survive although a case that was left out
     would notice it. Leaving out cases can never make a mutant seem noticed.

@@ -1,8 +1,8 @@
 """Mutants: files of the grader, each changed in one place by the operators of mutmut or by some of our own.
 
-Only code that decides is changed. Code for messages is not: strings, a choice between two strings, printed numbers.
-Declarations, the parameters of a kind of check with their defaults, the `strict` of zip, and the code that finds values
-near a limit, which chooses the clock, are not changed either. grader/tests/checks has tests for this code.
+Only code that decides is changed. Code for messages is not changed: strings, a choice between two strings, printed
+numbers. Declarations, the parameters of a kind of check with their defaults, the `strict` of zip, and the code that
+finds values near a limit, which chooses the clock, are not changed either. grader/tests/checks has tests for this code.
 """
 
 from __future__ import annotations
@@ -203,7 +203,7 @@ def _is_docstring(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode])
 
 
 def _lines(statement: cst.CSTNode, positions: Mapping[cst.CSTNode, CodeRange]) -> tuple[int, int]:
-    """Return the lines of a statement. For a compound statement, these are the lines of its head."""
+    """Return the lines of a statement. For a compound statement, return the lines of its head."""
     where = positions[statement]
     body = getattr(statement, "body", None)
     if isinstance(statement, cst.BaseCompoundStatement) and isinstance(body, cst.IndentedBlock):
@@ -212,6 +212,6 @@ def _lines(statement: cst.CSTNode, positions: Mapping[cst.CSTNode, CodeRange]) -
 
 
 def _reported(module: cst.Module, node: cst.CSTNode) -> str:
-    """Return a node's code on one line, short enough to print two of them on a line."""
+    """Return a node's code on one line, short enough to print two such texts on a line."""
     text = " ".join(module.code_for_node(node).split())
     return text if len(text) <= 60 else f"{text[:57]}..."

@@ -56,7 +56,7 @@ class Course:
         return {**os.environ, **cache, **own}
 
     def start(self) -> str:
-        """Start the server. Return the address that it prints."""
+        """Start the server. Return the address that the server prints."""
         process = subprocess.Popen(
             [str(GRADER), "open", "--no-browser"],
             env=self.env,

@@ -42,7 +42,10 @@ def of_home(home: Path) -> list[int]:
 
 
 def reset(page: Page) -> bool:
-    """Press Reset. Return whether the turtle stays at its start, because one last key command may still move it."""
+    """Press Reset.
+
+    Return whether the turtle stays at its start, because the command of a last key press may still move the turtle.
+    """
     page.get_by_role("button", name="Reset").click()
     with suppress(NotInTime):
         page.get_by_text(AT_START).wait_for(timeout=AGAIN_MS)

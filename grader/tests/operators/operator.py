@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Package:
-    """A package as strings: path -> content, and the path of the node, which the operators on source code change."""
+    """A package (paths mapped to contents), and the path of the node, which the operators on source code change."""
 
     files: Mapping[str, str]
     source: str
@@ -42,7 +42,9 @@ Make = Callable[[Package, Random], Change | None]
 
 @dataclass(frozen=True)
 class Operator:
-    """A kind of mistake. `says` contains the diagnoses that name it; `never` is a pattern for false statements.
+    """A kind of mistake.
+
+    `says` contains the diagnoses that name the mistake; `never` is a pattern for false statements.
 
     `also` contains the diagnoses of the mistake's consequences, which are true but do not name the mistake itself.
     """

@@ -1,4 +1,7 @@
-"""Reports for tests: one for each status, and a hostile one. The real judge creates them all from invented evidence."""
+"""Reports for tests: one for each status, and a hostile one.
+
+The real judge creates all these reports from invented evidence.
+"""
 
 from __future__ import annotations
 

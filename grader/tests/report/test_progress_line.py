@@ -1,4 +1,7 @@
-"""On a terminal, the progress disappears before the report. Elsewhere, it is printed line by line on standard error."""
+"""On a terminal, the progress disappears before the report.
+
+If the output is not a terminal, the progress is printed line by line on standard error.
+"""
 
 from __future__ import annotations
 

@@ -34,7 +34,10 @@ def test_create_a_package_and_again(src: Path) -> None:
 
 
 def tree(folder: Path) -> set[str]:
-    """Return the kind, mode and name of each file, and whether it is empty. Other sizes differ, like the texts."""
+    """Return the kind, mode and name of each file, and whether it is empty.
+
+    Sizes other than 0 differ, because the texts differ.
+    """
     lines = set()
     for path in [folder, *folder.rglob("*")]:
         mode = path.stat().st_mode

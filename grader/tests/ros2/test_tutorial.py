@@ -63,7 +63,7 @@ class Terminal:
         self.shell.expect_exact(ready)
 
     def ctrl_c(self) -> str:
-        """Press Ctrl-C and wait for the prompt. Return the output until then."""
+        """Press Ctrl-C and wait for the prompt. Return the output before the prompt."""
         self.shell.sendintr()
         self.shell.expect_exact(PROMPT)
         return (self.shell.before or "").replace("\r\n", "\n")

@@ -1,4 +1,7 @@
-"""If control groups are allowed, the kernel limits what a cell uses in total. Otherwise, the cell has no group."""
+"""If control groups are allowed, the kernel limits what a cell uses in total.
+
+If groups are not allowed, the cell has none.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`make demo` in a fresh clone, and the next commands that it and the lessons recommend."""
+"""`make demo` in a fresh clone, and the next commands that `make demo` and the lessons recommend."""
 
 from __future__ import annotations
 

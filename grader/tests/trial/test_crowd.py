@@ -142,7 +142,7 @@ def test_what_the_simulator_works_beyond_its_own_share_is_the_nodes(monkeypatch:
 
 
 class Busy:
-    """A replacement for a node and a trial. All their processes have always worked for these times (s)."""
+    """A replacement for a node and a trial. The processes have always worked for these times (s)."""
 
     def __init__(
         self,

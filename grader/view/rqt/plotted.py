@@ -30,7 +30,7 @@ Sample = tuple[float, float | None]
 
 @dataclass
 class _Topic:
-    """A subscription to a topic, with the plotted fields: the name of each, and its path in the message."""
+    """A subscription to a topic, with the plotted fields: the name and the path of each field in the message."""
 
     subscription: Any
     type: str
@@ -84,7 +84,7 @@ class Plotted:
             self._new = {}
 
     def _begin(self, name: str, types: Mapping[str, str]) -> str:
-        """Subscribe to the topic of this field. Return the reason if this is not possible yet, or ""."""
+        """Subscribe to the topic of this field. Return the reason if the subscription is not possible yet, or ""."""
         topic = topic_of(name, types)
         if topic is None:
             return "Waiting for this topic."

@@ -28,7 +28,7 @@ SIDE = {"counter-clockwise": 1.0, "clockwise": -1.0}
 
 
 def changed(**values: float) -> OwnNumbers:
-    """Return alice's numbers with these values."""
+    """Return alice's numbers, some of which are replaced by these values."""
     return replace(ALICE, values={**ALICE.values, **values})
 
 

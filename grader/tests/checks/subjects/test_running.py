@@ -97,7 +97,7 @@ def test_by_either_clock_an_end_in_the_first_moment_is_one_at_the_start(
 ) -> None:
     """In wall time, the clock starts when the node appears in the graph.
 
-    Parts of the node may still be missing at that moment.
+    When the clock starts, parts of the node may still be missing.
     """
     end = ProcessEnd(by="itself", exit_code=0, t_s=t_s, stop_s=None)
     observed = evidence(recording([], clock=clock, end=end))

@@ -41,7 +41,7 @@ def terminal(of: World, command: str = "bash --norc --noprofile") -> pexpect.spa
 
 
 def poses(of: World, turtle: str) -> Running:
-    """Return a process that prints lines x,y,theta,linear,angular of a turtle from now on."""
+    """Return a process that prints lines x,y,theta,linear,angular of a turtle, starting now."""
     return of.start(f"ros2 topic echo /{turtle}/pose --csv", ",")
 
 
