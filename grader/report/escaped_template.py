@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
+from markupsafe import Markup, escape
 
 from grader.report.plain import plain_line
 
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 ASSETS = Path(__file__).parent / "assets"
+_CODE = re.compile(r"`([^`]+)`")
 
 
 def fill(template: str, values: Mapping[str, object], *folders: Path) -> str:
@@ -35,4 +38,11 @@ def compiled(template: str, *folders: Path) -> Template:
         lstrip_blocks=True,
     )
     environment.filters["plain"] = plain_line
+    environment.filters["with_code"] = with_code
     return environment.get_template(template)
+
+
+def with_code(text: str) -> Markup:
+    """Return a message as one line of HTML, in which text between backticks is code. All of the text is escaped."""
+    pieces = enumerate(_CODE.split(plain_line(text)))
+    return Markup().join(Markup("<code>{}</code>").format(piece) if at % 2 else escape(piece) for at, piece in pieces)

@@ -1,5 +1,6 @@
 // The list of the checks of the step, with their results so far.
 
+import { withCode } from "./code_text.js";
 import { update } from "./keyed.js";
 
 const SIGNS = { passed: "✓", failed: "✗", skipped: "–", error: "!", advice: "i", open: "○" };
@@ -20,7 +21,11 @@ function item(check) {
   const about = document.createElement("div");
   about.append(span("hidden-text", `${WORDS[check.kind]}: `), check.title);
   if (check.max) about.append(" ", span("points", `(${check.points} of ${check.max} points)`));
-  if (check.text && check.kind !== "skipped") about.append(span("observed", check.text));
+  if (check.text && check.kind !== "skipped") {
+    const observed = span("observed", "");
+    observed.append(...withCode(check.text));
+    about.append(observed);
+  }
   row.append(mark, about);
   return row;
 }

@@ -1,6 +1,7 @@
 // The page of grader open passes the server's news to its parts, and the clicks to the server.
 
 import { showChecks } from "./checks.js";
+import { showText, withCode } from "./code_text.js";
 import { update } from "./keyed.js";
 import { Link } from "./link.js";
 import { act } from "./requests.js";
@@ -27,17 +28,7 @@ function tell(text, tone = "") {
   const answer = find("answer");
   answer.hidden = !text;
   answer.className = `box ${tone}`;
-  answer.textContent = text;
-}
-
-// Return the text as nodes. What stands between backticks becomes code.
-function withCode(text) {
-  return text.split("`").map((part, index) => {
-    if (index % 2 === 0) return part;
-    const code = document.createElement("code");
-    code.textContent = part;
-    return code;
-  });
+  showText(answer, text);
 }
 
 function showHints(state) {

@@ -1,11 +1,12 @@
 // The state of the lesson's step: started or not, graded or not, and the buttons to start it.
 
+import { showText } from "./code_text.js";
 import { act } from "./requests.js";
 
 function paragraph(text, name = "") {
   const made = document.createElement("p");
   made.className = name;
-  made.textContent = text;
+  showText(made, text);
   return made;
 }
 

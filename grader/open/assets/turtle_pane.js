@@ -1,5 +1,6 @@
 // The turtle pane: start and stop turtlesim and the learner's node, drive, and run ros2.
 
+import { showText } from "./code_text.js";
 import { Link } from "./link.js";
 import { LogLines } from "./log_lines.js";
 import { act } from "./requests.js";
@@ -7,10 +8,6 @@ import { session } from "./session.js";
 import { Simulator } from "./simulator.js";
 
 const find = (id) => document.getElementById(id);
-
-function setText(element, text) {
-  if (element.textContent !== text) element.textContent = text;
-}
 
 export class TurtlePane {
   constructor(pane) {
@@ -32,20 +29,20 @@ export class TurtlePane {
   async change(name, wanted) {
     const { problem } = await act(name, wanted);
     this.refused = problem ?? "";
-    if (problem) setText(this.status, problem);
+    if (problem) showText(this.status, problem);
   }
 
   show({ programs, executables }) {
     this.running = programs;
-    setText(find("sim-switch"), programs.turtlesim ? "Stop turtlesim" : "Start turtlesim");
-    setText(find("node-switch"), programs.node ? "Stop it" : "Run it");
+    showText(find("sim-switch"), programs.turtlesim ? "Stop turtlesim" : "Start turtlesim");
+    showText(find("node-switch"), programs.node ? "Stop it" : "Run it");
     find("node-switch").disabled = executables.length === 0;
     this.choose(executables);
     find("node-part").hidden = programs.lines.length === 0;
     this.lines(programs.lines.join("\n"));
     if (programs.turtlesim && !this.link) this.connect();
     if (!programs.turtlesim && this.link) this.disconnect();
-    if (!this.link) setText(this.status, programs.problem || this.refused || "No turtlesim was started here.");
+    if (!this.link) showText(this.status, programs.problem || this.refused || "No turtlesim was started here.");
   }
 
   choose(names) {
@@ -66,11 +63,11 @@ export class TurtlePane {
   }
 
   connect() {
-    setText(this.status, "turtlesim is starting.");
+    showText(this.status, "turtlesim is starting.");
     this.link = new Link({
       news: (news) => {
         find("live").hidden = false;
-        setText(this.status, "turtlesim is running.");
+        showText(this.status, "turtlesim is running.");
         this.simulator.show(news);
         if (news.log && news.kind === "all") this.log.whole(news.log);
         else if (news.log) this.log.add(news.log);

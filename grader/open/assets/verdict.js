@@ -1,5 +1,6 @@
 // The verdict: its line, the checks that did not pass, and the trajectory with its player.
 
+import { showText } from "./code_text.js";
 import { update } from "./keyed.js";
 import { fragment } from "./requests.js";
 
@@ -19,7 +20,7 @@ export class Verdict {
   show(state) {
     const text = state.problem || state.line;
     const tone = state.problem ? "failed" : state.tone;
-    if (this.line.textContent !== text) this.line.textContent = text;
+    showText(this.line, text);
     this.line.className = `verdict ${tone}`;
     const doing = state.doing ? `${state.doing.replace(/\.$/, "")} …` : "";
     if (this.doing.textContent !== doing) this.doing.textContent = doing;

@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING
 import pytest
 from typer.testing import CliRunner
 
-from grader.book.lesson import lessons
+from grader.book.lesson import LESSON, lessons
 from grader.book.site import write_book
+from grader.checks.exercises import find_exercise
 from grader.cli import app
 from grader.errors import UsageError
 from grader.exercise.model import catalogue
 from grader.tests.book.served import served
 from grader.tests.browser import browser_or_reason, launched, violations
+from grader.tests.case import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,6 +25,8 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 CIRCLE = "03-circle-publisher/index.html"
+_LINK = re.compile(r"(?:\[Step \d+: |\d+\. \[)([^\]]+)\]\([./]*(?:course/)?([^/)]+)/lesson\.md\)")
+"""A link to a lesson with its title: at the end of another lesson, and in the list of docs/learner.md."""
 
 
 @pytest.fixture(scope="module")
@@ -58,6 +62,16 @@ def page(browser: Browser, requests: list[str]) -> Iterator[Page]:
     tab.on("pageerror", lambda error: requests.append(str(error)))
     yield tab
     tab.close()
+
+
+def test_a_lesson_has_the_title_of_its_exercise_and_so_have_the_links_to_it() -> None:
+    titles = {lesson.id: lesson.title for lesson in lessons()}
+    assert titles == {name: find_exercise(name).title for name in catalogue()}
+    texts = [(lesson.folder / LESSON).read_text("utf-8") for lesson in lessons()]
+    texts.append((ROOT / "docs/learner.md").read_text("utf-8"))
+    links = [link for text in texts for link in _LINK.findall(text)]
+    assert len(links) > 3 * (len(titles) - 1)
+    assert {(name, title[0].upper() + title[1:]) for title, name in links} <= set(titles.items())
 
 
 def test_every_step_has_a_page(book: Path) -> None:

@@ -33,7 +33,7 @@ def test_the_story_of_step_03(learner: Course, browser: Browser) -> None:
     problems: list[str] = []
     page.on("console", lambda message: problems.append(message.text))
     page.on("pageerror", lambda error: problems.append(str(error)))
-    page.get_by_role("main").get_by_role("link", name="03 A node that draws a circle").click()
+    page.get_by_role("main").get_by_role("link", name="03 Draw a circle").click()
 
     # A lesson can be read before its step is started.
     page.get_by_role("heading", name="Why programs talk through topics").wait_for()

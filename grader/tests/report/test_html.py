@@ -18,6 +18,7 @@ import pytest
 from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Finding, Outcome, Status
 from grader.evidence.evidence import Run
+from grader.report.escaped_template import with_code
 from grader.report.html import html_page, save_html
 from grader.report.verdict import verdict
 from grader.tests.case import ROOT
@@ -82,6 +83,15 @@ class Tags(HTMLParser):
 @pytest.fixture(scope="module", params=GIVEN)
 def page(request: pytest.FixtureRequest) -> str:
     return page_of(GIVEN[request.param]())
+
+
+def test_text_between_backticks_is_code_and_all_of_it_is_escaped() -> None:
+    assert with_code("Type `ros2 <b>` & `ls`.") == "Type <code>ros2 &lt;b&gt;</code> &amp; <code>ls</code>."
+    assert with_code("a ` <i>") == "a ` &lt;i&gt;"
+
+
+def test_no_page_shows_the_backticks_of_a_message(page: str) -> None:
+    assert not re.search(r'<(dd|span class="observed")>[^<]*`', page)
 
 
 def test_every_page_is_small_and_closes_its_elements(page: str) -> None:
