@@ -227,7 +227,7 @@ def main() -> None:
 def _drop_unwritten() -> None:
     """Discard unwritten output.
 
-    Otherwise, Python would try to write the output at exit, fail, and exit with code 120.
+    If the output were kept, Python would try to write it at exit, fail, and exit with code 120.
     """
     try:
         sys.stdout.flush()

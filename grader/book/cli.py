@@ -22,7 +22,7 @@ def book(
         str, typer.Option(help="The URL of your course's repository, to which each page links.", metavar="URL")
     ] = "",
 ) -> None:
-    """Write the lessons as static pages. They load nothing from other sites, and any web server can serve them."""
+    """Write the lessons as static pages. The pages load nothing from other sites, and any web server can serve them."""
     from grader.book.site import write_book
     from grader.common.words import count
 

@@ -135,7 +135,7 @@ class _Screen:
     def _render(self, report: Report, more: int) -> None:
         """Print the full report if the report and the lines below it fit into the window.
 
-        Otherwise, print only what failed.
+        If there is too little space, print only what failed.
         """
         with self._console.capture() as whole:
             terminal.render(report, self._console)

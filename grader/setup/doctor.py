@@ -1,7 +1,7 @@
 """`grader doctor`: check whether this machine has everything that grading needs.
 
-Each line of the output is ok or states what to do. If possible, the command runs real tests: it builds the turtlesim
-interfaces if necessary, and starts a publishing node in a cell.
+Each line of the output reports that a test succeeded, or states what to do. If possible, the command runs real tests:
+it builds the turtlesim interfaces if necessary, and starts a publishing node in a cell.
 """
 
 from __future__ import annotations

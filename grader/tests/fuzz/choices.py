@@ -22,7 +22,7 @@ class Choices:
         return self._at < len(self._data)
 
     def take(self, most: int) -> bytes:
-        """Return the next bytes, at most this many."""
+        """Return at most this number of bytes from the front of `data`."""
         taken = self._data[self._at : self._at + most]
         self._at += len(taken)
         return taken

@@ -53,7 +53,10 @@ class Material:
 
 @dataclass(frozen=True)
 class Job:
-    """A mutant and its possible witnesses. A witness is a function that is called with the mutant installed."""
+    """A mutant, and the cases or tests that might notice it, called witnesses.
+
+    A witness is a function that is called with the mutant installed.
+    """
 
     mutant: Mutant
     notices: Callable[[], bool]

@@ -45,7 +45,7 @@ def learner(tmp_path_factory: pytest.TempPathFactory) -> Course:
 
 @contextmanager
 def running(start: Start, learner: Course, domain: int) -> Iterator[subprocess.Popen[str]]:
-    """Start a program as the page does. At the end, kill its process group."""
+    """Start a program as the page does. At the end, kill the program's process group."""
     process = subprocess.Popen(
         start.argv,
         env={**start.env, "ROS_DOMAIN_ID": str(domain), "PYTHONUNBUFFERED": "1"},

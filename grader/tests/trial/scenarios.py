@@ -73,7 +73,10 @@ def a_node_that_drives_before_it_is_found() -> int:
 
 
 def who_may_act() -> bool:
-    """Return whether an action may be used before any client exists. Check that it may be used while one exists."""
+    """Return whether an action may be used before any client exists.
+
+    Check that the action may be used while a client exists.
+    """
     stage = _stage()
     student = rclpy.create_node("student")
     anybody = stage.may_act()
