@@ -5,10 +5,8 @@ from __future__ import annotations
 import io
 import re
 import shutil
-import threading
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
-from functools import partial
 from pathlib import Path
 from queue import SimpleQueue
 from typing import TYPE_CHECKING
@@ -171,65 +169,6 @@ def test_changes_that_symlink_install_would_miss_start_a_new_build(package: Path
     build()
     assert rebuild.runs == 3
     assert reported[3:] == ["Using the last build with the changed modules"]
-
-
-@pytest.mark.parametrize("how", ["write", "rename", "delete", "create"])
-def test_a_save_is_noticed_with_every_kind_of_editor(package: Path, how: str) -> None:
-    node = node_of(package)
-    saves: dict[str, Callable[[], object]] = {
-        "write": lambda: node.write_text("x = 1\n"),
-        "rename": lambda: (package / "draw.tmp").replace(node),
-        "delete": node.unlink,
-        "create": lambda: (node.parent / "new.py").write_text(""),
-    }
-    (package / "draw.tmp").write_text("x = 2\n")
-    events = Events(None)
-    events.watch(package)
-    heard = iter(events)
-    assert next(heard).kind == "saved"  # every save is noticed after this event
-    saves[how]()
-    assert next(heard).kind == "saved"
-    events.close()
-
-
-def test_watching_follows_the_path_when_another_folder_takes_it(package: Path) -> None:
-    events = Events(None)
-    events.watch(package)
-    happened = iter(events)
-    assert next(happened).kind == "saved"
-    kept = package.with_name("kept-aside")
-    package.rename(kept)
-    assert next(happened).kind == "saved"  # the file was removed
-    shutil.copytree(kept, package.with_name("another")).rename(package)
-    assert next(happened).kind == "saved"  # another file took its name
-    node_of(package).write_text("x = 1\n")
-    assert next(happened).kind == "saved"
-    events.close()
-
-
-def test_keys_come_in_order_and_the_end_of_input_ends_the_loop() -> None:
-    keys = iter(["h", "r", ""])
-    assert [happened.key for happened in Events(lambda: next(keys))] == ["h", "r"]
-
-
-def test_waiting_saves_become_one_and_a_key_after_them_is_kept(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    saved, reported = threading.Event(), threading.Event()
-
-    def watch(*_: object, **__: object) -> Iterator[set[str]]:
-        yield from ({"first"}, {"second"})
-        saved.set()
-
-    def keys() -> Iterator[str]:
-        assert saved.wait(PATIENCE_S)
-        yield "h"
-        reported.set()
-        yield ""
-
-    monkeypatch.setattr("grader.learner.watch.watch", watch)
-    events = Events(partial(next, keys()))
-    events.watch(package)
-    assert reported.wait(PATIENCE_S)
-    assert [happened.kind for happened in events] == ["saved", "key"]
 
 
 def test_after_two_saves_during_a_grading_only_the_last_text_is_graded(

@@ -1,0 +1,89 @@
+"""Events of a watched package: saves with every kind of editor, and keys."""
+
+from __future__ import annotations
+
+import shutil
+import threading
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.learner.watch import Events
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+ROOT = Path(__file__).resolve().parents[3]
+PATIENCE_S = 180.0
+"""The time (s) after which a wait fails."""
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    solution = ROOT / "solutions" / "03-circle-publisher" / "my_robot_controller"
+    return Path(shutil.copytree(solution, tmp_path / "my_robot_controller"))
+
+
+def node_of(package: Path) -> Path:
+    return package / "my_robot_controller" / "draw_circle.py"
+
+
+@pytest.mark.parametrize("how", ["write", "rename", "delete", "create"])
+def test_a_save_is_noticed_with_every_kind_of_editor(package: Path, how: str) -> None:
+    node = node_of(package)
+    saves: dict[str, Callable[[], object]] = {
+        "write": lambda: node.write_text("x = 1\n"),
+        "rename": lambda: (package / "draw.tmp").replace(node),
+        "delete": node.unlink,
+        "create": lambda: (node.parent / "new.py").write_text(""),
+    }
+    (package / "draw.tmp").write_text("x = 2\n")
+    events = Events(None)
+    events.watch(package)
+    heard = iter(events)
+    assert next(heard).kind == "saved"  # every save is noticed after this event
+    saves[how]()
+    assert next(heard).kind == "saved"
+    events.close()
+
+
+def test_watching_follows_the_path_when_another_folder_takes_it(package: Path) -> None:
+    events = Events(None)
+    events.watch(package)
+    happened = iter(events)
+    assert next(happened).kind == "saved"
+    kept = package.with_name("kept-aside")
+    package.rename(kept)
+    assert next(happened).kind == "saved"  # the file was removed
+    shutil.copytree(kept, package.with_name("another")).rename(package)
+    assert next(happened).kind == "saved"  # another file took its name
+    node_of(package).write_text("x = 1\n")
+    assert next(happened).kind == "saved"
+    events.close()
+
+
+def test_keys_come_in_order_and_the_end_of_input_ends_the_loop() -> None:
+    keys = iter(["h", "r", ""])
+    assert [happened.key for happened in Events(lambda: next(keys))] == ["h", "r"]
+
+
+def test_waiting_saves_become_one_and_a_key_after_them_is_kept(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    saved, reported = threading.Event(), threading.Event()
+
+    def watch(*_: object, **__: object) -> Iterator[set[str]]:
+        yield from ({"first"}, {"second"})
+        saved.set()
+
+    def keys() -> Iterator[str]:
+        assert saved.wait(PATIENCE_S)
+        yield "h"
+        reported.set()
+        yield ""
+
+    monkeypatch.setattr("grader.learner.watch.watch", watch)
+    events = Events(partial(next, keys()))
+    events.watch(package)
+    assert reported.wait(PATIENCE_S)
+    assert [happened.kind for happened in events] == ["saved", "key"]
