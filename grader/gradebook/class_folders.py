@@ -21,6 +21,8 @@ CLASS = "class"
 """The folder of the class data, which git ignores: submitted/, autograded/, feedback/, reports/ and gradebook.db."""
 RESULTS = "results"
 """The folder of the grader's results, inside the folder of the class. See grader/classroom/results.py."""
+GRADEBOOK = "gradebook.db"
+"""nbgrader's database, inside the folder of the class."""
 HANDED_IN = "handed-in"
 """The folder of submissions with the files from their notebooks added, inside the folder of the class."""
 

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from grader.gradebook.class_folders import CLASS
+from grader.gradebook.class_folders import CLASS, GRADEBOOK
 
 COURSE_ID = "ros2-topics"
 BUSY_S = 60
@@ -40,7 +40,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
     folders.solution_directory = f"{CLASS}/solution"
     folders.source_with_tests_directory = f"{CLASS}/source_with_tests"
     (root / CLASS).mkdir(exist_ok=True)
-    folders.db_url = f"sqlite:///{root / CLASS / 'gradebook.db'}?timeout={BUSY_S}"
+    folders.db_url = f"sqlite:///{root / CLASS / GRADEBOOK}?timeout={BUSY_S}"
 
     # exercises/ already exists in git. Let nbgrader create it again.
     config.GenerateAssignment.force = True

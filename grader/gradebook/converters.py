@@ -17,6 +17,7 @@ from nbgrader.exchange.default import ExchangeCollect
 
 from grader.errors import GraderError
 from grader.gradebook import inbound, readable
+from grader.gradebook.class_folders import CLASS, GRADEBOOK, RESULTS
 from grader.gradebook.copies import copy_of
 from grader.submission import tree
 from grader.submission.reader import read
@@ -81,10 +82,18 @@ class BoundedPage(HTMLExporter):
         """Convert a file as in the base class."""
         text, named = _read(filename, resources)
         notebook = nbformat.reads(text, as_version=4)  # type: ignore[no-untyped-call]
-        page, extension = read(self._page, notebook, named, kw)
+        page, extension = read(self._page, notebook, named, kw, self._files())
         return page, {**named, "output_extension": extension}
 
-    def _page(self, notebook: NotebookNode, resources: Resources, more: dict[str, Any]) -> tuple[str, str]:
+    def _files(self) -> list[Path]:
+        """Return the files that `_page` opens: the gradebook, the grader's results, and the templates."""
+        converter: Any = self.parent
+        kept = Path(converter.coursedir.root) / CLASS
+        return [kept / GRADEBOOK, kept / RESULTS, *map(Path, self.template_paths)]
+
+    def _page(
+        self, notebook: NotebookNode, resources: Resources, more: dict[str, Any], _: list[Path]
+    ) -> tuple[str, str]:
         page, done = self.from_notebook_node(notebook, resources=resources, **more)
         return str(page), str(done["output_extension"])
 

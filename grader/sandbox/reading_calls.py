@@ -24,6 +24,10 @@ FORBIDDEN = {
         "kill": 62, "tkill": 200, "tgkill": 234, "rt_sigqueueinfo": 129, "rt_tgsigqueueinfo": 297,
         "pidfd_open": 434, "pidfd_send_signal": 424,
     },
+    "locks": {"flock": 73},
+    "the share of the processors": {
+        "setpriority": 141, "ioprio_set": 251, "sched_setparam": 142, "sched_setscheduler": 144, "sched_setattr": 314,
+    },
     "changes of files": {
         "creat": 85, "truncate": 76, "rename": 82, "renameat": 264, "renameat2": 316, "link": 86, "linkat": 265,
         "symlink": 88, "symlinkat": 266, "unlink": 87, "unlinkat": 263, "mkdir": 83, "mkdirat": 258, "rmdir": 84,
@@ -33,7 +37,7 @@ FORBIDDEN = {
         "fremovexattr": 199,
     },
 }  # fmt: skip
-_OPEN, _OPENAT, _OPENAT2, _CLONE, _CLONE3, _PRLIMIT = 2, 257, 437, 56, 435, 302
+_OPEN, _OPENAT, _OPENAT2, _CLONE, _CLONE3, _PRLIMIT, _IOCTL = 2, 257, 437, 56, 435, 302, 16
 _CLONE_THREAD = 0x10000
 _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC
 _SET_NO_NEW_PRIVILEGES, _SET_SECCOMP, _FILTER = 38, 22, 2
@@ -62,6 +66,8 @@ def program() -> bytes:
     lines = [*bpf.begin(), *bpf.refusing(numbers, errno.EPERM)]
     # The arguments of these two calls are in memory, which a filter cannot read. The C library then uses older calls.
     lines += bpf.refusing((_CLONE3, _OPENAT2), errno.ENOSYS)
+    # On a file that is open for reading only, ioctl can make it immutable, or type commands into a terminal.
+    lines += bpf.refusing((_IOCTL,), errno.ENOTTY)
     for number, flags in ((_OPEN, 1), (_OPENAT, 2)):
         lines += _only_without(number, flags, _WRITING, denied)
     # Threads are allowed, since they belong to this process and share its limits.

@@ -61,17 +61,17 @@ def open_submission(path: str | os.PathLike[str], *, exactly: bool = False) -> S
     return _read(_submission, os.fspath(path), exactly)
 
 
-def _read(function: Callable[[str, bool], Submission], name: str, exactly: bool) -> Submission:
+def _read(function: Callable[[str, Path, bool], Submission], name: str, exactly: bool) -> Submission:
     try:
-        return read(function, name, exactly)
+        return read(function, name, Path(name), exactly)
     except UnreadableError as error:
         message = f"{shown(name)} cannot be opened: {error}."
         raise UnreadableError(message) from error
 
 
-def _submission(name: str, exactly: bool) -> Submission:
+def _submission(name: str, path: Path, exactly: bool) -> Submission:
     try:
-        with _opened(name, exactly) as root:
+        with _opened(path, exactly) as root:
             package = find_package(root, name)
             with tree.open_below(root, package) as folder:
                 found = tree.read_tree(folder)
@@ -80,7 +80,7 @@ def _submission(name: str, exactly: bool) -> Submission:
         raise UsageError(message) from error
     return Submission(
         name=name,
-        package_dir=Path(name).resolve() / package,
+        package_dir=path.resolve() / package,
         files={path: found.files[path] for path in sorted(found.files, key=tree.sort_key)},
         rejected=_sentences(found.rejected),
         digest=digest(found.files),
@@ -89,10 +89,10 @@ def _submission(name: str, exactly: bool) -> Submission:
 
 
 @contextmanager
-def _opened(name: str, exactly: bool) -> Iterator[int]:
-    with tree.open_folder(name, follow=True) as folder:
+def _opened(path: Path, exactly: bool) -> Iterator[int]:
+    with tree.open_folder(os.fspath(path), follow=True) as folder:
         if exactly:
-            tree.require_path(folder, Path(name))
+            tree.require_path(folder, path)
         yield folder
 
 
@@ -106,9 +106,9 @@ def open_answers(path: str | os.PathLike[str], *, exactly: bool = False) -> Subm
     return _read(_answers, os.fspath(path), exactly)
 
 
-def _answers(name: str, exactly: bool) -> Submission:
+def _answers(name: str, path: Path, exactly: bool) -> Submission:
     try:
-        with _opened(name, exactly) as root:
+        with _opened(path, exactly) as root:
             found = tree.read_tree(root)
     except OSError as error:
         message = why_not_opened(error, name)
@@ -119,7 +119,7 @@ def _answers(name: str, exactly: bool) -> Submission:
         message = f"{problem} Give the folder that contains your {ANSWERS}."
         raise UsageError(message)
     files = {ANSWERS: found.files[ANSWERS]}
-    return Submission(name, Path(name).resolve(), files, (), digest(files))
+    return Submission(name, path.resolve(), files, (), digest(files))
 
 
 def digest(files: Mapping[str, bytes]) -> str:

@@ -26,8 +26,10 @@ from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
 from grader.common.lazy import IMPORTING
 from grader.common.system_errors import refusal
 from grader.errors import GraderError, MachineError, TooLargeError, UnreadableError
+from grader.sandbox.landlock import allow_only_reading
 from grader.sandbox.limits import NO_CORE_DUMP
 from grader.sandbox.reading_calls import forbid_all_but_reading
+from grader.submission.program_files import paths_in, program_files
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,6 +63,9 @@ class _Child:
 def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> T:
     """Call the function in a child process and return its result, which may contain our dataclasses and built-in types.
 
+    If the kernel has Landlock, the function can open only the files and folders among its arguments, which must be
+    instances of Path, and `program_files`.
+
     Raises:
         TooLargeError: the function took too much time or memory.
         UnreadableError: the function raised an exception other than the grader's own errors.
@@ -69,9 +74,10 @@ def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> 
     if _Child.inside:
         return function(*arguments, **keywords)
     receives, sends = os.pipe()
+    readable = (*program_files(), *paths_in(arguments))
     child = _fork()
     if child == 0:
-        _run(sends, lambda: function(*arguments, **keywords))
+        _run(sends, readable, lambda: function(*arguments, **keywords))
     os.close(sends)
     status = None
     try:
@@ -104,7 +110,7 @@ def _ended(child: int) -> int:
         return 0  # our parent process ignores SIGCHLD, so the exit status is unknown
 
 
-def _run(sends: int, function: Callable[[], object]) -> NoReturn:
+def _run(sends: int, readable: tuple[Path, ...], function: Callable[[], object]) -> NoReturn:
     """Run the function in the child, and exit."""
     try:
         _Child.inside = True
@@ -113,6 +119,7 @@ def _run(sends: int, function: Callable[[], object]) -> NoReturn:
             signal.signal(number, signal.SIG_DFL)
         _close_all_but(sends)
         _limit()
+        allow_only_reading(readable)
         forbid_all_but_reading()
         with open(sends, "wb") as pipe:
             pipe.write(_answer(function))
@@ -122,7 +129,13 @@ def _run(sends: int, function: Callable[[], object]) -> NoReturn:
 
 
 def _close_all_but(sends: int) -> None:
-    """Close the parent's files: the child needs none of them, and an open copy would keep a pipe open."""
+    """Close the parent's files: the child needs none of them, and an open copy would keep a pipe open.
+
+    The terminal is closed too. In a terminal, a child could type commands for the user.
+    """
+    empty = os.open(os.devnull, os.O_RDWR)
+    for number in range(2 if os.environ.get("GRADER_DEBUG") else 3):
+        os.dup2(empty, number)
     for number in [int(entry.name) for entry in Path("/proc/self/fd").iterdir()]:
         if number > 2 and number != sends:
             with suppress(OSError):  # the descriptor that was used for listing the folder

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import copyreg
 import ctypes
+import fcntl
 import os
 import platform
 import resource
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import threading
@@ -28,6 +30,14 @@ from grader.tests.case import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+
+FS_IOC_SETFLAGS, FS_NODUMP_FL = 0x40086602, 0x40
+
+
+def landlocked() -> bool:
+    """Return whether the kernel has Landlock: landlock_create_ruleset(2) then returns its version."""
+    return bool(ctypes.CDLL(None).syscall(444, None, ctypes.c_size_t(0), 1) >= 1)
 
 
 def add(one: int, other: int = 1) -> int:
@@ -122,7 +132,9 @@ def test_the_limits_are_of_the_child_alone() -> None:
 
 def test_it_holds_no_descriptor_of_its_parents() -> None:
     with Path("/dev/null").open("rb"):
-        assert len(read(os.listdir, "/proc/self/fd")) <= 5  # the standard streams, its pipe, and the listing itself
+        assert (
+            len(read(os.listdir, Path("/proc/self/fd"))) <= 5
+        )  # the standard streams, its pipe, and the listing itself
 
 
 def test_errors_come_back_whatever_others_have_made_of_pickling() -> None:
@@ -193,6 +205,9 @@ FORBIDDEN: dict[str, Callable[[Path], object]] = {
     "a folder": lambda file: file.with_name("new").mkdir(),
     "a mode": lambda file: file.chmod(0o777),
     "a date": lambda file: os.utime(file),
+    "a lock": lambda file: fcntl.flock(file.open(), fcntl.LOCK_EX),
+    "a mark": lambda file: fcntl.ioctl(file.open(), FS_IOC_SETFLAGS, struct.pack("i", FS_NODUMP_FL)),
+    "a place before others": lambda _: os.setpriority(os.PRIO_PROCESS, 0, -5),
 }
 """Code that an attacker could run in this process through a hole in a parser."""
 
@@ -200,16 +215,19 @@ FORBIDDEN: dict[str, Callable[[Path], object]] = {
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="the filter is for x86-64")
 @pytest.mark.parametrize("what", FORBIDDEN)
 def test_it_cannot_do_anything_but_read(what: str, tmp_path: Path) -> None:
-    def attempt() -> str:
+    def attempt(_: Path) -> str:
         try:
             FORBIDDEN[what](tmp_path / "a.txt")
-        except (PermissionError, ValueError) as error:
+        except (OSError, ValueError) as error:
             return str(error)
         return ""
 
     (tmp_path / "a.txt").write_text("as before")
     before = (tmp_path / "a.txt").stat()
-    assert any(each in read(attempt) for each in ("Permission denied", "not permitted", "not allowed"))
+    assert any(
+        each in read(attempt, tmp_path)
+        for each in ("Permission denied", "not permitted", "not allowed", "Inappropriate")
+    )
     assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
     assert (tmp_path / "a.txt").stat().st_mode == before.st_mode
     assert (tmp_path / "a.txt").read_text() == "as before"
@@ -218,11 +236,39 @@ def test_it_cannot_do_anything_but_read(what: str, tmp_path: Path) -> None:
 def test_it_can_read_and_start_threads(tmp_path: Path) -> None:
     (tmp_path / "a.txt").write_text("a text")
 
-    def reads() -> list[str]:
+    def reads(_: Path) -> list[str]:
         with ThreadPoolExecutor(2) as pool:
             return [
                 *pool.map(Path.read_text, [tmp_path / "a.txt"] * 3),
                 str(resource.getrlimit(resource.RLIMIT_NOFILE)),
             ]
 
-    assert read(reads)[:3] == ["a text"] * 3
+    assert read(reads, tmp_path)[:3] == ["a text"] * 3
+
+
+def content(file: Path, *_: object) -> str:
+    try:
+        return file.read_text()
+    except PermissionError as error:
+        return str(error.strerror)
+
+
+@pytest.mark.skipif(not landlocked(), reason="this kernel has no Landlock")
+def test_it_can_read_only_what_it_was_called_with(tmp_path: Path) -> None:
+    for name in ("theirs", "others"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "a.txt").write_text(name)
+    (tmp_path / "theirs" / "link").symlink_to("../others/a.txt")
+    (tmp_path / "way").symlink_to("theirs")
+    theirs, others = tmp_path / "theirs", tmp_path / "others"
+    assert read(content, theirs / "a.txt") == "theirs"
+    assert read(content, tmp_path / "way" / "a.txt") == "theirs"
+    assert read(lambda *_: content(theirs / "a.txt"), [theirs]) == "theirs"
+    assert read(lambda _: content(others / "a.txt"), theirs) == "Permission denied"
+    assert read(lambda _: content(theirs / "link"), theirs) == "Permission denied"
+    assert read(lambda: content(Path("/etc/passwd"))) == "Permission denied"
+    assert read(lambda: content(Path(f"/proc/{os.getppid()}/environ"))) == "Permission denied"
+
+
+def test_it_has_no_terminal() -> None:
+    assert read(lambda: [Path(f"/proc/self/fd/{number}").readlink() for number in range(3)]) == [Path(os.devnull)] * 3

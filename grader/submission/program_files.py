@@ -1,0 +1,36 @@
+"""The files that the reading process may open besides those of a submission: Python's, the grader's, the lessons."""
+
+from __future__ import annotations
+
+import os
+import sys
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+_SYSTEM = ("/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/etc/localtime", "/dev/null", "/dev/urandom")
+_MODULES = ("site-packages", "dist-packages")
+"""The folders of a search path that contain only modules. Others may be any folder: the current one, or the home."""
+
+
+@cache
+def program_files() -> tuple[Path, ...]:
+    """Return the files and folders of which every reading may need a part, for example a module that it imports."""
+    package = Path(__file__).resolve().parents[1]
+    lessons = (package.parent / "course", package.parent / "exercises")
+    searched = [Path(entry) for entry in sys.path if os.path.isabs(entry)]  # noqa: PTH117
+    modules = [path for path in searched if not set(path.parts).isdisjoint(_MODULES)]
+    python = (sys.prefix, sys.base_prefix, sys.exec_prefix)
+    return (*map(Path, (*_SYSTEM, *python)), *modules, package, *lessons)
+
+
+def paths_in(values: Iterable[object]) -> Iterator[Path]:
+    """Yield the paths among these arguments of a function, and in tuples and lists among them."""
+    for value in values:
+        if isinstance(value, Path):
+            yield value
+        elif isinstance(value, tuple | list):
+            yield from paths_in(value)
