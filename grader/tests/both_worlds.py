@@ -34,3 +34,8 @@ of_our_ros2 = pytest.mark.skipif(
 of_our_turtlesim = pytest.mark.skipif(
     REAL_TURTLESIM, reason="this test needs the course's own turtlesim, but the real one is installed"
 )
+
+
+def python_path(folder: Path) -> str:
+    """Return a PYTHONPATH that starts with `folder`. The modules of a sourced ROS 2 follow."""
+    return os.pathsep.join([str(folder), *filter(None, [SOURCED_ENV.get("PYTHONPATH")])])

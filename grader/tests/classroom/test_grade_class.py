@@ -17,6 +17,7 @@ from grader.classroom.order import Order
 from grader.evidence.evidence import Evidence
 from grader.exercise.private_checks import sources_of
 from grader.submission.package import open_submission
+from grader.tests.both_worlds import python_path
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import ACTS, POINTS, STEP, grade, judged, make_class, reports, rows
 from grader.tests.grading.test_grade import busy
@@ -138,7 +139,7 @@ def test_a_wrong_command_is_one_sentence_and_exit_code_2(
 def test_without_a_sandbox_nothing_is_run(undisturbed: Run, tmp_path: Path) -> None:
     (tmp_path / "sitecustomize.py").write_text(WITHOUT_SANDBOX)
     command = (undisturbed.submitted, "--exercise", STEP, "--out", tmp_path / "new")
-    done = grade(*command, PYTHONPATH=str(tmp_path))
+    done = grade(*command, PYTHONPATH=python_path(tmp_path))
     assert (done.returncode, "No sandbox is available" in done.stderr) == (3, True), done.stderr
     assert not (tmp_path / "new").exists()
 
@@ -147,7 +148,7 @@ def test_trusted_submissions_are_graded_without_a_sandbox(tmp_path: Path) -> Non
     (tmp_path / "sitecustomize.py").write_text(WITHOUT_SANDBOX)
     copy_solution(STEP, tmp_path / "class" / "anna")
     command = (tmp_path / "class", "--exercise", STEP, "--out", tmp_path / "new", "--trust-submissions")
-    done = grade(*command, PYTHONPATH=str(tmp_path))
+    done = grade(*command, PYTHONPATH=python_path(tmp_path))
     assert done.returncode == 0, done.stderr
     assert [(row["submission"], row["points"]) for row in rows(tmp_path / "new")] == [("anna", "100")]
 

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.tests.both_worlds import python_path
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -89,7 +91,7 @@ def environment(folder: Path, shim: Path, fault: Fault) -> dict[str, str]:
     (observed / "sitecustomize.py").write_text(ARMED)
     preloaded = shutil.copy(shim, observed)
     faults = {
-        "PYTHONPATH": str(observed),
+        "PYTHONPATH": python_path(observed),
         "LD_PRELOAD": str(preloaded),
         "FAULT_LOG": str(folder / "failures"),
         "FAULT_FROM": fault.since,

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from grader.tests.both_worlds import SOURCED_ENV, python_path
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -105,15 +107,18 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def broken(tmp_path: Path, sitecustomize: str) -> subprocess.CompletedProcess[str]:
     """Grade on a machine with a fault, which this sitecustomize causes in the grader's own process."""
     (tmp_path / "sitecustomize.py").write_text(sitecustomize)
-    return grader("check", SOLUTION, "--json", tmp_path / "report.json", env={"PYTHONPATH": str(tmp_path)})
+    return grader("check", SOLUTION, "--json", tmp_path / "report.json", env={"PYTHONPATH": python_path(tmp_path)})
 
 
 @pytest.mark.parametrize(
     ("fault", "said"),
     [
         (
-            "import grader.ros.installation\ngrader.ros.installation._wheels = lambda _: None\n",
-            "No ROS 2 Jazzy was found",
+            """
+import grader.ros.installation
+grader.ros.installation._wheels = grader.ros.installation._sourced = lambda _: None
+""",
+            "which is not sourced in this terminal" if SOURCED_ENV else "No ROS 2 Jazzy was found",
         ),
         (
             """

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from grader.sandbox import bubblewrap
+from grader.tests.both_worlds import SOURCED_ENV, python_path
 from grader.tests.case import copy_solution
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ WITHOUT = "import grader.sandbox.bubblewrap\ngrader.sandbox.bubblewrap.program =
 def without(tmp_path: Path) -> dict[str, str]:
     """Return the environment of a machine without bubblewrap."""
     (tmp_path / "sitecustomize.py").write_text(WITHOUT)
-    return {**os.environ, "PYTHONPATH": str(tmp_path), "XDG_STATE_HOME": str(tmp_path / "state")}
+    return {**os.environ, "PYTHONPATH": python_path(tmp_path), "XDG_STATE_HOME": str(tmp_path / "state")}
 
 
 def grader(env: dict[str, str], *arguments: str | Path) -> subprocess.CompletedProcess[str]:
@@ -45,7 +46,7 @@ def test_the_verdict_is_that_of_a_sandbox_and_the_report_says_so(
         pytest.skip("there is no sandbox here to compare with")
     package = tmp_path / "my_robot_controller"
     copy_solution(STEP, package)
-    confined = {**without, "PYTHONPATH": ""}
+    confined = {**without, "PYTHONPATH": SOURCED_ENV.get("PYTHONPATH", "")}
     reports = []
     for name, env in (("without", without), ("within", confined)):
         done = grader(env, "check", package, "--exercise", STEP, "--clock", clock, "--json", tmp_path / f"{name}.json")

@@ -183,7 +183,7 @@ def test_what_grader_env_prints_is_understood(tmp_path: Path, name: str) -> None
     underlay.ensure(HERE)  # otherwise, the output would contain the progress of the build
     what = "source <(grader env --domain 57) && echo $ROS_DISTRO $ROS_DOMAIN_ID"
     done = subprocess.run([name, "-c", what], cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
-    used = f"The ROS 2 that is sourced in this terminal is used: {HERE.prefix} (ROS domain 57, "
+    used = f"Using the ROS 2 that is sourced in this terminal: {HERE.prefix} (ROS domain 57, "
     assert done.stdout == "jazzy 57\n"
     assert done.stderr.startswith(used) if SOURCED_ENV else done.stderr == ""
 
