@@ -1,4 +1,4 @@
-"""The UDP ports of DDS participants on this machine: the ports of a node in a cell, and the ports that it may reach.
+"""The UDP ports of DDS participants on this machine: those of the nodes in a cell, and those that they may reach.
 
 A participant has two ports that depend on the domain and on its number (DDSI-RTPS, 9.6.1.1). In addition, the reader
 that rmw_fastrtps has for ros_discovery_info gets the first free port from 7000 on, in every domain.
@@ -9,8 +9,12 @@ from __future__ import annotations
 import socket
 from dataclasses import dataclass
 from itertools import chain
+from typing import TYPE_CHECKING
 
 from grader.errors import MachineError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 HOST = "127.0.0.1"
 PARTICIPANTS = 32
@@ -19,6 +23,9 @@ FIRST_OWN = 7000
 OTHERS = 64
 """The number of ports from FIRST_OWN on that are reserved for the other nodes of this machine."""
 _TRIED = 64
+OWN = 4
+"""The number of participants in a cell that other nodes can reach. A program has one participant for each context, and
+a node that it starts as a child process has another one."""
 
 
 def participant_ports(domain: int, number: int) -> tuple[int, int]:
@@ -29,43 +36,46 @@ def participant_ports(domain: int, number: int) -> tuple[int, int]:
 
 @dataclass(frozen=True)
 class Ports:
-    """`own` contains the sockets outside the cell for data to the node. `others` contains the ports of other nodes.
+    """`own` contains the sockets outside the cell for data to its nodes. `others` contains the ports of other nodes.
 
-    Inside the cell, the ports `others` are in use. Therefore, the node gets the same port numbers inside the cell as
-    `own` has outside.
+    Inside the cell, the ports `others` are in use. Therefore, the nodes get the same port numbers inside the cell as
+    `own` has outside. `discovery` contains the ports of `own` for discovery data.
     """
 
     own: tuple[socket.socket, ...]
     others: tuple[int, ...]
+    discovery: frozenset[int]
 
 
 def reserve(domain: int) -> Ports:
-    """Bind the ports of one participant on this machine, and return them.
+    """Bind the ports of OWN participants on this machine, or of fewer if fewer are free, and return them.
 
-    The port numbers are high, because nodes use the lowest free ports. A second participant of the same program cannot
-    be reached, but hardly any program has a second participant.
+    The port numbers are high, because nodes use the lowest free ports.
 
     Raises:
         MachineError: all ports are in use.
     """
+    own: dict[int, tuple[socket.socket, ...]] = {}
     for number in reversed(range(PARTICIPANTS)):
-        own = _bound(participant_ports(domain, number))
-        if own:
-            break
-    else:
+        if len(own) < OWN and (pair := _bound(participant_ports(domain, number))):
+            own[number] = pair
+    if not own:
         message = f"Too many nodes run in ROS domain {domain} on this machine. Stop some of them."
         raise MachineError(message)
-    for last in range(FIRST_OWN + OTHERS, FIRST_OWN + OTHERS + _TRIED):
-        if reader := _bound((last,)):
-            pairs = (participant_ports(domain, other) for other in range(PARTICIPANTS) if other != number)
-            return Ports((*own, *reader), (*chain.from_iterable(pairs), *range(FIRST_OWN, last)))
-    for each in own:
+    sockets = tuple(chain.from_iterable(own.values()))
+    for first in range(FIRST_OWN + OTHERS, FIRST_OWN + OTHERS + _TRIED):
+        if readers := _bound(range(first, first + len(own))):
+            pairs = (participant_ports(domain, other) for other in range(PARTICIPANTS) if other not in own)
+            others = (*chain.from_iterable(pairs), *range(FIRST_OWN, first))
+            discovery = frozenset(participant_ports(domain, number)[0] for number in own)
+            return Ports((*sockets, *readers), others, discovery)
+    for each in sockets:
         each.close()
     message = f"The ports {FIRST_OWN} to {FIRST_OWN + OTHERS + _TRIED} of this machine are in use. Stop some nodes."
     raise MachineError(message)
 
 
-def _bound(ports: tuple[int, ...]) -> tuple[socket.socket, ...]:
+def _bound(ports: Iterable[int]) -> tuple[socket.socket, ...]:
     """Return a socket for each port, or nothing if one of the ports is in use."""
     made: list[socket.socket] = []
     for port in ports:

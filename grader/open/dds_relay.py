@@ -39,6 +39,7 @@ class Relay:
         pairs = (participant_ports(domain, number) for number in range(PARTICIPANTS))
         self._reachable = {port for pair in pairs for port in pair}
         self._outside = ports.own
+        self._discovery = ports.discovery
         self._inside = inside
         for port, each in zip(ports.others, inside, strict=True):
             self._serve(selector, each, self._out, port)
@@ -66,7 +67,7 @@ class Relay:
             self._outside[0].sendto(datagram, (HOST, port))
 
     def _in(self, datagram: bytes, port: int) -> None:
-        if port == self._outside[0].getsockname()[1]:
+        if port in self._discovery:
             datagram = _LOCATOR.sub(self._as_seen_inside, datagram)
         self._inside[0].sendto(datagram, (HOST, port))
 

@@ -23,6 +23,7 @@ from grader.open.linked_cell import linkable
 from grader.sandbox import bubblewrap
 from grader.tests.domains import own_domain
 from grader.tests.open.course import CIRCLE, Course
+from grader.tests.ros2.world import environment
 from grader.tests.waiting import HANG_S, until, until_gone
 
 if TYPE_CHECKING:
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from grader.common.interpreter import Start
 
 HOSTILE = Path(__file__).with_name("hostile_node.py")
+ANSWERING = HOSTILE.with_name("answering_nodes.py")
+ASKING = HOSTILE.with_name("asking_node.py")
 SETTINGS = json.dumps({"step": CIRCLE, "executable": "draw_circle", "workspace": None})
 needs_cells = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
 
@@ -157,6 +160,20 @@ def test_an_attack_reaches_nothing_and_leaves_nothing(learner: Course, *, defend
                 assert "a secret" in output
                 assert found.reached() == [learner.home.name, "ros2_ws", "SOCK_STREAM", *["SOCK_DGRAM"] * 3]
                 os.kill(left[0], signal.SIGKILL)
+
+
+@needs_cells
+def test_each_context_and_each_child_process_of_a_program_can_be_reached(learner: Course) -> None:
+    learner.node.write_text(ANSWERING.read_text())
+    domain = own_domain()
+    outside = interpreter(str(ASKING), env=environment(learner.home, domain), searches=True)
+    with running(in_cell(learner), learner, domain) as process, running(outside, learner, domain) as asking:
+        assert asking.stdout is not None
+        assert process.stdin is not None
+        names, _ = asking.communicate(timeout=HANG_S)
+        assert sorted(names.split()) == ["child", "first", "second"]
+        process.stdin.close()
+        assert process.wait(HANG_S) == 0
 
 
 @needs_cells
