@@ -149,6 +149,12 @@ def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
         if name is None:
             message = f"{shown(str(path))} is neither a folder nor an archive (.zip, .tar.gz)."
             raise UsageError(message)
+        if Path(os.path.realpath(leave_out)).is_relative_to(absolute):
+            message = (
+                f"The results must not be inside {shown(str(path))}: the student may have put forged results there. "
+                "Name another folder with --out."
+            )
+            raise UsageError(message)
         yield from _of_student(name, absolute, wanted)
         return
     for entry in _entries(absolute):

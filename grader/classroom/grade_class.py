@@ -18,6 +18,7 @@ from grader.errors import MachineError, UsageError
 from grader.ros import underlay
 from grader.ros.installation import find_ros
 from grader.sandbox import bubblewrap
+from grader.submission.tree import shown as shown_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -88,6 +89,9 @@ def grade_found(
         say(_reported(kept, todo))
         if beside:
             say(f"Ignored, because these are neither folders nor archives: {a_list(beside)}.")
+        unlisted = [shown_name(each.student) for each in found if roster and each.student not in roster]
+        if unlisted:
+            say(f"Not in the roster, so judged with the numbers of their own names: {a_list(unlisted)}.")
         graded: list[Result] = []
         if todo:
             engine = _engine(request, local=local)

@@ -136,7 +136,9 @@ def opened(folder: Path) -> Iterator[Results]:
         message = f"{folder} contains files that are not results of `grader grade`. Name a new folder with --out."
         raise UsageError(message)
     try:
-        (folder / REPORTS).mkdir(parents=True, exist_ok=True)
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700, exist_ok=True)  # marks and hidden checks are not for other users of the machine
+        (folder / REPORTS).mkdir(exist_ok=True)
         file = lock.open("a")
     except OSError as error:
         message = (

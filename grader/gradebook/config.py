@@ -39,7 +39,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
     folders.feedback_directory = f"{CLASS}/feedback"
     folders.solution_directory = f"{CLASS}/solution"
     folders.source_with_tests_directory = f"{CLASS}/source_with_tests"
-    (root / CLASS).mkdir(exist_ok=True)
+    (root / CLASS).mkdir(mode=0o700, exist_ok=True)  # other users of the machine must not read the gradebook
     folders.db_url = f"sqlite:///{root / CLASS / GRADEBOOK}?timeout={BUSY_S}"
 
     # exercises/ already exists in git. Let nbgrader create it again.

@@ -36,7 +36,8 @@ def make_class(folder: Path, roster: Path | None) -> int:
         message = "This copy of the course has no solutions. A class needs a complete checkout of the course."
         raise UsageError(message)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700, exist_ok=True)  # other users must not read the solutions and the gradebook
         # Without this file, colcon in this folder would run the setup.py of every submission outside the sandbox.
         (folder / IGNORE_MARKER).touch()
         shutil.copytree(root / "course", folder / "course", ignore=_LEFTOVERS)

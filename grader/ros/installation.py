@@ -17,6 +17,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from grader.common.private_folder import private_folder
 from grader.errors import MachineError
 
 if TYPE_CHECKING:
@@ -182,7 +183,9 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
         # to. The script needs only the standard library.
         needed["COLCON_PYTHON_EXECUTABLE"] = str(ros.python.resolve())
     if "ROS_LOG_DIR" not in env and "ROS_HOME" not in env and not os.access(home, os.W_OK):
-        needed["ROS_LOG_DIR"] = str(Path(tempfile.gettempdir(), f"ros-log-{os.getuid()}"))
+        needed["ROS_LOG_DIR"] = str(
+            private_folder(Path(tempfile.gettempdir()), f"ros2-grader-{os.getuid()}") / "ros-log"
+        )
     joined = {name: _joined(name, needed, env) for name in SEARCHED if name in needed or name in env}
     joined["PATH"] = _users_path(ros, env)
     kept = {key: value for key, value in env.items() if key in _THEIRS or key not in needed}

@@ -12,13 +12,13 @@ from __future__ import annotations
 import fcntl
 import os
 import random
-import stat
 import struct
 import tempfile
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common.private_folder import private_folder
 from grader.errors import MachineError
 
 if TYPE_CHECKING:
@@ -80,15 +80,8 @@ def _users(uid_map: str) -> range:
 
 def _folder() -> Path:
     """Return a folder that only root can write to. Create it if necessary."""
-    top = next((place for place in PLACES if os.access(place, os.W_OK)), tempfile.gettempdir())
-    folder = Path(top) / "ros2-grader"
-    with suppress(FileExistsError):
-        folder.mkdir(mode=0o700)
-    about = folder.lstat()
-    if not stat.S_ISDIR(about.st_mode) or about.st_uid != 0 or about.st_mode & 0o077:
-        message = f"{folder} must be a folder that only root can write to. Remove it."
-        raise MachineError(message)
-    return folder
+    above = next((place for place in PLACES if os.access(place, os.W_OK)), tempfile.gettempdir())
+    return private_folder(Path(above), "ros2-grader")
 
 
 def _lock(file: int, byte: int) -> bool:

@@ -8,6 +8,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common.private_folder import private_folder
 from grader.errors import MachineError
 
 if TYPE_CHECKING:
@@ -20,10 +21,10 @@ def own_domain(stack: ExitStack) -> int:
     Raises:
         MachineError: all domains are in use.
     """
+    folder = private_folder(Path(tempfile.gettempdir()), f"ros2-grader-{os.getuid()}")
     # The ports of higher domains are in the range from which Linux assigns ports to any program.
     for domain in range(1, 102):
-        path = Path(tempfile.gettempdir()) / f"grader-domain-{os.getuid()}-{domain}.lock"
-        file = stack.enter_context(path.open("w"))
+        file = stack.enter_context((folder / f"domain-{domain}.lock").open("w"))
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

@@ -12,6 +12,12 @@ shift 4
 [[ $student =~ ^[A-Za-z0-9][A-Za-z0-9._@+-]*$ ]] || { echo "grade.sh: not a valid folder name: $student" >&2; exit 2; }
 [ -e "$submission" ] || { echo "grade.sh: $submission does not exist" >&2; exit 2; }
 
+# A link in a student's repository could lead to the solutions of the course.
+if [[ $submission != /* && $(realpath -- "$submission") != "$(realpath -s -- "$submission")" ]]; then
+    echo "grade.sh: $submission contains a link" >&2
+    exit 2
+fi
+
 # Create a class folder with only this submission, named after the student. Copy links as links.
 class=$(mktemp -d)
 trap 'rm -rf "$class"' EXIT

@@ -10,6 +10,7 @@ import pytest
 from grader.checks.exercises import find_exercise
 from grader.classroom.content import Refused, fingerprint, read
 from grader.classroom.find_submissions import Found, find_submissions, passed_over
+from grader.errors import UsageError
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import zipped
 
@@ -86,6 +87,13 @@ def test_a_package_or_an_archive_alone_is_one_submission(tmp_path: Path) -> None
     zipped(tmp_path / "anna", tmp_path / "ben.zip", "my_robot_controller")
     found = find_submissions([tmp_path / "anna", tmp_path / "ben.zip"], STEP, tmp_path / "grades")
     assert [each.student for each in found] == ["anna", "ben"]
+
+
+def test_results_inside_a_submission_are_refused(tmp_path: Path) -> None:
+    """A student could hand in a folder with forged results, and the grader would keep them."""
+    copy_solution(STEP, tmp_path / "exercises" / STEP)
+    with pytest.raises(UsageError, match="forged results"):
+        find_submissions([tmp_path], STEP, tmp_path / "grades")
 
 
 def test_an_archive_alone_in_a_students_folder_is_the_submission(tmp_path: Path) -> None:

@@ -27,6 +27,11 @@ def test_a_saved_result_can_be_loaded(tmp_path: Path) -> None:
         assert results.load("ben", saved.report.exercise) is None
 
 
+def test_other_users_cannot_read_the_marks(tmp_path: Path) -> None:
+    with opened(tmp_path / "new" / "grades"):
+        assert (tmp_path / "new" / "grades").stat().st_mode & 0o777 == 0o700
+
+
 def test_a_result_without_a_page_is_not_complete(tmp_path: Path) -> None:
     with opened(tmp_path / "grades") as results:
         saved = results.save("anna", report("failed"), KEY, b"<p>page")

@@ -71,6 +71,18 @@ def test_the_script_refuses_names_that_are_not_folder_names(tmp_path: Path, stud
     assert (done.returncode, "not a valid folder name" in done.stderr) == (2, True)
 
 
+def test_the_script_refuses_a_link_that_leads_out_of_the_repository(tmp_path: Path) -> None:
+    copy_solution(STEP, tmp_path / "course" / STEP)
+    (tmp_path / "submission").mkdir()
+    (tmp_path / "submission" / "exercises").symlink_to("../course")
+    done = subprocess.run(
+        [SCRIPT, f"submission/exercises/{STEP}", "octocat", STEP, "grades"],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert (done.returncode, "contains a link" in done.stderr) == (2, True)
+    assert not (tmp_path / "grades").exists()
+
+
 @pytest.mark.parametrize("arguments", [(), ("nowhere", "octocat", STEP, "grades")])
 def test_the_script_explains_a_wrong_call(tmp_path: Path, arguments: tuple[str, ...]) -> None:
     done = subprocess.run([SCRIPT, *arguments], cwd=tmp_path, capture_output=True, text=True, check=False)

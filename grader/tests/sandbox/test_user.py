@@ -95,7 +95,7 @@ def test_a_lock_file_that_others_can_change_is_refused(monkeypatch: pytest.Monke
     monkeypatch.setattr(user, "PLACES", (str(tmp_path),))
     (tmp_path / "ros2-grader").mkdir()
     (tmp_path / "ros2-grader").chmod(0o777)
-    with pytest.raises(MachineError, match="only root can write to"), cell_user():
+    with pytest.raises(MachineError, match="only you can open"), cell_user():
         pass
 
 

@@ -1,0 +1,37 @@
+"""A folder with a fixed name that only this user can write to, for files that several processes of the user share.
+
+Other users can also create files in the folder for temporary files. If the grader opened a file with a fixed name
+there, another user could have created it before, for example as a link to a file of this user.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from grader.errors import MachineError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def private_folder(above: Path, name: str) -> Path:
+    """Return the folder `name` in `above`. Create it if it does not exist.
+
+    Raises:
+        MachineError: the folder cannot be created, or other users can write to it.
+    """
+    folder = above / name
+    try:
+        with suppress(FileExistsError):
+            folder.mkdir(mode=0o700)
+        about = folder.lstat()
+    except OSError as error:
+        message = f"{folder} could not be created: {error.strerror}."
+        raise MachineError(message) from error
+    if not stat.S_ISDIR(about.st_mode) or about.st_uid != os.geteuid() or about.st_mode & 0o077:
+        message = f"{folder} must be a folder that only you can open. Remove it."
+        raise MachineError(message)
+    return folder
