@@ -40,7 +40,7 @@ _NODE = "my_robot_controller/draw_circle.py"
 
 @dataclass(frozen=True)
 class Row:
-    """A row of the table. `value` and `aim` have the same unit, and the aim is an upper limit."""
+    """A row of the table. `value` and `aim` have the same unit. A value up to the aim is good."""
 
     name: str
     value: float

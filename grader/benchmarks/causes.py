@@ -78,7 +78,7 @@ class Judged:
 
     @property
     def first(self) -> bool:
-        """Whether the first failed check names the cause."""
+        """Whether the first failed check names the actual cause."""
         return names(self.failed[0], self.made)
 
     @property
@@ -93,7 +93,7 @@ class Judged:
 
     @cached_property
     def facts(self) -> Facts:
-        """The facts about the package, found without the tables of diagnoses."""
+        """Facts about the package that were determined without the tables of diagnoses."""
         return Facts(self.made.right, self.made.files, self.evidence)
 
     @property

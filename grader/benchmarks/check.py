@@ -23,7 +23,7 @@ _GRADER = str(Path(sys.executable).with_name("grader"))
 
 
 def main() -> None:
-    """Measure everything and print the results."""
+    """Measure the cost of each part, and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--times", type=int, default=5, help="number of measurements, whose median is printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions/03-circle-publisher")

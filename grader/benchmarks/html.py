@@ -77,7 +77,7 @@ def _making(submission: Path, folder: Path, times: int) -> None:
 
 
 def page_cost(recording: Path, page: Path) -> tuple[float, float]:
-    """Write the page of a recording. Return the time for writing (s), and the size of the page (KB)."""
+    """Write the page of a recording. Return the time for writing the page (s) and the size of the page (KB)."""
     start = interpreter("-c", _PAGE, str(recording), str(page))
     done = subprocess.run(start.argv, check=True, capture_output=True, text=True)
     seconds, size = done.stdout.split()

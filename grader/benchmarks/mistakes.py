@@ -86,7 +86,7 @@ def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
 def _beside_f(case: Case, folder: Path) -> float:
     """Return the time of a check divided by F, or infinity if the check needed wall time.
 
-    F is measured immediately before the check.
+    The time F is measured immediately before the check.
     """
     bare = _bare_s(folder / "bare")
     seconds = _whole_s(case, folder / "whole")

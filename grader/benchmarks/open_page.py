@@ -125,7 +125,7 @@ def _screen(learner: Course) -> Iterator[pexpect.spawn[str]]:
 
 
 def _rest() -> None:
-    """Wait until the descendants of this process are idle, so that the next trial is prepared and no proof runs.
+    """Wait until the descendants of this process are idle, so the next trial is prepared and no fix is being tried.
 
     A learner also needs some seconds between two saves.
     """

@@ -140,4 +140,5 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "message-arguments": "a message is created with arguments that it does not take",
     },
 }
-"""Maps each subject to its ids, and each id to its meaning, in the order in which a submission is graded."""
+"""Maps each subject to its diagnosis ids, and each id to its meaning. Subjects are in the order in which a submission
+is graded."""

@@ -38,7 +38,7 @@ class Judgement:
         return tuple(_outcome(spec, self.findings[spec.id]) for spec in self.exercise.checks)
 
     def of_trial(self, trial: str) -> tuple[Outcome, ...]:
-        """Return the outcomes of the checks that judge the recording of the trial with this id."""
+        """Return the results of all checks that use the recording of the trial with this id."""
         return tuple(
             _outcome(spec, self.findings[spec.id])
             for spec in self.exercise.checks

@@ -39,7 +39,7 @@ def read_numbers(evidence: Evidence) -> OwnNumbers | Finding:
 def drawn_numbers(evidence: Evidence) -> OwnNumbers | Finding:
     """Return the numbers of the student whom the file names.
 
-    The numbers are calculated again rather than read from the file.
+    The numbers are calculated again from the student's id rather than read from the file.
     """
     found = read_numbers(evidence)
     return found if isinstance(found, Finding) else draw_numbers(numbers_spec(evidence), found.student)

@@ -3,7 +3,7 @@
 The machines need only this project, and receive submissions as bytes. Each thread of a Dask worker runs one of our
 worker processes (worker.py), so a submission that kills that process does not kill the Dask worker. This module decides
 which Dask worker gets which submission. Each thread gets one submission at a time, without a queue. Therefore, the
-engine knows which submissions were lost with a machine and does not blame one submission for the fault of another.
+engine knows which submissions were lost with a machine, and does not blame a submission that is not at fault.
 """
 
 from __future__ import annotations

@@ -135,7 +135,7 @@ def _entries(folder: Path) -> list[Path]:
 
 
 def _same(one: Path, other: Path) -> bool:
-    """Return whether both paths lead to the same file or folder. A loop of symbolic links is not an error."""
+    """Return whether the two paths lead to the same file or folder. A loop of symbolic links is not an error."""
     return os.path.realpath(one) == os.path.realpath(other)
 
 

@@ -19,11 +19,13 @@ if TYPE_CHECKING:
     from grader.classroom.task import Task
 
 MEMORY_A_TASK = 1536 * 1024 * 1024
-"""The memory per task (bytes). A cell may use more (sandbox.Limits), but few do, and never all at the same time."""
+"""The memory that the grader plans for each task (bytes). A cell may use more (sandbox.Limits), but few do, and never
+all at the same time."""
 WAITING_A_JOB = 2
-"""The number of additional tasks per job that may start while other tasks wait for wall time."""
+"""The number of additional tasks that may start, for each job, while other tasks wait for wall time."""
 TASK_S = 1800.0
-"""The time (s) after which a busy worker is considered to hang. The time limits for one submission add up to less."""
+"""The time (s) after which a busy worker is considered to hang. This time is longer than the sum of all time limits for
+one submission."""
 
 
 def default_jobs() -> int:

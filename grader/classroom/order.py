@@ -35,7 +35,7 @@ class Order:
     clock: ClockChoice = "auto"
     seed: int | None = None
     explain: bool = True
-    """Whether to test supposed causes by fixing them in a copy."""
+    """Whether the grader tests likely causes by fixing them in a copy of the submission."""
     in_cell: bool = True
     """Whether submissions run in a sandbox. It is False only for trusted submissions on a machine without one."""
     trusted: bool = False
@@ -108,7 +108,7 @@ class Order:
 
 
 def sources_for(found: tuple[Found, ...], checks: Path | None) -> dict[str, Sources]:
-    """Return the sources of the exercises of these submissions. Raises UsageError like `sources_of`."""
+    """Return the files that define the exercises of these submissions. Raises UsageError like `sources_of`."""
     return sources_of({each.exercise for each in found}, checks)
 
 

@@ -56,7 +56,10 @@ def estimate(done: int, of: int, seconds: float) -> str:
 
 @contextmanager
 def screen(amount: int, *, several: bool) -> Iterator[Screen]:
-    """Yield a screen for this number of submissions. If `several` is true, the screen also shows the exercises."""
+    """Yield a screen for this number of submissions.
+
+    If `several` is true, the screen also shows the exercise of each submission.
+    """
     if not amount:
         yield Lines(amount, several=several)
     elif sys.stderr.isatty() and not os.environ.get("CI"):
@@ -90,7 +93,10 @@ class Lines:
 
 
 class Table:
-    """Shows the submissions in progress with a progress bar below. Finished submissions stay above the table."""
+    """Shows the submissions that are being graded, with a progress bar below.
+
+    Finished submissions stay above the table.
+    """
 
     def __init__(self, amount: int, console: Console, *, several: bool) -> None:
         self._amount, self._several, self._console = amount, several, console

@@ -115,7 +115,7 @@ class Results:
         return file
 
     def others(self, mine: set[str]) -> int:
-        """Return the number of results in the folder whose pages are not in `mine`."""
+        """Return the number of stored results whose pages are not in `mine`."""
         found = {file.with_suffix(".html").name for file in (self.folder / REPORTS).glob("*.json")}
         return len(found - mine)
 

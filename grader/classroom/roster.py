@@ -64,7 +64,10 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
 
 
 def _lines(file: Path) -> list[tuple[int, list[str]]]:
-    """Return the values of each non-empty line by line number. Raises UsageError if the file is not CSV."""
+    """Return the values of each line that is not empty, together with the line number.
+
+    Raises UsageError if the file is not CSV.
+    """
     try:
         data = file.read_bytes()
         text = data.decode("utf-8-sig")

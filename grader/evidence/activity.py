@@ -30,8 +30,8 @@ def ended_at_start(recording: Recording) -> bool:
     """Return whether the node exited on its own before it could do anything.
 
     A node that raised an exception inside rclpy's spin did run, no matter how soon it exited. This rule depends neither
-    on the clock nor on the time of the first observation. Without an exception inside spin, a node that exits in the
-    initial period (START_S) did not run.
+    on the clock nor on the time of the first observation. A node that exits in the initial period (START_S) without an
+    exception inside spin counts as a node that did not run.
     """
     end = recording.end
     return end.by == "itself" and end.t_s <= START_S and not spun(recording)

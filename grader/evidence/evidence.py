@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Fault:
-    """The reason why `stage` and all later stages could not be completed: a machine fault, and its remedy.
+    """The reason why `stage` and all later stages could not be completed: a fault of the machine, and its remedy.
 
     If `unreadable` is set, the machine is not at fault. The reason is then that something produced by the submission
     could not be read.
@@ -142,7 +142,7 @@ class Evidence:
 
     @cached_property
     def node_file(self) -> str | None:
-        """The source file of the node: the module of the entry point, or else the file named after the executable."""
+        """The node's source file: the module of the entry point, or else the file named after the executable."""
         target = self.trial.calls.function or self.entry_point()
         files = self.submission.files
         if target is not None:

@@ -49,7 +49,7 @@ _SCHEMA = 2
 
 @dataclass(frozen=True)
 class Archived:
-    """The evidence in an archive, and the name of the ROS 2 installation for the report."""
+    """The evidence that was read from an archive, and the name of the ROS 2 installation for the report."""
 
     evidence: Evidence
     ros: str

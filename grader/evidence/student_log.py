@@ -38,7 +38,7 @@ class Format:
 
 @dataclass(frozen=True)
 class Line:
-    """A line that matches the format, with its arrival time (s) and its numbers."""
+    """A log line in the required format, with its arrival time (s) and its numbers."""
 
     t_s: float
     numbers: dict[str, float]

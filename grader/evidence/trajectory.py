@@ -43,7 +43,7 @@ class Trajectory:
 
     @cached_property
     def steps(self) -> Floats:
-        """The length of each step (m)."""
+        """The distance between each pair of successive points (m)."""
         return np.hypot(np.diff(self.x), np.diff(self.y))
 
     @property
@@ -109,7 +109,7 @@ class Trajectory:
 def driven_from(recording: Recording) -> Pose:
     """Return the pose of the turtle before the first command.
 
-    Only a call by the submission can have changed this pose.
+    If this pose is not the start pose, a call by the submission has changed it.
     """
     before, frames = _before_driving(recording), recording.frames
     if not before:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 Result = Literal["passes", "further", "refuted"]
-"""With the change, the check passes, or it fails for another reason (the run gets further), or the cause is refuted."""
+"""The result of a tried change: the check passes, the check fails later for another reason, or the cause is refuted."""
 
 
 @dataclass(frozen=True)

@@ -57,7 +57,7 @@ FIELD = Allowed(
 
 
 def parse_exercise(data: bytes, name: str, folder: Path, kinds: Mapping[str, KindSpec]) -> Exercise:
-    """Return the exercise in the bytes of an exercise.toml. `name` is the name of the file in messages.
+    """Return the exercise in the bytes of an exercise.toml. `name` is the file name that messages use.
 
     Raises UsageError, which lists all mistakes.
     """
@@ -169,7 +169,7 @@ def _checks(
 def _without_presets(tables: list[Table], trials: tuple[str, ...]) -> list[Table]:
     """Return the tables without a preset.
 
-    A preset that is left in the tables is invalid, and is recorded as a mistake.
+    A table that still has the key `preset` is invalid, and is recorded as a mistake.
     """
     for table in tables:
         wrong = problem_of(table.values, [{"id": trial} for trial in trials])

@@ -112,7 +112,10 @@ class TrialSpec:
 
 @dataclass(frozen=True)
 class Hint:
-    """One `[[hint]]`, for these checks or for the whole exercise. `part` is the letter of a part of the exercise."""
+    """One `[[hint]]`, for these checks or for the whole exercise.
+
+    `part` is the letter of one part of the exercise, such as "b".
+    """
 
     text: str
     checks: tuple[str, ...] = ()

@@ -63,7 +63,7 @@ class Table:
     def string(
         self, key: str, pattern: re.Pattern[str] | None = None, allowed: str = "a string", default: str | None = None
     ) -> str:
-        """Return a string that does not consist only of spaces, and that matches `pattern` completely."""
+        """Return a string that contains more than spaces and matches `pattern` completely."""
 
         def good(value: object) -> bool:
             return (
@@ -145,7 +145,7 @@ class Table:
         return dict(self._get(key, "a table with numbers, strings, true or false", good, default={}))
 
     def anything(self, key: str) -> dict[str, Any]:
-        """Return a table with any content. The default is an empty table."""
+        """Return a table that may have any content. The default is an empty table."""
         return dict(self._get(key, "a table", lambda value: isinstance(value, dict), default={}))
 
     def table(self, key: str) -> Table:

@@ -48,7 +48,7 @@ def _broken(table: Table, right: Behaviour) -> NodeUnderTest:
 
 
 def _behaviour(table: Table, right: Behaviour, known: tuple[str, ...]) -> Behaviour:
-    """Return the behaviour `right` with the changes in this table. Mistakes are recorded in the table."""
+    """Return a copy of the behaviour `right` with the changes in this table. Mistakes are recorded in the table."""
     changed: dict[str, object] = {}
     for each in fields(Behaviour):
         if each.name not in table.values:

@@ -61,7 +61,10 @@ class BoundedAutograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore
     """Autograde, with `_Copying` as the base class that copies."""
 
     def init_destination(self, assignment_id: str, student_id: str) -> bool:
-        """Initialize the destination as in Autograde. An invalid submission time makes only this submission fail."""
+        """Initialize the destination in the same way as in Autograde.
+
+        An invalid submission time makes only this submission fail.
+        """
         read(readable.time_of, Path(self._format_source(assignment_id, student_id)))
         return bool(super().init_destination(assignment_id, student_id))
 

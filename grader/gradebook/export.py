@@ -17,7 +17,7 @@ class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]
     """Exports nbgrader's table with 0 points for every provisional score."""
 
     def export(self, gradebook: Any) -> None:  # noqa: ANN401 - as the base class
-        """Withhold scores that are not confirmed, report them, and write the table."""
+        """Withhold scores that are not confirmed, report these scores, and write the table."""
         course = self.parent.coursedir
         results = Results(Path(course.root) / CLASS / RESULTS)
         unconfirmed = withhold_unconfirmed(gradebook, results)

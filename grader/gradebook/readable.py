@@ -61,7 +61,7 @@ def notebook(path: Path) -> str:
 
     Raises:
         TooLargeError: the notebook exceeds one of the limits in this module.
-        UnreadableError: the path is not a regular file, or not a notebook.
+        UnreadableError: the path does not lead to a regular file, or the file is not a notebook.
     """
     import nbformat
 

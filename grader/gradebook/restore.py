@@ -1,8 +1,8 @@
 """Restore the instructor's cells of a submitted notebook before it is graded.
 
-nbgrader trusts the metadata of a submission, and stops if the metadata is invalid. Of this metadata, the step uses only
-the id of each cell. The gradebook determines the points and whether the cell is locked. Missing locked cells are added
-again.
+nbgrader trusts the metadata of a submission, and stops if the metadata is invalid. From the metadata of a submitted
+notebook, this step uses only the id of each cell. The gradebook determines the points and whether the cell is locked.
+Missing locked cells are added again.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class RestoreCells(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
-    """Restores the instructor's cells. This step runs immediately after the outputs are cleared."""
+    """Restores the instructor's cells. nbgrader runs this step immediately after it clears the outputs."""
 
     def preprocess(self, nb: NotebookNode, resources: dict[str, Any]) -> tuple[NotebookNode, dict[str, Any]]:
         """Restore the cells that generate_assignment stored in the gradebook."""

@@ -85,7 +85,7 @@ def sync(
 
     Raises:
         UsageError: nothing was collected, a step is not in the gradebook, or another sync is running.
-        MachineError: the machine cannot grade or write. Unconfirmed scores are worth 0 points in this case, too.
+        MachineError: the machine cannot grade or write. In this case, unconfirmed scores are also worth 0 points.
     """
     from nbgrader.api import Gradebook
     from sqlalchemy.exc import SQLAlchemyError

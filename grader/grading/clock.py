@@ -105,7 +105,7 @@ def after_doubt(doubt: WallTimeNeeded) -> Clock:
 
 
 def after_simulated(choice: ClockChoice, attempt: Attempt) -> Clock | None:
-    """Return the clock for repeating a trial that ran in simulated time (rule 4), or None if that trial counts."""
+    """Return the clock for repeating a trial that ran in simulated time (rule 4), or None if it is not repeated."""
     if choice == "simulated" or not any(outcome.finding.near_edge for outcome in attempt.outcomes):
         return None
     return Clock("wall", "a measured value is near the edge of its tolerance, where wall time decides")

@@ -30,7 +30,7 @@ MOST_TRIES = 6
 MOST_F = 1.5
 """The maximum time for all tries of a submission, relative to the time for a build and the run of a bare node."""
 BARE_NODE_S = 0.35
-"""The time for running a minimal process with one node (s)."""
+"""The time that a minimal process with one node needs to start and exit (s)."""
 ENOUGH = f"only {MOST_TRIES} changes are tried"
 TOO_LONG = "there was no time to try more"
 NOT_SIMULATED = "a changed node needs wall time"

@@ -1,4 +1,4 @@
-"""Judging: judge a submission while it is being graded: first the files, then the build, then each trial.
+"""Judging: check a submission while it is being graded: first the files, then the build, then each trial.
 
 Judging reads files that a student wrote, so it runs in a child process (submission/reader.py). If the child process
 exceeds its limits, the submission is at fault: every check becomes `unreadable`, and nothing more is read.

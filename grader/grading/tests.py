@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Tests:
-    """Runs the student's tests, as a context manager. On exit, it stops all test runs."""
+    """Runs the student's tests, as a context manager. When the context exits, it stops all test runs."""
 
     __test__ = False  # keeps pytest from collecting this class
 
@@ -62,7 +62,9 @@ class Tests:
             bench.start()
 
     def run(self, evidence: Evidence, settled: Mapping[str, Finding]) -> Attempt:
-        """Wait for the test runs of this trial. Return the evidence with the test results, and the judgement.
+        """Wait for the test runs of this trial.
+
+        Return the evidence with the test results, and the results of the checks.
 
         Checks whose findings are `settled` are not judged again.
 

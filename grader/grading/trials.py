@@ -72,9 +72,9 @@ class Trials:
 
         Checks whose findings are `settled` are not judged again.
 
-        If the simulator fails once, the machine may be at fault. If the simulator fails twice, the node is the cause. A
-        node that kept the simulator busy for minutes does not get a second trial, because a class would have to wait
-        too long.
+        If the simulator fails once, the machine may be at fault. If the simulator fails twice, the submission's node is
+        considered the cause. A node that kept the simulator busy for minutes does not get a second trial, because a
+        class would have to wait too long.
         """
         if evidence.trial.calls:
             return self._call(evidence, settled)
@@ -102,7 +102,7 @@ class Trials:
         return self._attempt(evidence.with_run(Run(called=called)), settled)
 
     def run_alone(self, evidence: Evidence) -> Attempt:
-        """Run the simulator without a node."""
+        """Run the trial's simulator without a node."""
         with self._stopwatch.stage("trial"), self._trial(evidence, ALONE.name) as trial:
             recording = trial.run_alone()
         return self._attempt(evidence.with_run(Run(dataclasses.replace(recording, why=ALONE.why))), {})

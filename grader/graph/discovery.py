@@ -161,7 +161,10 @@ def settle(node: Node, enough: Callable[[], bool] = lambda: False, deadline_s: f
 
 
 def published(node: Node, topic: str) -> bool:
-    """Return whether a node other than the given node publishes on the topic. Every node publishes on /rosout."""
+    """Return whether a node other than the given node publishes on the topic.
+
+    The given node itself is ignored, because every node publishes on /rosout.
+    """
     own = node.get_name()
     return any(publisher.node_name != own for publisher in node.get_publishers_info_by_topic(topic))
 

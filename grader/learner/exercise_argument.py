@@ -15,7 +15,9 @@ if TYPE_CHECKING:
 
 
 def meant(path: Path | None, exercise: str | None, folder: Path | None = None) -> tuple[Exercise, Path]:
-    """Return the exercise and the folder with the work on it. See `guessed` for the arguments.
+    """Return the exercise and the folder that contains the learner's work on the exercise.
+
+    See `guessed` for the arguments.
 
     Raises:
         UsageError: the arguments do not determine the exercise, or the step was never started.

@@ -76,7 +76,10 @@ class Events:
             Thread(target=self._keys, args=(read_key,), daemon=True).start()
 
     def watch(self, folder: Path) -> None:
-        """Watch only this folder from now on. The first event is a save, sent as soon as later saves are noticed."""
+        """Watch only this folder from now on.
+
+        The first event reports a save. It is sent as soon as the watcher notices new saves.
+        """
         self._stop.set()
         self._stop = Event()
         Thread(target=self._watch, args=(folder, self._stop), daemon=True).start()

@@ -60,7 +60,10 @@ class Bridge:
         return socket
 
     def send(self, channel: int, parts: list[bytes]) -> None:
-        """Forward a message to the kernel. The message waits until the kernel's replies can be received."""
+        """Forward a message to the kernel.
+
+        A message is kept until the kernel's replies can be received, and is then sent.
+        """
         if self._waiting is not None:
             self._waiting.append((channel, parts))
         elif channel < _IOPUB:

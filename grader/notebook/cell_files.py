@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 
 MAGICS = ("node", "package", "answers")
 KEPT = ".kept"
-"""The folder for files that were changed elsewhere before a cell replaced them. It is hidden, so it is not graded."""
+"""The folder for files that were changed elsewhere before a cell replaced them. This folder is hidden, so its files are
+not graded."""
 SOLUTIONS = "solutions"
 """The folder of the notebooks with solutions, in this course and in a class of nbgrader."""
 _FIRST_LINE = re.compile(rf"\s*%%({'|'.join(MAGICS)})\b[ \t]*(.*?)\s*")
@@ -113,8 +114,8 @@ def starting_text(exercise: Exercise, path: str) -> str | None:
 def begin(exercise: Exercise, folder: Path, *, alone: bool = False) -> tuple[str, ...]:
     """Add the step's files that are missing in `folder`, next to the notebook. Return the paths that were written.
 
-    A missing package is copied from the learner's workspace, or else from the starting point. With `alone`, the package
-    is always copied from the starting point. Files of the student are never overwritten.
+    A missing package is copied from the learner's workspace, or else from the starting point. With `alone`, a missing
+    package is always copied from the starting point. Files of the student are never overwritten.
     """
     source, target = workspace.starting_point(exercise), folder
     if not exercise.package:

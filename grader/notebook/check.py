@@ -133,7 +133,7 @@ def _end(worker: subprocess.Popen[bytes]) -> None:
 class _Progress:
     """A line below the cell with the current stage, which is cleared at the end.
 
-    Nothing is shown when nbgrader runs the notebook.
+    Nothing is shown when nbgrader executes the notebook.
     """
 
     def __enter__(self) -> Self:

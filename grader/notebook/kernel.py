@@ -45,7 +45,7 @@ def main() -> None:
 def _source_and_start_again() -> None:
     """Restart in a shell that sources the ROS 2 that the course was set up for.
 
-    Return only if the restart is not possible.
+    This function returns only if the restart is not possible.
     """
     prefix, bash = made_for(Path(sys.prefix)), shutil.which("bash", path="/usr/bin:/bin")
     if prefix is None or bash is None or _AGAIN in os.environ or not Path(prefix, "setup.bash").is_file():

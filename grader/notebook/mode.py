@@ -9,7 +9,7 @@ CONFINED = "GRADER_CONFINED"
 
 
 def grading() -> bool:
-    """Return whether nbgrader executes the notebook, to autograde or to validate it."""
+    """Return whether nbgrader is executing the notebook, either to autograde or to validate it."""
     return bool(os.environ.get("NBGRADER_EXECUTION"))
 
 

@@ -36,7 +36,7 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
     """Serve the page and grade, until Ctrl-C, SIGTERM, or the terminal is closed.
 
     Raises:
-        UsageError: the port is not available.
+        UsageError: another program uses the port, or the user may not use it.
         MachineError: a library that the page needs is not installed, or the server has exited.
     """
     see_that_it_can_be_served("`grader watch` works without it")
@@ -67,7 +67,7 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
 
 @contextmanager
 def _page(place: Place, workspace: Path | None, *, opens: bool) -> Iterator[socket.socket]:
-    """Start the process that serves the page, and yield the connection to it.
+    """Start the process that serves the page, and yield the connection to this process.
 
     Closing the connection stops the process.
     """
@@ -122,7 +122,7 @@ def _pass_on(connection: socket.socket, events: Events) -> None:
 
 
 def elsewhere(port: int, env: Mapping[str, str]) -> list[str]:
-    """Return the command that makes the page reachable from another machine, in a Codespace or an ssh session."""
+    """Return the command that makes the page available on another computer, for a Codespace or an ssh session."""
     if env.get("CODESPACES") == "true":
         name = env.get("CODESPACE_NAME", "NAME")
         return [f"On your own computer, first type: gh codespace ports forward {port}:{port} --codespace {name}"]

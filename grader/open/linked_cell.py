@@ -1,4 +1,4 @@
-"""A sandbox cell in which a node can run, with a relay to the other nodes of this machine (dds_relay.py)."""
+"""A sandbox cell in which a node runs, with a relay to other nodes on this machine (dds_relay.py)."""
 
 from __future__ import annotations
 

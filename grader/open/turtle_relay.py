@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from grader.view.address import Address
 
 LARGEST = 1 << 24
-"""The maximum size of a message from the view (bytes). The first message contains the whole trail."""
+"""The maximum size of a message from the view (bytes). The first message is the largest, because it contains the whole
+trail of the turtle."""
 
 
 async def relay(page: WebSocket, address: Address) -> None:

@@ -1,4 +1,4 @@
-"""The lines of a submission's file around a given line, with syntax colours."""
+"""An excerpt of a submission's file: the lines around a given line, with syntax colours."""
 
 from __future__ import annotations
 

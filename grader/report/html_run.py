@@ -44,8 +44,8 @@ class Picture:
 class Run:
     """A trial, ready for the template.
 
-    `data` is the input of the player. `end` describes how the node's process exited. `idle` is true if no command
-    arrived although the exercise requires commands.
+    `data` is the input of the player. `end` describes how the node's process exited. `idle` is true if the exercise
+    requires commands and none arrived.
     """
 
     key: str

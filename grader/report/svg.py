@@ -1,4 +1,4 @@
-"""Draw a scene as SVG. This module also contains the SVG helpers for the charts.
+"""Draw a scene as an SVG picture. This module also contains the SVG helpers for the charts.
 
 Colours and sizes are attributes, never styles, because the Content-Security-Policy of a page may forbid styles, and a
 picture must also look right outside a page (in a notebook). `currentColor` is the text colour, so the picture

@@ -161,7 +161,7 @@ def _scalar(value: Any, declared: str) -> Any:  # noqa: ANN401
 def field(value: Any, path: str, *, complete: bool = True) -> Any:  # noqa: ANN401
     """Return a part of a message, such as "linear.x" or "poses[0].position".
 
-    The result is None if the message is not `complete` and the element of an array is missing.
+    The result is None if `complete` is false and the element of an array is missing.
 
     Raises:
         Ros2Error: the message has no such field.

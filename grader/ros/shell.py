@@ -66,7 +66,7 @@ def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sour
 def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -> None:
     """Replace this process with the user's shell.
 
-    After reading its start-up files, the shell adds the ROS 2 of `wanted`.
+    When the shell has read its start-up files, it adds the ROS 2 of `wanted`.
     """
     shell = env.get("SHELL") or "/bin/bash"
     argv, variables = [shell, "-i"], {}

@@ -144,7 +144,10 @@ def _listed(needs: list[package_managers.Need]) -> str:
 
 @contextmanager
 def _one_at_a_time(tell: Callable[[str], None]) -> Iterator[None]:
-    """Wait until no other process is building. The kernel releases the lock when the process that holds it exits."""
+    """Wait until no other process is building turtlesim.
+
+    The kernel releases the lock when the process that holds it exits.
+    """
     xdg.cache().mkdir(parents=True, exist_ok=True)
     with (xdg.cache() / "turtlesim.lock").open("w") as lock:
         try:

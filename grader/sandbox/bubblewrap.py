@@ -44,7 +44,10 @@ ROOM_DISK = 256 * MIB
 
 @dataclass(frozen=True)
 class View:
-    """The paths on the disk that are visible in a room or cell, unchanged. `hidden` folders are empty there."""
+    """The paths on the disk that are visible in a room or cell, unchanged.
+
+    Folders in `hidden` appear there as empty folders.
+    """
 
     read_only: tuple[Path, ...]
     hidden: tuple[Path, ...] = ()

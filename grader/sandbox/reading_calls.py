@@ -81,7 +81,7 @@ def program() -> bytes:
 
 
 def _only_without(number: int, index: int, bits: int, error: int) -> list[bpf.Line]:
-    """Return the lines that refuse the call if its argument has any of these bits set."""
+    """Return the filter lines that refuse the system call if its argument has any of these bits set."""
     return [
         (bpf.EQUAL, 0, 4, number),
         (bpf.LOAD, 0, 0, bpf.argument(index)),

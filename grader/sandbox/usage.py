@@ -1,7 +1,7 @@
 """Watch the total resource use of a cell: the memory and number of its processes, its disks, and the files on them.
 
 Resource limits apply to each process separately, and bubblewrap limits the bytes of a tmpfs but not its files. Control
-groups limit totals, but not every user is allowed to create them. Checking the totals ten times per second works
+groups limit totals, but not every user can create control groups. Checking the totals ten times per second works
 everywhere.
 """
 
@@ -72,8 +72,8 @@ class Guard:
     def ready_s(self, *, but: int) -> float:
         """Return how long all processes of the cell except `but` have run or waited for a processor (s).
 
-        A process that is ready to run uses less CPU time on a crowded machine, but it is ready for as long as on an
-        idle one. Only the first thread of each process is counted.
+        On a crowded machine, a process gets less CPU time, but the total time for which it runs or waits is about the
+        same. Only the first thread of each process is counted.
         """
         return sum(ready_s for pid, ready_s in self._ready.copy().items() if pid != but)
 

@@ -169,7 +169,7 @@ def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool
 
 
 def read_arguments(arguments: Sequence[str]) -> argparse.Namespace:
-    """Parse the arguments: `parts`, which is a name in PARTS, and `python`, which defaults to None."""
+    """Parse the arguments: `parts` is a name in PARTS, and `python` is None by default."""
     parser = argparse.ArgumentParser(prog="python3 -m grader.setup.bootstrap", description=__doc__.splitlines()[0])
     parser.add_argument("parts", choices=list(PARTS), help="what to install into .venv; other parts in it are kept")
     parser.add_argument("--python", type=requested_python, help="the Python for .venv: a name or a path")

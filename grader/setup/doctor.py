@@ -44,7 +44,10 @@ LITTLE_MEMORY = 1 * GIB
 
 @dataclass(frozen=True)
 class Line:
-    """The result of a test. A line with the state `advice` does not prevent grading, but a `broken` one does."""
+    """The result of one test of the machine.
+
+    A line with the state `advice` does not prevent grading, but a `broken` one does.
+    """
 
     subject: str
     observed: str

@@ -1,4 +1,6 @@
-"""The second half of the set-up: fill .venv from the lock file. This module runs in the empty .venv.
+"""The second half of the set-up: fill .venv from the lock file.
+
+This module runs in .venv while no packages are installed there.
 
 `python -m grader.setup.install STAMP`: STAMP is the stamp of bootstrap.py as JSON. The stamp is written to .venv at the
 end, with the duration of each stage (s), so an interrupted set-up has no stamp.

@@ -51,7 +51,10 @@ _NAME = re.compile(r"([A-Za-z0-9][A-Za-z0-9._-]*)==(\S+)")
 
 @dataclass(frozen=True)
 class Entry:
-    """One version of a package. `text` contains its lines in the file, including the hashes and the final newline."""
+    """One version of a package in the lock file.
+
+    `text` contains its lines in the file, including the hashes and the final newline.
+    """
 
     name: str
     version: str

@@ -68,7 +68,7 @@ class Python(NamedTuple):
     venv: bool
     headers: bool
     lacks: Tuple[str, ...] = ()
-    """The modules of LEFT_TO_ROS that the interpreter cannot import."""
+    """The modules in LEFT_TO_ROS that this Python interpreter cannot import."""
 
     @property
     def is_systems(self) -> bool:
@@ -122,7 +122,7 @@ def platform_problem(system: str, machine: str, libc: Tuple[str, str], ros: Opti
 def is_offline(env: Mapping[str, str], root: Path = Path("/")) -> bool:
     """Return whether packages certainly cannot be downloaded, because the network has no route.
 
-    If a mirror, a proxy or a folder of wheels is configured, return False. `root` contains /proc.
+    The result is False if a mirror, a proxy or a folder of wheels is configured. `root` contains /proc.
     """
     settings = ("PIP_", "UV_", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY")
     home = Path(env.get("HOME", "/nowhere"))
@@ -138,7 +138,7 @@ def is_offline(env: Mapping[str, str], root: Path = Path("/")) -> bool:
 
 
 def closed_folder(path: str) -> Optional[Path]:
-    """Return the topmost parent of `path` that other users cannot enter to run programs in it, or None."""
+    """Return the topmost parent folder of `path` in which other users cannot run programs, or None."""
     folders = Path(path).resolve().parents
     return next((folder for folder in reversed(list(folders)) if not folder.stat().st_mode & stat.S_IXOTH), None)
 

@@ -91,7 +91,7 @@ class Code:
 
     @property
     def start(self) -> Where | None:
-        """The node's file, as a place for messages to refer to."""
+        """The path of the node's file, for messages that refer to the file but not to a line."""
         return None if self.node_file is None else Where(self.node_file)
 
     @cached_property

@@ -15,7 +15,8 @@ Constant = str | float | int
 class Names(dict[str, "ast.expr | None"]):
     """The assigned names with their expressions, and a limit on the work of evaluating them.
 
-    In `x = y + y; y = z + z; ...`, each line doubles the work. So the number of nodes evaluated per module is limited.
+    In `x = y + y; y = z + z; ...`, each line doubles the work. Therefore, the number of syntax nodes that are evaluated
+    for each module is limited.
     """
 
     def __init__(self) -> None:

@@ -45,7 +45,8 @@ class Submission:
     files: Mapping[str, bytes]
     rejected: tuple[str, ...]
     digest: str
-    """The SHA-256 hash of the sorted paths and contents of `files`. It does not depend on permissions."""
+    """The SHA-256 hash of the sorted paths and contents of `files`. The hash does not depend on the permissions of the
+    files."""
     executable: frozenset[str] = frozenset()
     """The paths in `files` that have the executable bit."""
     student: str | None = None
@@ -53,7 +54,9 @@ class Submission:
 
 
 def open_submission(path: str | os.PathLike[str], *, exactly: bool = False) -> Submission:
-    """Read the package in this folder, or the only package below it. With `exactly`, the path must not contain a link.
+    """Read the package in this folder, or the only package in the folders below it.
+
+    With `exactly`, the path must not contain a link.
 
     Raises UsageError if there is no such folder or if it does not contain exactly one package, and MachineError if the
     disk or the system fails. Every other problem is the student's fault and is named in `rejected`.

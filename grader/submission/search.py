@@ -30,7 +30,7 @@ class _Search:
 
     packages: list[str] = field(default_factory=list)
     nearly: list[str] = field(default_factory=list)
-    """Files that would be package.xml or setup.py if they were in lower case and had no second suffix."""
+    """Files whose names would be package.xml or setup.py in lower case and without a second suffix."""
     linked: list[str] = field(default_factory=list)
     """Links to folders. They are not followed."""
     ignored: list[str] = field(default_factory=list)

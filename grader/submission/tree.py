@@ -99,7 +99,7 @@ def open_folder(name: str, parent: int | None = None, *, follow: bool = False) -
 def open_file(path: Path, *, at: Path | None = None) -> IO[bytes]:
     """Open a regular file. A link to the file is never followed, and a pipe is never waited for.
 
-    `at` has the same meaning as in `require_path`.
+    See `require_path` for the meaning of `at`.
 
     Raises:
         OSError: the file cannot be opened.
@@ -152,7 +152,7 @@ def entries(folder: int) -> list[Entry] | None:
 
 
 def is_left_out(name: str, folder: int) -> bool:
-    """Return whether the folder `name` in `folder` is left out.
+    """Return whether the entry `name` in `folder` is left out of the submission.
 
     Build folders, hidden folders, caches and virtual environments are left out.
     """

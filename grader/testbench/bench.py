@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 RELAYED = Path(__file__).absolute().with_name("relayed_node.py")
 MOST_LANES = 4
 MOST_HANGS = 2
-"""After this number of runs that did not finish in time, no further run is started."""
+"""If this many runs did not finish in time, no further run is started."""
 
 
 class Bench:
@@ -68,7 +68,7 @@ class Bench:
         """Wait for all runs, and return their results.
 
         Raises:
-            MachineError: the sandbox, pytest or rclpy does not work.
+            MachineError: the sandbox, pytest or rclpy does not work on this machine.
         """
         for done in self._done:
             done.result()

@@ -1,4 +1,4 @@
-"""A lane: a sandbox cell in which tests run on one node after another, and the brain of the current node."""
+"""A lane: a sandbox cell in which tests run on one node after another, and the code that controls the current node."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 SESSION = Path(__file__).absolute().with_name("session.py")
 MOST_QUESTIONS = 100_000
-"""The maximum number of requests that are answered in one run. A test makes a few hundred."""
+"""The maximum number of requests that are answered in one run. A normal test makes only a few hundred requests."""
 MOST_REPORT = 64 * 1024
 EXTRA_S = 30.0
 """The time that a run may take in addition to its tests, for forking and cleaning up (s)."""
@@ -58,8 +58,8 @@ class Package:
 class Lane:
     """The cell with its session, as a context manager. On entry, the lane starts the imports.
 
-    Without a cell, the lane uses `folder`, which no other lane uses. The nodes of such a lane discover no other nodes
-    on the machine.
+    Without a cell, the lane uses `folder`, which no other lane uses. The nodes of a lane without a cell discover no
+    other nodes on the machine.
     """
 
     def __init__(self, ros: Ros, package: Package, duration_s: float, folder: Path | None = None) -> None:

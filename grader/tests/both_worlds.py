@@ -23,7 +23,8 @@ PATH = os.pathsep.join([*([str(HERE.prefix / "bin")] if SOURCED_ENV else []), "/
 REAL_ROS2 = bool(SOURCED_ENV) and Path(HERE.prefix, "bin/ros2").is_file()
 REAL_TURTLESIM = installation.has_turtlesim(HERE)
 OUR_TURTLESIM = "grader sim" if REAL_TURTLESIM else "ros2 run turtlesim turtlesim_node"
-"""The command line of the course's turtlesim. The real one opens a window and has no such options."""
+"""The command line of the course's turtlesim. turtlesim_node of ROS 2 opens a window and does not have the options of
+`grader sim`."""
 
 of_the_wheels = pytest.mark.skipif(
     bool(SOURCED_ENV), reason="this test needs the course's own ROS 2, but another ROS 2 is sourced"

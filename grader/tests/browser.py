@@ -1,4 +1,4 @@
-"""The system's Chromium, for the tests of the pages."""
+"""Find the system's Chromium for the tests of the pages."""
 
 from __future__ import annotations
 

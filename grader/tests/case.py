@@ -34,7 +34,7 @@ EXIT_CODES = {"passed": 0, "failed": 1, "usage": 2, "error": 3}
 
 @dataclass(frozen=True)
 class Case:
-    """The content of expected.toml. Checks are named by their id. A check that is not named must pass."""
+    """The content of expected.toml. A check is named by its id. A check that is not named must pass."""
 
     name: str
     why: str
@@ -42,7 +42,7 @@ class Case:
     result: str
     """One of the keys of EXIT_CODES."""
     folder: Path = CASES
-    """The folder of the case. This is not a key of expected.toml."""
+    """The folder of the case. `folder` is not a key of expected.toml."""
     base: str = "03-circle-publisher"
     """`files` is copied over this: the solution of a step, or a package in bases/. Empty for a case without a base."""
     exercise: str = ""
@@ -63,9 +63,9 @@ class Case:
     failed: tuple[str, ...] = ()
     skipped: tuple[str, ...] = ()
     advice: tuple[str, ...] = ()
-    """The expected advice: the checks worth 0 points that did not pass. They are not listed in `failed`."""
+    """The expected advice: the checks worth 0 points that did not pass. These checks are not listed in `failed`."""
     diagnosis: Mapping[str, str] = ()  # type: ignore[assignment]
-    """Maps a check to the stable id of the cause."""
+    """Maps a check to the stable id of its expected cause."""
     where: Mapping[str, str] = ()  # type: ignore[assignment]
     """Maps a check to the place, as in "file:line"."""
     says: Mapping[str, tuple[str, ...]] = ()  # type: ignore[assignment]

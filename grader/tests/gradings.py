@@ -94,7 +94,10 @@ def gradings_of(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPat
 
 
 def each(cases: Sequence[Case], *, always: bool = False) -> pytest.MarkDecorator:
-    """Run the test for each case. Cases outside the sample run only in `make test-all`, unless `always` is set."""
+    """Run the test for each case.
+
+    A case that is not in the sample runs only in `make test-all`, unless `always` is set.
+    """
     return pytest.mark.parametrize(
         "case",
         [

@@ -1,7 +1,7 @@
 """Run a function of a test in a process with ROS 2. The tests' own process has no ROS 2.
 
-The function is passed by name, since the tests' own process cannot import its module. The function receives and returns
-JSON. If the function raises an exception, the test fails.
+The function is passed by name, because its module cannot be imported in the process that runs the tests. The function
+receives and returns JSON. If the function raises an exception, the test fails.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The sample of mistakes that `make test` grades.
 
 The sample covers every group of diagnoses, and for each exercise a mistake that the files show and a mistake that only
-the behaviour shows. From each group, the sample also covers one diagnosis that no test of the checks expects. A test of
-the checks judges an invented recording, which takes milliseconds. A case takes one to three seconds, or at least ten
+the behaviour shows. The sample also contains one diagnosis of each group that no other test covers. A test of the
+checks judges an invented recording, which takes milliseconds. A case takes one to three seconds, or at least ten
 seconds if it needs a trial in wall time. `make test-all` grades all cases.
 """
 
@@ -29,7 +29,8 @@ MOST_OF_GROUP = 1
 WALL = re.compile(r"\btime\b|spin_once|sleep|thread|asyncio|datetime|subprocess")
 """Wall time probably judges source code with one of these words."""
 WALL_COST = 5
-"""A case in wall time is chosen only if it shows more than this many times as many diagnoses as any other case."""
+"""A case that needs wall time is chosen only if it shows more than this many times as many diagnoses as any other
+case."""
 
 
 def sample(cases: Sequence[Case]) -> frozenset[str]:

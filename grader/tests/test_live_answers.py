@@ -28,7 +28,10 @@ SCENARIO = "[[trial]]\n"
 @pytest.fixture
 def judged(tmp_path: Path) -> Callable[[str, dict[str, str]], Report]:
     def judge(scenario: str, answers: dict[str, str]) -> Report:
-        """Grade the solution with some answers changed, in a scenario with additional lines. Return the report."""
+        """Grade the solution, in which some answers have been changed, in a scenario with additional lines.
+
+        Return the report.
+        """
         shutil.copytree(ROOT / "course" / STEP, tmp_path / STEP)
         file = tmp_path / STEP / "exercise.toml"
         file.write_text(file.read_text().replace(SCENARIO, SCENARIO + scenario))

@@ -86,7 +86,8 @@ def careless() -> dict[str, str]:
 
 
 def _modules() -> set[str]:
-    """Return the names of all modules that our programs may import: Python's, ours, and those of installed packages."""
+    """Return the names of all modules that the course's programs may import: Python's, the course's, and those of
+    installed packages."""
     installed = {name.partition("/")[0].partition(".")[0] for name in metadata.packages_distributions()}
     known = {*sys.stdlib_module_names, *installed, "sitecustomize", "usercustomize", "trap", "turtlesim"}
     return {name for name in known if name.isidentifier()} - {"grader"}

@@ -79,7 +79,7 @@ class Ahead:
             pool.shutdown()
 
     def start(self, name: str, trial: Trial) -> None:
-        """Start the simulator and the launcher as soon as those of the previous trials are ready.
+        """Start the simulator and the launcher of this trial as soon as those of the previous trials are ready.
 
         If the start fails, the trial's `run` raises the error.
         """

@@ -57,7 +57,7 @@ class Caller:
     def _given_up(
         self, call: PlannedCall, client: Client, now_s: float, spin: Callable[[float], object] | None
     ) -> bool:
-        """Wait for the service. Return whether the service is available or the waiting time is over."""
+        """Wait for the service. Return True when the service is available or the waiting time is over."""
         until = time.monotonic() + FOUND_S
         while spin is not None and id(call) not in self._first_s and time.monotonic() < until:
             spin(0.01)

@@ -27,7 +27,7 @@ TIMEOUT_S = 60.0
 MOST_OUTPUT = 2 * MIB
 MOST_ERRORS = 64 * 1024
 AHEAD = ("numpy", "rosbags.highlevel")
-"""Modules that most programs import. They are imported once, before the calls."""
+"""Modules that most programs import. These modules are imported once, before the calls."""
 _SCRIPT = Path(__file__).with_name("cell_calls.py")
 _READY = b"ready\n"
 

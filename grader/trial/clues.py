@@ -1,6 +1,6 @@
 """Find clues in the source which suggest that a node follows wall time.
 
-Simulated time would misjudge a node that follows wall time.
+In simulated time, a node that follows wall time would get a wrong verdict.
 
 Only the executable's module and the modules of the package that it imports are searched. A sleep in another node of the
 package does not matter.

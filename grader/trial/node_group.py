@@ -76,7 +76,7 @@ class NodeGroup:
 class GroupThreads:
     """The threads of several processes, with the methods of `Threads`.
 
-    All methods raise GoneError if a process has exited.
+    All methods raise GoneError if one of the processes has exited.
     """
 
     def __init__(self, pids: Sequence[int], wanted: Callable[[str], bool] = lambda _: True) -> None:
@@ -103,7 +103,7 @@ class GroupThreads:
         return [threads.look() for threads in self._each]
 
     def runs(self) -> tuple[bytes, ...]:
-        """Return the number of times that each thread of the last look has run."""
+        """For each thread in the last observation, return how many times the thread has run."""
         return sum((threads.runs() for threads in self._each), ())
 
     def main_asleep(self) -> bool:

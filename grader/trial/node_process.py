@@ -32,7 +32,7 @@ FULL = 0.25
 """A node that had to wait for a full pipe wrote more than this share of the pipe size. The kernel may fill each page
 only halfway."""
 STOP_S = 3.0
-"""The maximum time from SIGINT to the exit of the node (s). After it come SIGTERM and, 1 s later, SIGKILL."""
+"""The maximum time that the node may take to exit after SIGINT (s). After it come SIGTERM and, 1 s later, SIGKILL."""
 
 
 class LaunchError(Exception):

@@ -23,7 +23,7 @@ class ProcessGroup:
                 self._signal(signal.SIGSTOP)
 
     def resume(self) -> None:
-        """Continue the processes, and do not suspend them again."""
+        """Let the processes continue, and do not suspend them again."""
         with self._changing:
             if self._may_be_suspended:
                 self._may_be_suspended = False

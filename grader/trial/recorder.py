@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 OWN_NAMESPACE = "/_grader"
 OWN_NODES = ("/turtlesim", f"{OWN_NAMESPACE}/recorder")
 NAMESAKE = " (not the simulator)"
-"""The suffix for a student's node that has the same name as one of the grader's nodes."""
+"""If a student's node has the same name as one of the grader's nodes, this suffix is added to its name."""
 _TYPE = re.compile(r"([a-z][a-z0-9_]*)/msg/([A-Z][A-Za-z0-9]*)")
 _LEVELS = {10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
 

@@ -57,7 +57,7 @@ class SilentServers:
         return True
 
     def _load(self, type_name: str) -> Any | None:  # noqa: ANN401 - a service class
-        """Return the class of an installed service type, or None. A node of the submission chose the name."""
+        """Return the class of an installed service type, or None. The name was chosen by a node of the submission."""
         match = _TYPE.fullmatch(type_name)
         if match is None:
             return None

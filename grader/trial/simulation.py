@@ -158,7 +158,7 @@ class Simulation:
     def spin(self, timeout_s: float = 0.0) -> list[object]:
         """Handle everything that has arrived, waiting up to `timeout_s` if there is nothing yet.
 
-        Return the entities that were handled.
+        Return the objects whose messages or requests were handled.
 
         An entity is, for example, a subscription that received one or more messages, or a service that received a
         request.
@@ -189,7 +189,7 @@ class Simulation:
         return any(count(name) for name in self._actions)
 
     def take_in(self) -> int:
-        """Handle the messages and the requests that have arrived. Return the number of requests."""
+        """Handle the messages and the requests that have arrived. Return the number of requests that were handled."""
         answered = 0
         while answered < MOST_AT_ONCE:
             for node in self._nodes:

@@ -39,7 +39,7 @@ CONDUCTORS_ROOMS = ("common", "ros", "sandbox", "trial", "turtlesim")
 MOST_MEMORY = 3 * 1024 * MIB
 """The maximum address space of the conductor (bytes)."""
 MOST_ANSWER = 256 * MIB
-"""The maximum size of one answer from the conductor (bytes). It consists mostly of the messages of a recording."""
+"""The maximum size of one answer from the conductor (bytes). A recording's messages take up most of this size."""
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ class Trial:
 
         Raises:
             WallTimeNeeded: simulated time may misjudge this node.
-            OverwhelmedError: the node made it impossible to complete the trial.
+            OverwhelmedError: the node overloaded the trial so much that it could not be completed.
             MachineError: the simulator or the sandbox failed.
         """
         arguments = ["--ros-args", "-p", "use_sim_time:=true"] if self._plan.clock == "simulated" else []

@@ -73,7 +73,10 @@ class TurtleInterface:
     def __init__(
         self, node: Node, name: str, world: World, hooks: Hooks, pose_every: int = 1, pose_from_s: float = 0.0
     ) -> None:
-        """Add the turtle to the ROS graph. If rclpy rejects the name with an error, nothing remains in the graph."""
+        """Add the turtle to the ROS graph.
+
+        If rclpy rejects the turtle's name with an error, nothing remains in the graph.
+        """
         self.name = name
         self._world = world
         self._hooks = hooks

@@ -60,7 +60,7 @@ class Pen:
 
 
 class State(NamedTuple):
-    """The state of a turtle after a frame, in m, m, rad, m/s (never negative) and rad/s.
+    """The state of a turtle after a frame, in m, rad, m/s (never negative) and rad/s.
 
     `wall` is true if the turtle hit a wall.
     """
@@ -74,7 +74,7 @@ class State(NamedTuple):
 
 
 class Paper(Protocol):
-    """The surface that a turtle draws on and whose colours its sensor reads. Coordinates are in m."""
+    """The surface on which a turtle draws, and whose colours the turtle's sensor reads. Coordinates are in m."""
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
         """Draw a line from (x0, y0) to (x1, y1)."""

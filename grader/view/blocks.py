@@ -51,7 +51,7 @@ class Picture:
         paint(self._trail, pieces, self.side * FINER / SIDE_PX, FINER)
 
     def of(self, state: State) -> Image.Image:
-        """Return the canvas with its turtles as RGB, `side` pixels wide and high."""
+        """Return the canvas with its turtles as an RGB image, `side` pixels wide and high."""
         picture = Image.new("RGB", self._trail.size, state.background)
         picture.paste(self._trail, mask=self._trail)
         draw = ImageDraw.Draw(picture)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
 
 KEPT = 16
-"""The number of messages (half a second) by which a page may lag behind before it gets the whole state again."""
+"""A page may lag behind by this number of messages (half a second) before it gets the whole state again."""
 
 
 class Hub:

@@ -21,7 +21,7 @@ class Arrivals:
     """The time of the last arrival and the number of arrivals of each group."""
 
     def add(self, when_s: float, count: int = 1) -> None:
-        """Record `count` arrivals since the last call. The last arrival was at `when_s` (s)."""
+        """Record that `count` messages have arrived since the last call. The last arrival was at `when_s` (s)."""
         self._observed.append((when_s, count))
         while len(self._observed) > 2 and self._observed[1][0] < when_s - WINDOW_S:
             self._observed.popleft()

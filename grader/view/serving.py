@@ -55,7 +55,7 @@ def in_loop(loop: asyncio.AbstractEventLoop, call: Callable[..., object], *argum
 async def serve(
     place: Place, app: ASGIApp, door: Door, hub: Hub, ended: asyncio.Event, *, stays: bool, opens: bool = True
 ) -> bool:
-    """Serve until `ended` is set. Return whether the page could be opened in a browser.
+    """Serve until the event `ended` is set. Return whether the page could be opened in a browser.
 
     The page is opened only if `opens` is true. If opening the page fails, return immediately unless `stays` is true.
     """

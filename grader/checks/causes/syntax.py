@@ -87,7 +87,7 @@ OTHER_LANGUAGES = (
 )
 """(pattern of a line that Python cannot read, cause): syntax of other languages, and an else without an if."""
 NO_SPACE = re.compile(r"\s*(?P<keyword>def|class)(?P<rest>\w+\s*[(:].*)")
-"""A definition whose first word has no space after it."""
+"""A line in which the keyword `def` or `class` is not followed by a space."""
 CONFLICT = r"^(<<<<<<<|=======|>>>>>>>)"
 OTHERWISE = "The mistake is often at the end of the previous line: a bracket, a colon or the indentation."
 
@@ -133,7 +133,7 @@ def _fix(diagnosis: Diagnosis, file: str, unreadable: Unreadable, data: bytes) -
 
 
 def _line(unreadable: Unreadable, data: bytes) -> str:
-    """Return the line that Python names, or an empty string."""
+    """Return the line that Python's error message refers to, or an empty string."""
     lines = data.decode("utf-8", "replace").splitlines()
     return lines[unreadable.line - 1] if unreadable.line and unreadable.line <= len(lines) else ""
 

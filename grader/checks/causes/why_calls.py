@@ -35,7 +35,7 @@ MAKERS = {
     "add_done_callback": 0,
     "add_on_set_parameters_callback": 0,
 }
-"""Methods that take a callback, and the position of the callback among the arguments."""
+"""Methods that take a callback, with the position of the callback among the arguments."""
 CREATE_OBJECT = "Add parentheses after the class name to create an object."
 TAKES = {
     "create_publisher": "the type, the topic and the queue size",

@@ -84,7 +84,10 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
 
 
 def why_crashed(evidence: Evidence, crash: Crash) -> Cause:
-    """Return the cause of a crash. If the source code does not show the cause, explain only the exception."""
+    """Return the cause of the crash, with an explanation.
+
+    If the source code does not show the cause, explain only the exception.
+    """
     explain = EXPLANATIONS.get(crash.error)
     scene = CrashScene(evidence, crash)
     cause = why_response(scene) or why_interface(scene) or (explain(scene) if explain is not None else None)

@@ -19,7 +19,7 @@ SAME_TIME_S = 0.1
 
 
 def why_killed(evidence: Evidence, track: Track, service: str) -> Cause:
-    """Return the cause if this target was removed before a node called the service that catches it."""
+    """Return the cause for a target that was removed before a node called the service that catches targets."""
     name = shorten(track.turtle)
     text = f"Remove a target only in the callback of {service}."
     gone_s = track.gone_s or 0.0

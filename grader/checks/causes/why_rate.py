@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 OFTEN = 0.5
 """In a loop without a pause, the mean interval is less than this fraction of the expected period."""
 SEVERAL = 0.1
-"""Several calls in a row explain a wrong rate if their number is that of the messages per period, up to this share."""
+"""If the number of successive calls differs from the number of messages per period by at most this share, the calls
+explain a wrong rate."""
 FRAME_S = 0.016
 """The duration of a turtlesim frame (s). turtlesim publishes the pose once per frame."""
 

@@ -1,4 +1,4 @@
-"""Checks of a node that drives turtle1 to other turtles and requests their removal, nearest first."""
+"""Checks of a node that drives turtle1 to other turtles and requests the removal of each, nearest first."""
 
 from __future__ import annotations
 
@@ -34,7 +34,8 @@ The turtle moves while the node decides.
 SLACK_M = 0.1
 """The additional distance that is allowed because a pose is slightly old when the node decides (m)."""
 OFTEN = 3
-"""This many calls for one target are too many. A node may call twice if a response is late."""
+"""A node that calls the service this often for one target has made too many calls. A node may call twice if a response
+is late."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from grader.trial.observed import Goal
 
 BEGIN_S = 0.1
-"""For this time after a goal was accepted, a line may still be about the previous goal (s)."""
+"""A log line may be about the previous goal until this time after a new goal was accepted (s)."""
 FRAME_S = 0.016
 LONG = 2.0
 """A goal counts if it lasts at least this many periods. A shorter one may end between two lines."""
@@ -77,7 +77,7 @@ def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
 
 
 def _unheard(evidence: Evidence) -> Cause | None:
-    """Return the cause if no goal is sent with a feedback callback, else None."""
+    """Return the cause if every goal is sent without a feedback callback, else None."""
     sends = evidence.code.calls("send_goal_async")
     if not sends or any(call.argument(1, "feedback_callback") is not None for call in sends):
         return None

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from grader.trial.recording import Floats, Recording
 
 EARLY_S = 0.02
-"""Slightly more than one frame, because the frame and the log line get their timestamps at different moments."""
+"""This is slightly more than one frame, because the frame and the log line get their timestamps at different
+moments."""
 FEWEST = 3
 LENGTHS = ("hypot", "sqrt", "dist")
 """Functions that compute the length of a step."""

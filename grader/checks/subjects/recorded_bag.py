@@ -70,7 +70,7 @@ def readable(evidence: Evidence, params: InBag) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class TopicInBag(InBag):
-    """A topic with its type."""
+    """The bag must contain a topic with this type."""
 
     topic: str = string("a topic", start="/", about="The topic that must be in the bag.")
     type: str = string("a type", about="The type of its messages.")

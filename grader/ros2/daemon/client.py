@@ -13,7 +13,8 @@ from grader.common.interpreter import interpreter
 from grader.ros2.daemon import socket_path
 
 ANSWER_S = 8.0
-"""The maximum time to wait for an answer (s). It exceeds the time that the daemon waits for silent nodes."""
+"""The maximum time to wait for an answer (s). This limit is longer than the time for which the daemon waits for silent
+nodes."""
 _POLL_S = 0.02
 
 

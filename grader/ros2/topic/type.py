@@ -21,7 +21,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the type. If nodes use different types, print each type on a separate line.
+    """Print the type. If nodes use different types for the topic, print each type on a separate line.
 
     Raises:
         Ros2Error: the topic does not exist.

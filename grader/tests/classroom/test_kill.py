@@ -31,7 +31,7 @@ NO_ROOM = 4096
 
 
 class Killer:
-    """Run the command, interrupt it at random times drawn from a seed, and start it again until it finishes."""
+    """Run the command, interrupt it at random times that a seed determines, and start it again until it finishes."""
 
     def __init__(self, run: Run, out: Path, seed: int) -> None:
         self._arguments = (run.submitted, "--exercise", STEP, "--out", out)

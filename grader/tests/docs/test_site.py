@@ -29,7 +29,7 @@ def build(source: Path, to: Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture(scope="module")
 def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a copy of the site's files, which a test may change."""
+    """Return a copy of the files from which the site is built. A test may change this copy."""
     copy = tmp_path_factory.mktemp("site") / "source"
     left_out = shutil.ignore_patterns("__pycache__", "bases", "cases", "golden", "hostile", "mistakes", "unusual")
     for name in ("docs", "course", "grader"):

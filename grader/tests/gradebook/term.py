@@ -74,7 +74,7 @@ class Term:
         (folder / "timestamp.txt").write_text(at)
 
     def grade(self) -> str:
-        """Collect, autograde, sync and generate feedback. Return the output of sync."""
+        """Collect, autograde and sync the submissions, and generate the feedback. Return the output of sync."""
         self.run("collect", STEP, "--update")
         self.run("autograde", STEP)
         said = self.run("grader", "gradebook", "sync", STEP)

@@ -38,7 +38,7 @@ def check(step):
 """
 """Points that autograde accepts, because they are at most the maximum of each cell."""
 ANOTHERS = "homework"
-"""An assignment in the same gradebook that is not part of this course."""
+"""An assignment that is in the same gradebook but is not part of this course."""
 
 
 def forge(folder: Path) -> None:

@@ -27,7 +27,8 @@ MAKES_DIAGNOSES = re.compile(r"\b(failed|Cause)\(|diagnosis")
 NOT_THESE = frozenset({"judge.py", "kind.py", "kinds.py"})
 """Modules that only pass diagnoses on."""
 ALIKE_CASES, ALIKE_TESTS = 3, 12
-"""The number of tests covering the same lines that run on a mutant. Tests differ more than cases."""
+"""The number of cases, and of tests, that are run on a mutant if they cover the same lines as others. Tests differ more
+than cases."""
 WORST = 0.10
 """If a larger share survives, the run fails."""
 
@@ -72,7 +73,8 @@ def _unnoticed_by_cases(
 def _materials(*, make: bool) -> dict[str, judging.Material]:
     """Return the cases by name, without those whose recording does not give the expected report.
 
-    Perhaps the machine was busy while the case was recorded. With `make`, such a case is recorded again.
+    Perhaps the machine was busy while the case was recorded. With `make`, a case whose recording gives another report
+    is recorded again.
     """
     recorded = recordings(all_cases(), _tell, make=make)
     good, stale = _judged(recorded)

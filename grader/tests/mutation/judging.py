@@ -35,7 +35,8 @@ Lines = dict[tuple["Path", int], set[str]]
 
 PACKAGE = "grader.checks"
 SHARED = "grader.checks.outcome"
-"""All modules use Status from this module. It has no mutants, and Status must remain the same object."""
+"""All modules use Status from this module. The module has no mutants, because Status must remain the same object in all
+modules."""
 SURVIVED, KILLED = 0, 1
 LIMIT_S = 60
 """The limit on CPU time. A mutant that exceeds it never ends, and counts as noticed. Other load does not matter."""

@@ -1,8 +1,9 @@
 """Mutants: files of the grader, each changed in one place by the operators of mutmut or by some of our own.
 
-Only code that decides is changed. Code for messages is not changed: strings, a choice between two strings, printed
-numbers. Declarations, the parameters of a kind of check with their defaults, the `strict` of zip, and the code that
-finds values near a limit, which chooses the clock, are not changed either. grader/tests/checks has tests for this code.
+Only code that makes decisions is changed. Code for messages is not changed: strings, a choice between two strings,
+printed numbers. Declarations, the parameters of a kind of check with their defaults, the `strict` of zip, and the code
+that finds values near a limit, which chooses the clock, are not changed either. grader/tests/checks has tests for this
+code.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ class Mutant:
 
     `change` is printed.
 
-    `kind` is one of KINDS. `at_import` is true if the statement runs only when the file is imported.
+    `kind` is one of the strings in KINDS. `at_import` is true if the statement runs only when the file is imported.
     """
 
     file: Path
@@ -130,7 +131,8 @@ def _changes(node: cst.CSTNode) -> Iterator[Change]:
 
 
 def _places(call: cst.Call, index: int | None) -> Iterator[cst.BaseExpression]:
-    """Return the arguments of a call that name the place in the source, by their keyword or at this index."""
+    """Return the arguments of a call that state a place in the source: those with the keyword `where` or at this
+    index."""
     for number, argument in enumerate(call.args):
         if number == index if argument.keyword is None else argument.keyword.value == "where":
             yield argument.value
@@ -147,7 +149,7 @@ def _is_nearness(assignment: cst.Assign) -> bool:
 
 
 def _is_text(value: cst.CSTNode) -> bool:
-    """Return whether the node is a string for readers and not a diagnosis."""
+    """Return whether a node of the syntax tree is a string for readers and not a diagnosis id."""
     return isinstance(value, STRINGS) and not _is_id(value)
 
 

@@ -100,7 +100,7 @@ def test_a_case_is_recorded_once(recorded: list[Recorded], folder: Path) -> None
 def noticed(recorded: list[Recorded], change: str) -> dict[str, bool]:
     """Return whether the case notices each mutant with this change.
 
-    A child process does the work, since the checks are unloaded.
+    A child process runs the checks, because the test unloads their modules.
     """
     wanted = [mutant for mutant in mutants_of(ANSWERS) if change in mutant.change]
     assert wanted

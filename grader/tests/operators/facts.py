@@ -162,7 +162,7 @@ class Facts:
 
 
 def _is_right_word(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
-    """Return whether a suggested name is one that the mistake removed, or the name of an existing file."""
+    """Return whether the suggested name was removed by the mistake, or is the name of an existing file."""
     parts = re.findall(r"\w+", match["word"])
     there = any(path.endswith(f"{match['word'].replace('.', '/')}.py") for path in facts.wrong)
     return there or any(part in facts.words[0] for part in parts)
@@ -207,7 +207,7 @@ def _is_extra(facts: Facts, _: re.Match[str], __: Outcome) -> bool:
 
 
 def _swapped(facts: Facts, _: re.Match[str], outcome: Outcome) -> bool:
-    """Return whether the correct package has the words of the line, or of this line and the next, in another order."""
+    """Return whether the same words, in another order, are in a line or two successive lines of the correct package."""
     where = outcome.finding.where
     if where is None or where.line is None:
         return False
@@ -297,4 +297,4 @@ FACTS: dict[str, Callable[[Facts, re.Match[str], Outcome], bool]] = {
     r"exited on its own|crashed": _ended,
     r"Nothing was built|The node was not run": lambda facts, _, __: facts.evidence.run.recording is None,
 }
-"""Maps the form of a sentence to a test of its truth. `word`, `line`, `count` and `number` are parts of it."""
+"""Maps each pattern of a sentence to a function that tests its truth. The patterns have named groups such as `word`."""

@@ -133,5 +133,5 @@ class Elements(HTMLParser):
 
 
 def shown(markdown: str) -> Elements:
-    """Render Markdown as GitHub does, with tables and with HTML."""
+    """Render Markdown in the same way as GitHub, including tables and HTML."""
     return Elements(MarkdownIt("gfm-like", {"html": True, "linkify": False}).render(markdown))

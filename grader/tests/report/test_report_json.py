@@ -19,7 +19,7 @@ GOLDEN = Path(__file__).parent.parent / "golden" / "report"
 
 @pytest.mark.parametrize("status", sorted(EVIDENCE))
 def test_the_format_has_not_changed(status: str) -> None:
-    """Other programs read these JSON files.
+    """The JSON format of reports must not change, because other programs read these files.
 
     If a change is intended, increase SCHEMA and write the new text to golden/report/.
     """

@@ -1,6 +1,6 @@
 """Each recorded command of the real `ros2` is typed again and must have the same output, errors and exit code.
 
-Each comparison states the allowed differences with the reason.
+Each test lists the differences that are allowed, and the reason for each.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ MIDDLE = Start(5.0, 5.0, 0.0)
 
 
 class Simulator:
-    """A simulated world with its feed, and the messages at the other end."""
+    """A simulated turtlesim with its feed, and the messages that arrive at the other end."""
 
     def __init__(self) -> None:
         ours, self.view = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)

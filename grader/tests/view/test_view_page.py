@@ -1,4 +1,4 @@
-"""The page in the system's Chromium, with turtlesim_node --view on the real ROS 2."""
+"""Test the page in the system's Chromium, with turtlesim_node --view on the real ROS 2."""
 
 from __future__ import annotations
 

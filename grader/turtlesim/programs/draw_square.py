@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from rclpy.task import Future
 
 _POSES_TO_SKIP = 3
-"""The number of poses to skip after the reset, because an older pose may arrive after the response to the reset."""
+"""After the reset, this number of poses is skipped, because an older pose may arrive after the response to the
+reset."""
 
 
 class DrawSquare(Node):

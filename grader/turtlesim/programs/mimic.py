@@ -1,6 +1,7 @@
 """mimic: make one turtle imitate another turtle.
 
-The node reads poses from input/pose, and publishes commands on output/cmd_vel. Both topics must be remapped.
+The node reads poses from input/pose, and publishes commands on output/cmd_vel. Users must remap the two topics to
+topics of turtles.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Functions that a task forbids, and advice."""
+"""Checks for functions that a task forbids, and checks that only give advice."""
 
 from __future__ import annotations
 

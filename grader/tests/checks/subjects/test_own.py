@@ -1,4 +1,4 @@
-"""A circle with a student's own numbers."""
+"""A task in which students draw a circle with their own radius and direction."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_the_own_numbers_pass_whoever_may_write_the_name_otherwise(by: str | Non
 
 
 def test_no_spelling_of_the_own_id_makes_a_friends_circle_pass() -> None:
-    """Bob submits alice's program, and tries spellings of his own id until he gets her numbers."""
+    """Bob submits Alice's program, and tries different spellings of his own id until one gives him her numbers."""
     for number in range(512):
         spelling = "".join(char.upper() if number >> at & 1 else char for at, char in enumerate("bobbobbob"))
         numbers = draw_numbers(SPEC, spelling)
