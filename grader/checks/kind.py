@@ -54,7 +54,8 @@ class Kind(Generic[P]):
     drives: bool = False
     """Whether a node must send velocity commands to the turtle to pass."""
     requested: Callable[[Evidence, P], Requested | None] | None = None
-    """Return the requirements of the check to draw, or None if the submission does not determine them."""
+    """Return what to draw for the requirements of the check, or None if the submission does not determine the
+    requirements."""
     radius_m: Callable[[P], float] | None = None
     """Return the radius (m) of a circle that must fit on either side of a randomly drawn start position."""
 
@@ -79,7 +80,7 @@ class Kind(Generic[P]):
         return None if self.early is None or isinstance(params, Finding) else self.early(evidence, params)
 
     def request(self, evidence: Evidence, values: Mapping[str, Param]) -> Requested | None:
-        """Return the requirements to draw for a check with these parameter values, or None."""
+        """Return what to draw for the requirements of a check with these parameter values, or None."""
         params = self._params(evidence, values)
         return None if self.requested is None or isinstance(params, Finding) else self.requested(evidence, params)
 

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from grader.classroom.task import Task
 
 MEMORY_A_TASK = 1536 * 1024 * 1024
-"""The memory that the grader plans for each task (bytes). A cell may use more (sandbox.Limits), but few do, and never
-all at the same time."""
+"""The memory that the grader plans for each task (bytes). A cell may use more memory than this (sandbox.Limits), but
+few cells do, and never all of them at the same time."""
 WAITING_A_JOB = 2
 """The number of additional tasks that may start, for each job, while other tasks wait for wall time."""
 TASK_S = 1800.0

@@ -60,7 +60,7 @@ class Task:
 
     @property
     def name(self) -> tuple[str, str]:
-        """The student and the exercise. This pair of names is unique in a run."""
+        """The student and the exercise. In a run, each pair of student and exercise is unique."""
         return self.student, self.sources.id
 
 

@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 class Fault:
     """The reason why `stage` and all later stages could not be completed: a fault of the machine, and its remedy.
 
-    If `unreadable` is set, the machine is not at fault. The reason is then that something produced by the submission
-    could not be read.
+    If `unreadable` is set, the machine is not at fault. In that case, the reason is that something produced by the
+    submission could not be read.
     """
 
     stage: Stage
@@ -65,8 +65,9 @@ class Run:
 class Evidence:
     """A submission with everything that was observed. `build` is None if the submission was not built.
 
-    A check sees the evidence from the viewpoint of one of the exercise's trials. `trial` is that trial, and `recording`
-    is its recording. The source files are parsed on first use, from `submission.files`.
+    A check sees the evidence from the viewpoint of one of the exercise's trials. `trial` is the trial of this
+    viewpoint, and `recording` is the recording of that trial. The source files are parsed on first use, from
+    `submission.files`.
     """
 
     exercise: Exercise
@@ -99,7 +100,7 @@ class Evidence:
         return self if id_ == self.trial.id else self._views[id_]
 
     def views(self) -> tuple[Evidence, ...]:
-        """Return the evidence from the viewpoint of each trial that was run, and always of the first trial."""
+        """Return the evidence once for each trial that was run, and always for the first trial."""
         ids = [trial.id for trial in self.exercise.trials]
         return tuple(self.from_trial(id_) for id_ in ids if id_ in self.runs or id_ == ids[0])
 

@@ -60,7 +60,7 @@ def place_of_turtle1(recording: Recording, t_s: float) -> tuple[float, float]:
 
 
 def place_at(track: Track, t_s: float) -> tuple[float, float]:
-    """Return x and y of a target at this time (m)."""
+    """Return the position of a target at this time: x and y (m)."""
     before = [row for row in track.rows if row[0] <= t_s] or [track.rows[0]]
     return before[-1][1], before[-1][2]
 

@@ -42,7 +42,7 @@ class Arc:
         return np.radians(np.linspace(self.from_deg, self.to_deg, self.count))
 
     def deviations(self) -> tuple[float, float, float]:
-        """Return the standard deviations of centre x, centre y and radius (m) of the best fit to such points.
+        """Return the standard deviations (m) of centre x, centre y and radius of a circle that is fitted to the points.
 
         These deviations follow from the noise through the Cramér-Rao bound, as in Chernov, "Circular and Linear
         Regression" (2010), section 7.2.

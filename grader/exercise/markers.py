@@ -34,7 +34,7 @@ class Syntax:
 
     markers: dict[str, re.Pattern[str]]
     line_sign: str
-    """The prefix of every line in a STARTER block. It is empty if the whole block is one comment."""
+    """The prefix of every line in a STARTER block. The prefix is empty if the whole block is one comment."""
 
 
 HASH = Syntax(

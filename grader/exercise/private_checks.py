@@ -95,7 +95,10 @@ def _private_files(checks: Path, known: Mapping[str, Path]) -> dict[str, Path]:
 
 
 def merge(public: Mapping[str, Any], private: Mapping[str, Any], name: str) -> dict[str, Any]:
-    """Return the merged tables of both files. Raises UsageError if the private file has keys that are not allowed."""
+    """Return the tables of the two files as one table.
+
+    Raises UsageError if the private file has keys that are not allowed.
+    """
     older = of_older_schema(private)
     if older:
         message = f"{name}: {older}"

@@ -48,7 +48,7 @@ class ClassFolders:
         return Path(self.course.root) / CLASS / HANDED_IN / student / step
 
     def autograded(self, student: str, step: str) -> Path:
-        """Return the path of the notebook that autograde ran. It is possible that there is no such notebook."""
+        """Return the path of the notebook that autograde ran. There may be no notebook at this path."""
         return Path(self.course.format_path(self.course.autograded_directory, student, step)) / f"{step}.ipynb"
 
     def submissions(self, steps: Sequence[str]) -> list[tuple[str, str]]:

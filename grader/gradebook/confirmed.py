@@ -89,7 +89,7 @@ def _doubts(
     steps: Collection[str],
     unread: Collection[Name],
 ) -> Iterator[tuple[str, str, Any, str]]:
-    """Yield (student, exercise, nbgrader's grade, the reason why the grade is not confirmed)."""
+    """Yield tuples (student, exercise, nbgrader's grade, the reason why the grade is not confirmed)."""
     for student, step, submission in submissions_of(gradebook, steps):
         kept = None if (student, step) in unread else results.load(student, step)
         for grade in provisional_grades(submission):

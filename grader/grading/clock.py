@@ -13,7 +13,7 @@ Nothing has to wait then, and no other program can disturb
 4. Wall time also decides if a measured value is near the edge of its tolerance, or if the node did not stop. 5. If a
 trial in wall time fails while other programs use the processors, it is repeated while nothing else is graded.
    A busy machine can make a correct node look wrong, but it cannot make a wrong node look correct. So the first trial
-   that passes counts. If none of WALL_TRIALS passes, the one with the least disturbance counts.
+   that passes counts. If no trial of WALL_TRIALS passes, the trial with the least disturbance counts.
 """
 
 from __future__ import annotations

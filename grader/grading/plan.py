@@ -46,6 +46,6 @@ def plan_of(evidence: Evidence, clock: ClockName, *, choice: ClockChoice, seed: 
 
 
 def _topics(checks: Sequence[CheckSpec]) -> tuple[str, ...]:
-    """Return the topics that these checks need: every parameter that begins with a slash, since this may be a topic."""
+    """Return the topics that these checks need: every parameter with a slash at its start, since it may be a topic."""
     names = {value for check in checks for value in check.params.values() if isinstance(value, str)}
     return tuple(sorted(name for name in names if name.startswith("/")))

@@ -66,7 +66,7 @@ class Tests:
 
         Return the evidence with the test results, and the results of the checks.
 
-        Checks whose findings are `settled` are not judged again.
+        Checks that already have a finding in `settled` are not judged again.
 
         Raises:
             MachineError: the sandbox, pytest or rclpy does not work.

@@ -25,7 +25,10 @@ _POLL_S = 0.02
 
 
 class Turns:
-    """The turn of one grader. All graders use the lock files in `folder`. Without these files, no grader waits."""
+    """Lets one grader at a time use the machine alone.
+
+    All graders use the lock files in `folder`. Without these files, no grader waits.
+    """
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder

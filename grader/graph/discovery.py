@@ -35,7 +35,7 @@ NOTHING_THERE_S = 0.5
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
 """The Fast DDS profile for the nodes that commands create on the loopback interface."""
 PATIENT_PROFILE = LOOPBACK_PROFILE.with_name("loopback_patient.xml")
-"""The same profile for a node that runs for hours."""
+"""The Fast DDS profile for the same kind of node, if the node runs for hours."""
 _RANGE, _PROFILE = "ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTRTPS_DEFAULT_PROFILES_FILE"
 _POLL_S = 0.01
 _WAKE_S = 0.1

@@ -162,7 +162,7 @@ class _Strokes:
 
     one: str
     into: tuple[str, str, str]
-    """The lines of the first, a middle and the last publisher, if there are several."""
+    """The strokes next to the first, a middle and the last publisher of a topic with several publishers."""
     out: tuple[str, str, str]
 
 

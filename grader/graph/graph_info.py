@@ -51,7 +51,10 @@ class Look:
     actions: tuple[Named, ...] = ()
 
     def node_names(self, *, all_of_them: bool = False) -> list[str]:
-        """The full names of all nodes, sorted. A name that several nodes have appears several times."""
+        """The full names of all nodes, sorted.
+
+        If several nodes have the same name, the list contains this name several times.
+        """
         return [node.name for node in self.nodes if all_of_them or not _hidden_node(node.name)]
 
     def topic_names(self, *, all_of_them: bool = False) -> list[str]:

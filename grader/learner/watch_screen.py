@@ -71,7 +71,7 @@ class _Screen:
     def show(self, events: Events, notice: str) -> steps.Begun | None:
         """Show reports until the learner quits or starts another step. Return the other step, or None to quit.
 
-        The first report clears the screen. `notice` is printed below that report.
+        The first report clears the screen. `notice` is printed below the submission's report.
         """
         self._grade(notice)
         self._prove(events)

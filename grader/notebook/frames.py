@@ -25,7 +25,10 @@ _SIZE = 4
 
 
 class FrameError(ValueError):
-    """The data is not a frame, or the frame is too large. The error message states which of the two happened."""
+    """The data is not a frame, or the frame is too large.
+
+    The error message states whether the data is not a frame or the frame is too large.
+    """
 
 
 def packed(channel: int, parts: Sequence[bytes]) -> bytes:

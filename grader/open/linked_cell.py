@@ -44,7 +44,10 @@ _MOST_SOCKETS = 250
 
 @dataclass
 class LinkedCell:
-    """The process of the launcher in its cell. Serve `selector` by calling the data of each key that is ready."""
+    """The process of the launcher in its cell.
+
+    When `selector` reports a key as ready, call the function that is stored in the key's `data`.
+    """
 
     process: subprocess.Popen[bytes]
     selector: DefaultSelector

@@ -76,7 +76,7 @@ class PageProcess:
             await self._programs.stop()
 
     async def _follow(self, reader: asyncio.StreamReader, ended: asyncio.Event) -> None:
-        """Show each received content until the grading process has exited."""
+        """Show each new content of the page until the grading process has exited."""
         try:
             with suppress(ConnectionError):
                 while line := await reader.readline():

@@ -1,4 +1,4 @@
-"""The service calls and the goals of a trial as rows of a table, and as moments of a replay."""
+"""The service calls and goals of a trial, as rows of a table and as moments of a replay."""
 
 from __future__ import annotations
 

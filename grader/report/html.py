@@ -33,7 +33,8 @@ if TYPE_CHECKING:
 
 TEMPLATE = "report.html"
 CODE_BYTES = 50_000
-"""The maximum size of all code excerpts together. Once it is reached, later checks show only the file and the line."""
+"""The maximum size of all code excerpts together. Once this total is reached, later checks show only the file and the
+line."""
 
 
 @dataclass(frozen=True)

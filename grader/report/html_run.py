@@ -34,7 +34,7 @@ MOST_STEPS = 1000
 
 @dataclass(frozen=True)
 class Picture:
-    """A chart, ready for the template."""
+    """A chart in the form that the page's template needs."""
 
     svg: Markup
     caption: str

@@ -151,7 +151,7 @@ def _drawn(evidence: Evidence, points: list[Point]) -> list[Line]:
 
 
 def _others(recording: Recording) -> Iterator[tuple[list[Line | Ring | Arrow], str]]:
-    """Yield the other turtles, if any, with their paths and the text for the legend."""
+    """Yield the turtles other than turtle1, if any, with their paths and the text for the legend."""
     tracks = [track for track in recording.tracks if track.rows]
     shapes: list[Line | Ring | Arrow] = []
     for track in tracks[:MOST_OTHERS]:

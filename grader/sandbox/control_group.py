@@ -30,7 +30,8 @@ CONTROLLERS = ("memory", "pids")
 ABOVE = 512 * 1024 * 1024
 """The memory (bytes) that a group may use in addition to the cell's total, for the conductor of a trial."""
 PROCESSES_ABOVE = 200
-"""The number of processes and threads that a group may have beyond the cell's, for bubblewrap and the conductor."""
+"""In addition to the cell's limit, a control group allows this many processes and threads, for bubblewrap and the
+conductor."""
 GONE_S = 2.0
 _PREFIX = "grader-"
 _JOIN = 'until [ "$1" = -- ]; do echo $$ 2>/dev/null >"$1/cgroup.procs"; shift; done; shift; exec "$@"'

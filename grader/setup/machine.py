@@ -161,7 +161,7 @@ def probe(executable: str) -> Optional[Python]:
 
 
 def for_ros(python: Python, ros: SourcedRos) -> Python:
-    """Return the interpreter, with a list of the modules that it lacks for this ROS 2 if its version is right."""
+    """Return the interpreter. If its version is right for this ROS 2, list the modules that it lacks."""
     if python.version[:2] != ros.python or not python.cpython:
         return python
     # Like .venv, use the system's packages, but not those in the user's home.

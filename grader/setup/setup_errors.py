@@ -71,7 +71,7 @@ def of_error(error: BaseException) -> Optional[str]:
 
 
 def of_output(said: str, folder: Path) -> Optional[str]:
-    """Return why an installer failed, or None.
+    """Return the reason why an installer failed, or None.
 
     `said` is the installer's output, and `folder` is the folder that the installer writes to.
     """

@@ -56,7 +56,7 @@ class Module:
 
     @cached_property
     def nodes(self) -> tuple[ast.AST, ...]:
-        """All nodes of the tree."""
+        """All nodes of the syntax tree."""
         return () if self.tree is None else tuple(ast.walk(self.tree))
 
 

@@ -32,7 +32,7 @@ class TestFunction:
 
     @property
     def where(self) -> Where:
-        """The line of its `def`."""
+        """The file and line of the function's `def`."""
         return Where(self.module.file, self.node.lineno)
 
 

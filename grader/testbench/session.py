@@ -40,7 +40,8 @@ _TYPES_AHEAD = (
 )
 _HEADER = struct.Struct("<i?dI")
 READY = b"ready\n"
-"""The session writes this before any of the student's code runs. A later failure is not the machine's fault."""
+"""The session writes this before any of the student's code runs. A failure after this line is not the machine's
+fault."""
 _MOST_REPORT = 64 * 1024
 _DUMPABLE, _PARENT_DEATH = 4, 1
 """PR_SET_DUMPABLE and PR_SET_PDEATHSIG of prctl(2). A run cannot inspect a session that is not dumpable."""

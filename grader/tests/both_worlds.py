@@ -19,7 +19,7 @@ SOURCED_ENV: dict[str, str] = {
 }
 """The variables of a terminal in which only the tests' ROS 2 is sourced. Empty if no ROS 2 is sourced."""
 PATH = os.pathsep.join([*([str(HERE.prefix / "bin")] if SOURCED_ENV else []), "/usr/bin", "/bin"])
-"""PATH in such a terminal."""
+"""The PATH of a terminal in which only the tests' ROS 2 is sourced."""
 REAL_ROS2 = bool(SOURCED_ENV) and Path(HERE.prefix, "bin/ros2").is_file()
 REAL_TURTLESIM = installation.has_turtlesim(HERE)
 OUR_TURTLESIM = "grader sim" if REAL_TURTLESIM else "ros2 run turtlesim turtlesim_node"

@@ -46,7 +46,8 @@ class Case:
     base: str = "03-circle-publisher"
     """`files` is copied over this: the solution of a step, or a package in bases/. Empty for a case without a base."""
     exercise: str = ""
-    """The exercise that grades the case. If empty, and the base is a solution, the exercise of the base."""
+    """The exercise that grades the case. If this is empty and `base` is the solution of a step, that step's exercise
+    grades the case."""
     edit: tuple[Mapping[str, str], ...] = ()
     """The edits of the base: `old` in `file` is replaced with `new` everywhere."""
     remove: tuple[str, ...] = ()

@@ -13,8 +13,8 @@ from typing import IO
 from grader.tests.waiting import HANG_S
 
 FIRST, LAST = 2, 101
-"""The domains that tests use. Domain 1 is that of root, who may be using this machine. Domains above 101 use ports that
-Linux may assign to any program."""
+"""The domains that tests use. Domain 1 belongs to root, and root may be using this machine at the same time. Domains
+above 101 use ports that Linux may assign to any program."""
 MOST = 8
 """The number of domains that a process keeps besides its default one. Then it takes the least recently used one."""
 _held: dict[int, IO[str]] = {}

@@ -76,7 +76,10 @@ def lines_of(path: Path) -> list[str]:
 
 
 def distance(right: dict[str, list[str]], wrong: dict[str, list[str]]) -> int:
-    """Return the number of removed and added lines. A file that exists in only one of the two counts as one line."""
+    """Return the number of removed and added lines.
+
+    A file that exists in only one of the two packages counts as one line.
+    """
     lines = len(right.keys() ^ wrong.keys())
     for path in right.keys() & wrong.keys():
         if right[path] != wrong[path]:

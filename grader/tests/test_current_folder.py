@@ -1,4 +1,4 @@
-"""Commands in a current folder full of traps load and run nothing from it, and report the correct points."""
+"""Commands that are typed in a folder full of traps run nothing from this folder, and report the correct points."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Folder]:
 
 
 def points(out: Path) -> dict[str, float]:
-    """Map each student of a graded class to the points."""
+    """Map each student of a graded class to the student's points."""
     return {student: float(report["points"]) for student, report in reports(out).items()}
 
 

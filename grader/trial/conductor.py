@@ -40,7 +40,8 @@ LAUNCHER = Path(__file__).absolute().with_name("launcher.py")
 BUSY = 0.5
 BUSY_S = 0.04
 """The node itself caused a stall if its processes worked during at least the fraction BUSY of the stall, and for at
-least BUSY_S (s). It caused all stalls if they worked during the fraction BUSY of the whole trial."""
+least BUSY_S (s). The node caused all stalls if its processes worked during at least the fraction BUSY of the whole
+trial."""
 REQUESTS_HZ = 500
 """If the simulator answers more requests from the node than this (Hz), the node caused all stalls, on any machine.
 

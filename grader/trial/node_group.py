@@ -61,7 +61,7 @@ class NodeGroup:
         return sum(process.read_output(now_s) for process in self.processes)
 
     def waited_to_write(self, size: int) -> bool:
-        """Return whether one of the nodes (which together wrote this many bytes) may have waited for a reader."""
+        """Given how many bytes the nodes wrote together, return whether one of them may have waited for a reader."""
         return any(process.waited_to_write(size) for process in self.processes)
 
     def worked_s(self, begin: float, end: float) -> float:
@@ -94,7 +94,7 @@ class GroupThreads:
             threads.close()
 
     def look(self) -> Look:
-        """Look at every thread once."""
+        """Read the state of every thread once."""
         looks = self.looks()
         return Look(all(look.asleep for look in looks), sum((look.runs for look in looks), ()))
 

@@ -27,12 +27,14 @@ READY = b"\x00ready\n"
 KEPT = 256 * 1024
 """The number of bytes that are kept of each stream."""
 PIPE = 1024 * 1024
-"""The size of the node's pipes (bytes). It is large, so that the node does not wait for a reader after each line."""
+"""The size of the node's pipes (bytes). The size is large, so that the node does not wait for a reader after each
+line."""
 FULL = 0.25
-"""A node that had to wait for a full pipe wrote more than this share of the pipe size. The kernel may fill each page
+"""A node that wrote at most this share of the pipe size has not waited for a full pipe. The kernel may fill each page
 only halfway."""
 STOP_S = 3.0
-"""The maximum time that the node may take to exit after SIGINT (s). After it come SIGTERM and, 1 s later, SIGKILL."""
+"""The maximum time that the node may take to exit after SIGINT (s). After this time, the grader sends SIGTERM and, 1 s
+later, SIGKILL."""
 
 
 class LaunchError(Exception):

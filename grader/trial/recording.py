@@ -179,7 +179,7 @@ class Recording:
     the node of the trial."""
     interventions: tuple[str, ...] = ()
     """The services and actions of the simulator that were called, in order: "reset", "spawn", "teleport_absolute".
-    After a maximum number of calls, each further name is kept only once."""
+    After a maximum number of calls, a further name is recorded only once."""
     interventions_dropped: int = 0
     """The number of calls that were not kept because there were too many."""
     calls: tuple[Call, ...] = ()
@@ -201,8 +201,8 @@ class Recording:
     seconds: dict[str, float] = field(default_factory=dict)
     """The wall time of each part of the trial: discovery, run, stop (s)."""
     stalls: tuple[tuple[float, float], ...] = ()
-    """The periods of a trial in wall time in which the machine gave the simulator or the node no processor: (from, to)
-    on the trial's clock (s)."""
+    """The periods of a trial in wall time in which the machine gave no processor time to the simulator or the node:
+    (from, to) on the trial's clock (s)."""
     crowded: bool = False
     """Whether other programs used the processors so much that the simulator and the node often had to wait (wall
     time)."""
@@ -236,7 +236,7 @@ def frames_of(rows: Iterable[tuple[float, float, float, float, float, float, boo
 
 
 def to_json(recording: Recording, *, messages: bool = True) -> dict[str, Any]:
-    """Convert a recording to plain data. Without `messages`, leave out the message contents, which a bag holds."""
+    """Convert a recording to plain data. Without `messages`, leave out message contents (they are in a bag)."""
     plain = {**recording.__dict__, "frames": None, "messages": None}
     data: dict[str, Any] = asdict(Recording(**plain))
     frames = recording.frames

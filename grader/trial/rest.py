@@ -2,9 +2,9 @@
 
 Simulated time advances only while the node is idle: every thread sleeps, and no thread has run between two
 observations. If a thread ran between two observations, a counter in its file /proc/.../schedstat has changed. A thread
-that was woken but has not run yet is in state R. So two equal looks are enough if the kernel keeps these counts, and
-the first look need not include the states of the threads. If the kernel does not keep these counts, more looks are
-needed.
+that was woken but has not run yet is in state R. If the kernel keeps these counters, two equal observations are enough,
+and the first of them need not include the states of the threads. If the kernel does not keep these counters, more
+observations are needed.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class DoubtError(Exception):
 
 @dataclass(frozen=True)
 class Look:
-    """One look at some threads: whether all of them sleep, and the number of times that each of them has run."""
+    """One observation of some threads: whether all of them sleep, and the number of times that each of them has run."""
 
     asleep: bool
     runs: tuple[bytes, ...]

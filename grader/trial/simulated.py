@@ -1,7 +1,7 @@
 """A trial in simulated time: /clock advances only while the node is idle.
 
-The clock is held at 0 until the simulator and the node have discovered each other (the handshake). Then the clock
-advances in frames of 16 ms. The threads of a node show whether the node follows wall time. Any sign that the node
+The clock is held at 0 until the simulator and the node have discovered each other (the handshake). After that, the
+clock advances in frames of 16 ms. The threads of a node show whether the node follows wall time. Any sign that the node
 follows wall time is called a doubt, and leads to a trial in wall time (grading/clock.py; docs/design.md, decision 3).
 """
 

@@ -45,7 +45,7 @@ counted."""
 
 
 class Simulation:
-    """The ROS side of a trial. `frame` moves the turtle, and `spin` handles everything that has arrived.
+    """The part of a trial that uses ROS 2. `frame` moves the turtle, and `spin` handles everything that has arrived.
 
     An executor checks every entity and every event each time it runs, which takes longer than anything else in a frame.
     `take_in` handles only messages and service requests. `take_in` is sufficient while no other node `may_act` on an

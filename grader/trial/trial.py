@@ -55,7 +55,7 @@ class Plan:
     alone: bool = False
     """Whether the simulator runs without a node."""
     judged: tuple[str, ...] = ()
-    """The topics that a check needs. They are recorded, however many other topics there are."""
+    """The topics that a check needs. These topics are recorded even if there are very many other topics."""
     beside: tuple[str, ...] = ()
     """The additional executables that run next to the node of the trial."""
 

@@ -66,7 +66,7 @@ class _Input:
 
 
 def _frames(inputs: Path) -> Iterator[tuple[Turtle, Rotation | None]]:
-    """Yield turtle1 after each frame and the rotation at the start of the frame, forever."""
+    """Yield, for each frame, turtle1 after the frame and its rotation at the start of the frame, without end."""
     world = World()
     turtle = world.turtles["turtle1"]
     by_frame = _inputs(inputs)
@@ -85,7 +85,7 @@ def _frame_time(before_s: float, last_command_s: float | None, *, timed_out: boo
     """Return the time of the next frame.
 
     The frames of the recorded turtlesim followed the wall clock, so a time-out occurred 62 to 64 frames after the
-    command. In the replay, the time is stretched so that our turtle times out in the same frame.
+    command. In the replay, the time is stretched so that the last command of our turtle times out in the same frame.
     """
     now_s = before_s + FRAME_S
     if last_command_s is None:

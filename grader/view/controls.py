@@ -44,11 +44,14 @@ class Hands:
         self._simulator = simulator
         self._listen = listen
         self._driving: dict[object, str] = {}
-        """The turtle that each page drives."""
+        """Maps each page to the turtle that the page drives."""
         self._drivers: set[object] = set()
 
     def receive(self, page: object, said: dict[str, Any]) -> bool:
-        """Handle a message from a page: held keys, a pressed key, or a button. Return whether keys are held."""
+        """Handle a message from a page: held keys, a pressed key, or a button.
+
+        Return whether any keys are held down.
+        """
         if "held" in said:
             keys = [str(key) for key in said["held"]]
             self.held(page, str(said["turtle"]), keys)

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 NAMES = ("127.0.0.1", "localhost")
-"""The allowed names of this machine. All ports are allowed, since ssh may forward another one."""
+"""The host names that a request for this machine may contain. All ports are allowed, since ssh may forward another
+one."""
 
 
 def refusal(headers: Mapping[str, str], *, live: bool) -> str | None:

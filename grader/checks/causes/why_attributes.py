@@ -31,7 +31,7 @@ OF_THE_NODE = re.compile(
     r"^(\w+) cannot be modified after node creation|property '(\w+)' of '\w+' object has no setter"
     r"|can't set attribute '(\w+)'"
 )
-"""Messages from rclpy and from Python 3.10 to 3.14 about an attribute name that nodes already use."""
+"""Error messages of rclpy, and of Python 3.10 to 3.14, for an attribute name that every rclpy node already uses."""
 MANGLED = re.compile(r"^_[A-Za-z]\w*?__(?=[a-zA-Z])")
 """The prefix that Python adds to an attribute whose name begins with two underscores."""
 PLAIN = {

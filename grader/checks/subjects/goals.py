@@ -33,7 +33,7 @@ LARGE_RAD = 7.0
 class SendsGoals:
     """A sequence of `total` goals, beginning with goal number `nth`.
 
-    Each heading is `turn_deg` to the left of the heading before.
+    Each heading is `turn_deg` to the left of the previous heading.
     """
 
     heading_deg: float = number(about="The heading of the goal, in degrees: 0 is to the right, 90 is up.")

@@ -65,7 +65,7 @@ class Announces:
 
 @dataclass(frozen=True, kw_only=True)
 class Removes:
-    """The service that the trial calls with a turtle's name, and the topic with the names."""
+    """The trial calls `service` with a turtle's name, and the names of the remaining turtles arrive on `topic`."""
 
     service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
     type: str = string("a service type, as in turtlesim/srv/Kill", about="Its type. The request has the field name.")

@@ -35,7 +35,7 @@ SHORT_M = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class Square:
-    """Sides of this length, corners of 90 degrees, the end of the fourth side at the start, and then a standstill."""
+    """Requires sides of this length, corners of 90 degrees, a fourth side that ends at the start, then a standstill."""
 
     side_m: float = number(above=0, at_most=5, about="The length of a side.")
     side_tolerance_m: float = number(0.15, above=0, about="The maximum error of a side.")

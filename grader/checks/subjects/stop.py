@@ -1,4 +1,4 @@
-"""Check of the end: the node runs until Ctrl-C and then stops."""
+"""Check how the node ends: it runs until Ctrl-C and then exits."""
 
 from __future__ import annotations
 

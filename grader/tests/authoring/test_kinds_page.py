@@ -40,7 +40,7 @@ WITHOUT_UNIT = {
     "at_most",
     "value",
 }
-"""Numeric parameters without a unit, or with the unit of the parameter or field that they refer to."""
+"""Numeric parameters that have no unit, or that have the same unit as another parameter or a field."""
 
 
 def sections() -> dict[str, str]:

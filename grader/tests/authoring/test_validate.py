@@ -68,7 +68,7 @@ def test_the_course_is_valid() -> None:
 
 
 def test_the_course_is_valid_apart_from_its_solutions(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Do not grade the solutions, since each lesson shows the verdict, and test_lessons.py runs its commands."""
+    """The solutions are not graded here, because the test of the lessons grades them."""
     graded = _Validation._graded
 
     def only_starting_points(self: _Validation, what: str, side: str) -> Any:  # noqa: ANN401 - a Report, or its part

@@ -49,7 +49,7 @@ def uneven() -> list[Timed]:
 
 
 def teleported(given: Recording, *, at_s: float = 5.0, name: str = "teleport_absolute") -> Recording:
-    """Return the given run, but also move the turtle half a metre to the left."""
+    """Return the given run with the turtle moved half a metre to the left at the time `at_s`."""
     frames = given.frames
     moved = replace(frames, x=frames.x - 0.5 * (frames.t_s > at_s))
     return replace(given, frames=moved, interventions=(name,))

@@ -19,7 +19,7 @@ from grader.tests.docs.pages import ROOT, text_of
 from grader.trial.conductor import MESSAGES_HZ, REQUESTS_HZ
 
 COLUMNS = (runner.LIMITS, NODE_LIMITS, Limits())
-"""Build, node and kernel, in the order of the table."""
+"""The limits for the build, the node and the kernel, in the order of the table's columns."""
 KEYS = {
     "[exercise]": '[exercise]\nwrong = 1\npackage = "p"\n',
     "[[trial]]": '[exercise]\npackage = "p"\n[[trial]]\nwrong = 1\n',

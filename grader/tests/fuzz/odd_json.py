@@ -1,4 +1,4 @@
-"""The grader's own JSON files with unexpected values."""
+"""Test how the grader reads its own JSON files if these contain unexpected values."""
 
 from __future__ import annotations
 

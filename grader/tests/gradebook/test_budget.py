@@ -25,7 +25,7 @@ def message(content: Any, *buffers: bytes, key: bytes = KEY, header: Any = HEADE
 
 
 def refused(*messages: list[bytes], budget: Budget = Budget()) -> str:  # noqa: B008 - frozen
-    """Return the reason why the last message is refused. The other messages must be accepted."""
+    """Return the reason why the last message is refused. All messages before the last one must be accepted."""
     account = Account(KEY, budget)
     for each in messages[:-1]:
         account.take(each)

@@ -47,7 +47,10 @@ def right(id_: str) -> Outcome:
 def tries(
     source: str, judged: Callable[[str], Sequence[Outcome]], build_s: float = LONG_S
 ) -> tuple[Tries, dict[str, Outcome]]:
-    """Return the tries for a source, and the reported outcomes. `judged` invents the outcomes for a source."""
+    """Return the changes that were tried for this source code, and the reported outcomes.
+
+    `judged` is a function that returns invented outcomes for given source code.
+    """
     evidence = Evidence(exercise(), submission({NODE_FILE: source}))
     outcomes = tuple(judged(source))
 

@@ -27,10 +27,10 @@ MAKES_DIAGNOSES = re.compile(r"\b(failed|Cause)\(|diagnosis")
 NOT_THESE = frozenset({"judge.py", "kind.py", "kinds.py"})
 """Modules that only pass diagnoses on."""
 ALIKE_CASES, ALIKE_TESTS = 3, 12
-"""The number of cases, and of tests, that are run on a mutant if they cover the same lines as others. Tests differ more
-than cases."""
+"""The number of cases, and of tests, that are run on a mutant if they cover the same lines as others. More tests than
+cases are run, because tests differ more."""
 WORST = 0.10
-"""If a larger share survives, the run fails."""
+"""If a larger share of the mutants survives, the run fails."""
 
 
 def diagnosis_files() -> list[Path]:

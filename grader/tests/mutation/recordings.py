@@ -56,7 +56,8 @@ def recordings(
 ) -> list[Recorded]:
     """Return the recordings of these cases. `make` creates missing recordings, in parallel on all processors.
 
-    A case is recorded again if its submission or its exercise has changed. Empty the cache after a change of the trial.
+    A case is recorded again if its submission or its exercise has changed. Empty the cache, because the trial has
+    changed.
     """
     kept = below or cache()
     with ThreadPoolExecutor(os.cpu_count()) as pool:

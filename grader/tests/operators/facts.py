@@ -50,7 +50,7 @@ SIGNS = {
 
 @dataclass(frozen=True)
 class Hunk:
-    """Lines of the correct package, and the lines that replace them from `line` on. `moved` is set for a whole file."""
+    """Lines of the correct package, and the lines that replace them from line `line` on (`moved`: a whole file)."""
 
     file: str
     old: tuple[str, ...]
@@ -59,7 +59,7 @@ class Hunk:
     moved: bool = False
 
     def is_at(self, where: Where) -> bool:
-        """Return whether a report that refers to this line refers to the change. For removed lines, any line counts."""
+        """Return whether a message about this line points to the change. If lines were removed, any line counts."""
         removed = Counter(WORD.findall("\n".join(self.old))) - Counter(WORD.findall("\n".join(self.new)))
         opened_elsewhere = bool(removed) and set(removed) <= set("()[]{}")
         only_removed = not "".join(self.new).replace("pass", "").strip()

@@ -9,7 +9,8 @@ if TYPE_CHECKING:
     import pytest
 
 COMPARED = {"test_golden.py"}
-"""The modules whose tests also apply to the real `ros2`. The others test our messages, speed, start and exit."""
+"""The modules whose tests also apply to the real `ros2`. All other modules test only our `ros2`: its messages, speed,
+start and exit."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -60,7 +60,7 @@ def quiet(tmp_path: Path) -> Iterator[World]:
 
 
 def record(here: World, options: str = "/count", count: int = 300) -> Running:
-    """Start recording this number of messages. Return the recorder when it has received all messages."""
+    """Start recording, and publish this number of messages. Return the recorder when it has received all messages."""
     recorder = here.start(f"ros2 bag record -o bag {options}", "Recording...")
     here.start(f"python3 talker.py {count}", "sent")
     return recorder

@@ -21,7 +21,10 @@ SEEN = good()
 
 
 class Made:
-    """A replacement for a trial. The method `run` calls `runs`, and the trial is ready when `ready` is set."""
+    """A trial that runs no processes, for tests.
+
+    The method `run` calls `runs`, and the trial is ready when `ready` is set.
+    """
 
     def __init__(self, runs: Callable[[], Recording]) -> None:
         self.runs = runs

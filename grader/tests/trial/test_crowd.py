@@ -92,7 +92,7 @@ def test_stalls_without_other_programs_are_the_nodes_own() -> None:
 
 
 Counts = tuple[tuple[float, float], tuple[float, float], float]
-"""(ran, waited) of the node, (ran, waited) of the simulator, and stolen time, all since the last look (s)."""
+"""(ran, waited) of the node, (ran, waited) of the simulator, and stolen time, all since the last observation (s)."""
 
 
 @pytest.mark.parametrize(

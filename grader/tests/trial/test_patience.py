@@ -30,7 +30,7 @@ play(other, one)
 
 
 def waited(*, asleep: float, wrote: bool = False, share: float = 0.0) -> float:
-    """Return when patience ends (s), for a node that sleeps this often and gets this share of a processor."""
+    """Return the time (s) after which the trial gives up on a node that sleeps this often, with this CPU share."""
     patience, now_s, observed = HandshakePatience(0.0), 0.0, 0.0
     while True:
         now_s += LOOK_S
@@ -60,7 +60,7 @@ def test_only_sleep_and_work_are_counted(
 
 
 class Worker:
-    """A process as `TickPatience` observes it: each request returns the next CPU time (s)."""
+    """A fake process for `TickPatience`: each request returns the next CPU time (s)."""
 
     def __init__(self, *reported_s: float) -> None:
         self._reported_s = list(reported_s)

@@ -255,7 +255,10 @@ def hooks() -> dict[str, Any]:
 
 
 def late_frames() -> list[float]:
-    """Run in wall time without a client. Computing each frame takes as long as ten frames last."""
+    """Run in wall time without a client.
+
+    Each frame takes so long to compute that ten frames should have been computed in that time.
+    """
     times: list[float] = []
     stop = threading.Event()
 

@@ -33,7 +33,7 @@ PARTS: tuple[Part, ...] = ("graph", "console", "plot", "services")
 FLUSH_S = 0.1
 """The interval at which new values and log messages are sent to the pages (s)."""
 KEPT_S = 60.0
-"""The duration of a plot that is kept for pages that are opened later (s)."""
+"""For pages that are opened later, this many seconds of each plot are kept."""
 _MOST_SAMPLES = 6000
 _LARGEST_REQUEST = 8000
 

@@ -22,7 +22,7 @@ TIMEOUT_S = 5.0
 MOST_WAITING = 20
 """The maximum number of calls that may wait for their responses."""
 _EVERY_NODES = "rcl_interfaces/srv/"
-"""The parameter services, which every node has. They are last in the list."""
+"""The parameter services, which every node has. These services are at the end of the list."""
 
 Answer = dict[str, object]
 """The `id` of a call, whether it got a response (`ok`), and its `text`: the response as YAML, or the error message."""

@@ -1,4 +1,4 @@
-"""The square on our motion model of turtlesim. The commands arrive some frames late."""
+"""Test the square with this project's model of turtlesim's motion. The commands arrive some frames late."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Point = tuple[float, float]
 
 
 def drive(late: int, seconds: float = 36.0) -> tuple[list[Point], list[Leg]]:
-    """Return the position of the turtle in each frame, and the legs in order."""
+    """Return the position of the turtle in each frame, and the sections of its path in order."""
     world = World()
     turtle = world.turtles["turtle1"]
     legs = [first(turtle.x, turtle.y, turtle.theta)]
