@@ -78,15 +78,11 @@ def _installed(path: str, built: runner.Built) -> str | None:
 
 
 def _with_texts(tree: bytes, texts: dict[str, bytes]) -> bytes:
-    """Return the tree with these members replaced, and without the compiled versions of the old modules."""
-    stale = {str(PurePosixPath(path).parent / "__pycache__" / f"{PurePosixPath(path).stem}.") for path in texts}
+    """Return the tree with the content of these members replaced."""
     renewed = io.BytesIO()
     with tarfile.open(fileobj=io.BytesIO(tree)) as old, tarfile.open(fileobj=renewed, mode="w") as new:
         for member in old:
-            path = str(PurePosixPath(member.name))
-            if any(path.startswith(prefix) for prefix in stale):
-                continue
-            content = texts.get(path)
+            content = texts.get(str(PurePosixPath(member.name)))
             if content is not None:
                 member.size = len(content)
                 new.addfile(member, io.BytesIO(content))

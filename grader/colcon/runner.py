@@ -45,14 +45,15 @@ MOST_ENTRY_POINTS = 100 * 1024
 
 # Standard output contains only the install tree: colcon and its processes write to standard error. The option
 # --base-paths keeps colcon from searching every subfolder. The executor is sequential because there is only one
-# package and starting workers takes time.
+# package and starting workers takes time. The install tree has no compiled modules, so that a node always runs
+# the source that is judged.
 _SCRIPT = r"""
 echo cell-is-ready >&2
 cd "$WS" && mkdir -p src || exit 90
 "$@" build --base-paths src \
     --executor sequential --event-handlers console_direct+ console_stderr- >&2
 code=$?
-[ -d install ] && tar -c --format=gnu -f - -C install .
+[ -d install ] && tar -c --format=gnu --exclude=__pycache__ -f - -C install .
 exit $code
 """
 # Before the first byte of the submission is read, the script and in_cell.py report whether the machine can build.
@@ -183,7 +184,7 @@ def _entry_points(files: dict[PurePosixPath, Member], tree: bytes) -> dict[str, 
         if member.size > MOST_ENTRY_POINTS:
             message = f"entry_points.txt is too large to be read: more than {MOST_ENTRY_POINTS // 1024} KiB"
             raise TooLargeError(message)
-        return read_entry_points(tree[member.start : member.start + member.size].decode("utf-8", "replace"))
+        return read_entry_points(member.content(tree).decode("utf-8", "replace"))
     return {}
 
 

@@ -190,12 +190,14 @@ class _Grading:
             trials.start(view for view in beside if certain.may_run(view))
             if self.options.trials_at_once > 1:
                 tests.start(view for view in self._views_of_tests() if certain.may_run(view))
+            trials.run_predicted(self.evidence)
             with self.stopwatch.stage("build"):
                 built = self.build(self.submission, ros, in_cell=self.options.in_cell, tell=self.tell)
-            self.evidence, trials.tree = dataclasses.replace(self.evidence, build=built.build), built.tree
+            self.evidence = dataclasses.replace(self.evidence, build=built.build)
             self.stage = "trial"
             judgement = self.judging.so_far(self.evidence, {})
-            trials.run_ahead(view for view in _longest_first(self.evidence) if judgement.wants(view.trial.id))
+            wanted = [view for view in _longest_first(self.evidence) if judgement.wants(view.trial.id)]
+            trials.run_ahead(wanted, built.tree)
             for spec in (each for each in self.exercise.trials if not each.beside):
                 self.settled = judgement.settled
                 if judgement.wants(spec.id):

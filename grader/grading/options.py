@@ -24,3 +24,12 @@ class Options:
     explain: bool = False
     """Whether to prove causes by trying to fix them."""
     trials_at_once: int = field(default_factory=lambda: len(os.sched_getaffinity(0)))
+
+    @property
+    def runs_during_build(self) -> bool:
+        """Whether nodes may run from a predicted install tree while the submission is built.
+
+        Without cells, the build could change what they do. If other submissions are graded at the same time, no
+        processor would be free for them.
+        """
+        return self.in_cell and self.trials_at_once > 1

@@ -41,8 +41,14 @@ def plan_of(evidence: Evidence, clock: ClockName, *, choice: ClockChoice, seed: 
         inputs=draw_inputs(scenario, start, DEFAULT_SEED if seed is None else seed),
         stop_at_doubt=stops_at_doubt(choice),
         judged=_topics(checks),
-        beside=tuple(spec.executable for spec in evidence.exercise.beside(evidence.trial.id)),
+        beside=executables_of(evidence)[1:],
     )
+
+
+def executables_of(evidence: Evidence) -> tuple[str, ...]:
+    """Return the executables of this trial: first its own, then those of the additional nodes."""
+    others = evidence.exercise.beside(evidence.trial.id)
+    return evidence.trial.executable, *(spec.executable for spec in others)
 
 
 def _topics(checks: Sequence[CheckSpec]) -> tuple[str, ...]:

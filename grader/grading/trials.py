@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import dataclasses
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from typing import TYPE_CHECKING
 
+from grader.colcon.comparison import installs
+from grader.colcon.predicted import predict
 from grader.common.words import printable
+from grader.errors import UnreadableError
 from grader.evidence.evidence import Run
 from grader.grading import clock as policy
 from grader.grading.calls import call
 from grader.grading.clock import ALONE, Attempt
-from grader.grading.plan import plan_of
+from grader.grading.plan import executables_of, plan_of
+from grader.submission.reader import read
 from grader.trial.trial import OverwhelmedError, WallTimeNeeded
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from grader.checks.outcome import Finding
+    from grader.colcon.predicted import Predicted
     from grader.evidence.evidence import Evidence
     from grader.grading.clock import Clock
     from grader.grading.judging import Judging
@@ -53,6 +58,7 @@ class Trials:
         self._stopwatch = stopwatch
         self._tell = tell
         self._started: dict[str, ClockName] = {}
+        self._predicted: Predicted | None = None
         self.tree = b""
 
     def start(self, views: Iterable[Evidence]) -> None:
@@ -61,11 +67,39 @@ class Trials:
             name = self._started[view.trial.id] = self._judging.first_clock(view).name
             self._ahead.start(view.trial.id, self._trial(view, name))
 
-    def run_ahead(self, views: Iterable[Evidence]) -> None:
-        """Start the nodes of the trials that were started in simulated time. `run` waits for their recordings."""
+    def run_predicted(self, evidence: Evidence) -> None:
+        """Start the nodes of these trials from the predicted install tree, if the package is a usual one.
+
+        A node in wall time waits for the build, because it needs the processors to itself.
+        """
+        views = [evidence.from_trial(id_) for id_, clock in self._started.items() if clock == "simulated"]
+        if not views or not self._options.runs_during_build:
+            return
+        executables = {name for view in views for name in executables_of(view)}
+        with suppress(UnreadableError):
+            self._predicted = read(predict, evidence.submission, self._ros, executables)
+        if self._predicted is not None:
+            for view in views:
+                self._ahead.run(view.trial.id, self._predicted.package, view.trial.executable, self._predicted.tree)
+
+    def run_ahead(self, views: Sequence[Evidence], tree: bytes) -> None:
+        """Start the nodes of the trials that were started in simulated time. `run` waits for their recordings.
+
+        Nodes that already run from the predicted install tree go on if `tree`, the one of the build, is equal to it.
+        Otherwise, all of these trials start again.
+        """
+        self.tree = tree
+        if self._predicted is not None and not self._is_installed(self._predicted):
+            self._ahead.clear()
+            self.start(view for view in views if view.trial.id in self._started)
         for view in views:
             if self._judging.first_clock(view).name == "simulated" and self._begun(view) is not None:
-                self._ahead.run(view.trial.id, _package(view), view.trial.executable, self.tree)
+                self._ahead.run(view.trial.id, _package(view), view.trial.executable, tree)
+
+    def _is_installed(self, predicted: Predicted) -> bool:
+        with suppress(UnreadableError):
+            return read(installs, self.tree, predicted)
+        return False
 
     def run(self, evidence: Evidence, settled: Mapping[str, Finding]) -> Attempt:
         """Run this trial. Return the evidence with the recording that counts, and the judgement.

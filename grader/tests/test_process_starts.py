@@ -76,6 +76,7 @@ NAMED = {
     ("install", "_uv"): "an argument of uv: where to install",
     ("interpreter", "interpreter"): "interpreter() itself",
     ("bootstrap", "look"): "the version of a sourced Python",
+    ("predicted", "predict"): "the first line of a predicted script",
     ("machine", "for_ros"): "the version of a sourced Python",
     ("installation", "users_environment"): "for the setup.bash of a workspace, in the user's shell",
     ("notebooks", "seconds"): "its folder, for PATH",

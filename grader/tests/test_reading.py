@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
 READS = {
     "read_tree", "read_folder", "find_package", "read_code", "read_module", "read_manifest", "read_setup_py",
-    "read_answers", "read_tar", "read_entry_points", "wall_clues", "uses_of", "judge", "judge_so_far", "judge_early",
+    "read_plain_setup", "read_answers", "read_tar", "read_all", "read_entry_points", "wall_clues", "uses_of", "judge",
+    "judge_so_far", "judge_early",
     "recording_format.load", "parse_package_string", "read_class", "read_notebook", "nbformat.read", "zipfile.ZipFile",
     "read_payloads", "tarfile.open", "tokenize.tokenize", "tomllib.loads", "ast.parse", "json.loads", "json.load",
     "ET.fromstring", "yaml.safe_load", "pickle.load", "pickle.loads",
@@ -28,6 +29,7 @@ INSIDE = {"checks", "evidence", "submission"}
 BEHIND_THE_DOOR = {
     ("budget", "_read"): "relay: a separate process with limits",
     ("called", "read_called"): "calls",
+    ("comparison", "installs"): "trials",
     ("clues", "wall_clues"): "judging",
     ("cli", "_judged"): "cli",
     ("html_class", "read_class"): "html_class",
@@ -39,6 +41,8 @@ BEHIND_THE_DOOR = {
     ("package_from_notebook", "_together"): "package_from_notebook",
     ("package_from_notebook", "_with"): "package_from_notebook",
     ("package_from_notebook", "_worked_on"): "package_from_notebook",
+    ("predicted", "_may_look_around"): "trials",
+    ("predicted", "predict"): "trials",
     ("rebuild", "_with_texts"): "rebuild",
     ("scores", "_scores_in"): "scores",
     ("unpack", "_tar"): "archives: a separate process with limits",
@@ -67,6 +71,7 @@ OURS = {
     ("node_in_cell", "main"): "a request of the desk",
     ("node_process", "_find_pid"): "the output of bubblewrap",
     ("page_process", "main"): "a request of the desk",
+    ("predicted", "tree"): "a stream that we write",
     ("progress", "_read"): "the learner's state",
     ("relay", "main"): "a request of confined_autograde.py",
     ("relay", "read"): "a request of confined_autograde.py",

@@ -56,7 +56,11 @@ class Ahead:
     """
 
     def __init__(self, at_once: int) -> None:
-        self._pool = ThreadPoolExecutor(at_once)
+        self._at_once = at_once
+        self._begin_empty()
+
+    def _begin_empty(self) -> None:
+        self._pool = ThreadPoolExecutor(self._at_once)
         self._starter = ThreadPoolExecutor(1)
         self._stack = ExitStack()
         self._entering = Lock()
@@ -69,6 +73,14 @@ class Ahead:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self._stop()
+
+    def clear(self) -> None:
+        """Stop every trial, and forget it."""
+        self._stop()
+        self._begin_empty()
+
+    def _stop(self) -> None:
         for pool in (self._starter, self._pool):
             pool.shutdown(wait=False, cancel_futures=True)
         with self._entering:
@@ -93,8 +105,12 @@ class Ahead:
         trial.await_ready()
 
     def run(self, name: str, package: str, executable: str, tree: bytes) -> None:
-        """Start the node in a trial that is waiting for it. Then `trial(name).run` returns the recording."""
-        self._under_way[name] = self._pool.submit(self._started[name].run, package, executable, tree)
+        """Start the node in a trial that is waiting for it. Then `trial(name).run` returns the recording.
+
+        A node that was started before goes on.
+        """
+        if name not in self._under_way:
+            self._under_way[name] = self._pool.submit(self._started[name].run, package, executable, tree)
 
     def trial(self, name: str) -> Runs | None:
         """Return the trial, whose `run` returns the recording; None if the trial was not started."""

@@ -114,6 +114,38 @@ def test_leaving_ends_the_one_that_is_being_started_and_starts_no_other(ahead: A
     assert not second.opened.is_set()
 
 
+def test_clearing_ends_all_trials_and_new_ones_may_start(ahead: Ahead) -> None:
+    with ahead:
+        first, second = start_two(ahead)
+        ahead.run("", "package", "node", b"")
+        ahead.clear()
+        assert first.closed.is_set()
+        assert not second.opened.is_set()
+        assert ahead.trial("") is None
+        other = start(ahead, "")
+        trial = ahead.trial("")
+        assert trial is not None
+        assert trial.run("package", "node", b"") is SEEN
+        assert not other.closed.is_set()
+    assert other.closed.is_set()
+
+
+def test_a_node_that_was_started_goes_on(ahead: Ahead) -> None:
+    runs: list[int] = []
+
+    def counted() -> Recording:
+        runs.append(1)
+        return SEEN
+
+    with ahead:
+        start(ahead, "", counted)
+        ahead.run("", "package", "node", b"")
+        trial = ahead.trial("")
+        assert trial is not None
+        trial.run("package", "node", b"")
+    assert runs == [1]
+
+
 def test_what_went_wrong_at_the_start_is_reported_to_who_runs_it(ahead: Ahead) -> None:
     class Broken(Made):
         def await_ready(self) -> None:
