@@ -1,7 +1,8 @@
 """Whether the cause of a failed check is a fact or a possibility.
 
-A cause is a fact if the files, the build or an exception show it directly, or if a try has proved it: after the change,
-the check passes or the node gets further. All other causes are conclusions from the node's behaviour, and may be wrong.
+A cause is a fact if the files, the build, an exception or the recording show it directly, or if a try has proved it:
+after the change, the check passes or the node gets further. All other causes are conclusions from the source code or
+from the node's behaviour, and may be wrong. `FACTS` is the only list: a diagnosis that is not in it is a possibility.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 OF_EXCEPTIONS = frozenset(
     {
         "crash",
+        "needs-stdin",
+        "no-object",
         "node-name-invalid",
         "topic-name-invalid",
         "parameter-undeclared",
@@ -27,7 +30,45 @@ OF_EXCEPTIONS = frozenset(
     }
 )
 """Diagnoses that follow from the exception alone, in addition to those in `OF_FILES`."""
-FACTS = OF_EXCEPTIONS.union(*OF_FILES.values())
+OF_RECORDINGS = frozenset(
+    {
+        # The graph: names and types of nodes, topics, services and actions.
+        "node-name",
+        "node-namespace",
+        "wrong-type",
+        "second-type",
+        "topic-without-turtle",
+        "topic-capitals",
+        "qos-mismatch",
+        "action-name",
+        "action-type",
+        # The values and times of messages, calls and goals.
+        "wrong-value",
+        "wrong-sign",
+        "wrong-field",
+        "wrong-direction",
+        "intervention",
+        "goal-replaced",
+        "goal-aborted-by-command",
+        "not-driven",
+        "catch-again",
+        # Log lines and their numbers.
+        "before-first-pose",
+        "log-format",
+        "log-capitals",
+        "log-more",
+        "counter-step",
+        "x-y-swapped",
+        # The result of a call, and the output of a program.
+        "result-order",
+        "nanoseconds",
+        "rate-off-by-one",
+        "program-traceback",
+        "exit-code",
+    }
+)
+"""Diagnoses that only repeat what the recording shows, with a rule of ROS 2 or of mathematics."""
+FACTS = OF_EXCEPTIONS.union(OF_RECORDINGS, *OF_FILES.values())
 
 
 def is_certain(outcome: Outcome) -> bool:

@@ -73,11 +73,18 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
 )
 """(pattern of Python's message, diagnosis, cause). The first pattern that matches is used."""
 NOT_CLOSED = re.compile(r"does not match opening parenthesis '(?P<bracket>.)' on line (?P<line>\d+)")
+NO_BODY = re.compile(r"expected an indented block after .* on line (?P<line>\d+)")
+OUTSIDE = re.compile(r"\s*(?:def|class|async def|@|if __name__)\b|\s*@")
+"""The beginning of a line that cannot be the missing body."""
 ENTRY_POINT = re.compile(r"\s*\w+\s*=\s*[\w.]+:\w+\s*,?\s*")
 OTHER_LANGUAGES = (
     (r"\s*else\s+if\b.*", "Python spells else if as one word: elif."),
     (r".*(?:\+\+|--)\s*;?\s*", "Python has no ++ and no --. Write += 1 or -= 1."),
     (r"\s*(?:def|class|if|for|while)\b.*\{\s*", "In Python, a block begins with a colon, not with a brace."),
+    (
+        r"\s*(?:from|import)\s+\w+(?:,\w+)+\s+import\b.*",
+        "In a module name, write a dot, not a comma.",
+    ),
     (r"\s*//.*", "In Python, a comment begins with #."),
     (
         r".*=\s*new\s+\w+.*",
@@ -113,6 +120,10 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
     foreign = next((text for pattern, text in OTHER_LANGUAGES if re.fullmatch(pattern, line)), None)
     if foreign is not None and re.search(r"invalid syntax|expected ':'", unreadable.message):
         return Cause("syntax-error", foreign)
+    empty = NO_BODY.search(unreadable.message)
+    if empty is not None and (OUTSIDE.match(line) or (unreadable.line or 0) > int(empty["line"]) + 1):
+        text = f"Nothing is indented under line {empty['line']}, so it has no body. Write at least pass."
+        return Cause("indentation", text, Where(file, int(empty["line"])))
     other = NOT_CLOSED.search(unreadable.message)
     if other is not None:
         text = f"The bracket {other['bracket']} of line {other['line']} is still open in line {unreadable.line}."

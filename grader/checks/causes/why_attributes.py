@@ -14,6 +14,8 @@ from grader.checks.causes import ros_names
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
 from grader.checks.causes.no_entry_point import line as entry_point_line
 from grader.checks.causes.why_calls import CREATE_OBJECT
+from grader.checks.causes.why_not_set import compared
+from grader.checks.causes.why_other_object import set_twice, subscription_for_publisher
 from grader.checks.edit import at
 from grader.common.words import a_list, nearest, shorten
 from grader.submission.constants import dotted
@@ -82,9 +84,11 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
         return Cause("message-field", f"A {owner} has {a_list(fields)}.{more}").fixed_by(fix)
     if owner in ros_names.OTHERS and name in ros_names.OF_ROS_1:
         return _of_ros_1(name)
+    if (owner, name) == ("Subscription", "publish") and (instead := subscription_for_publisher(scene)) is not None:
+        return instead
     if owner in ros_names.OTHERS:
         text = f"A {owner} has no attribute or method with that name."
-        return _misspelt(scene, name, ros_names.OTHERS[owner]) or _set_twice(scene, name, text)
+        return _misspelt(scene, name, ros_names.OTHERS[owner]) or set_twice(scene, name, text)
     if owner in ("int", "float") and name == "self":
         text = "Separate two arguments with a comma, not with a dot."
         return Cause("comma-missing", text).fixed_by(at(scene.crash.where, ". self", ", self"))
@@ -126,24 +130,6 @@ def _misspelt(scene: CrashScene, name: str, known: Iterable[str]) -> Cause | Non
 
 def _class_for_object(name: str) -> Cause:
     return Cause("class-for-object", f"{shorten(name)} is a class. {CREATE_OBJECT}")
-
-
-def _set_twice(scene: CrashScene, name: str, text: str) -> Cause:
-    """Return the cause.
-
-    If the name of the object is assigned more than once, the cause lists the lines of the assignments.
-    """
-    holders = [dotted(node.value) for node in scene.on_line if isinstance(node, ast.Attribute) and node.attr == name]
-    for holder in filter(None, holders):
-        lines = [
-            node.lineno for node in scene.nodes if isinstance(node, ast.Assign) and holder in map(dotted, node.targets)
-        ]
-        if len(lines) > 1:
-            more = (
-                f"{shorten(holder)} is set in lines {a_list(list(map(str, sorted(lines))))}. Use one name per object."
-            )
-            return Cause("attribute-missing", f"{text} {more}", scene.at(max(lines)))
-    return Cause("attribute-missing", text)
 
 
 def _of_own_type(scene: CrashScene, owner: str, name: str) -> Cause:
@@ -229,6 +215,9 @@ def _of_own_class(scene: CrashScene, owner: str, name: str) -> Cause:
             return Cause("super-init-missing", text, scene.at(made)).fixed_by(at(first, "", line))
         text = "super().__init__ creates the node. You cannot use the node before that line."
         return Cause("super-init-late", text)
+    instead = compared(scene, name)
+    if instead is not None:
+        return instead
     lines = [line for attribute, line in attributes_set(own) if attribute == name]
     if lines:
         text = f"self.{shorten(name)} is set in line {min(lines)}, which has not run yet."

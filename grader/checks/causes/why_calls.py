@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.crash_scene import attributes_set, methods
+from grader.checks.causes.why_other_object import message_for_class
 from grader.checks.causes.why_parameters import too_few, too_many
 from grader.checks.edit import at
 from grader.common.words import a_list, count, shorten
@@ -86,6 +87,8 @@ def _kind(argument: ast.expr, scene: CrashScene) -> str:
     own = [method.name for each in scene.classes for method in methods(each)]
     if name.startswith("self.") and name[len("self.") :] in own:
         return "method"
+    if name and scene.functions(name):
+        return "method"
     return "class" if name[:1].isupper() else ""
 
 
@@ -114,7 +117,7 @@ def why_type(scene: CrashScene) -> Cause | None:
 
 def _by_message(scene: CrashScene, text: str) -> Cause | None:
     if "isinstance() arg 2 must be a type" in text:
-        return _made_object(scene)
+        return message_for_class(scene)
     if "'property' object is not iterable" in text:
         spun = next(iter(scene.calls_on_line("spin")), None)
         name = ast.unparse(spun.args[0]) if spun is not None and spun.args else "It"
@@ -138,20 +141,6 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
         )
     if "Expected QoSProfile or int" in text:
         return Cause("queue-size", "The last argument is the queue size, a whole number.")
-    return None
-
-
-def _made_object(scene: CrashScene) -> Cause | None:
-    """Return the cause if a publisher is created with a message instead of its class, else None."""
-    for call in scene.evidence.code.calls("create_publisher"):
-        given = call.argument(0, "msg_type")
-        if isinstance(given, ast.Call):
-            name = ast.unparse(given.func)
-            text = (
-                f"create_publisher needs the class {shorten(name)} itself. With () after its name, it gets an object."
-            )
-            fix = at(call.where, f"{ast.unparse(given)},", f"{name},")
-            return Cause("object-for-class", text, call.where).fixed_by(fix)
     return None
 
 

@@ -64,6 +64,9 @@ def _why_no_float(field: str, value: ast.expr | None) -> Cause:
         known = _why_constant(field, value)
         if known is not None:
             return known
+    if isinstance(value, ast.Tuple):
+        text = f"The field {field} is a float, but a comma makes a tuple of several values. A decimal point is a dot."
+        return Cause("field-type", text)
     names = [dotted(call.func) or "" for call in ast.walk(value) if isinstance(call, ast.Call)] if value else []
     if any(name.startswith(("np.", "numpy.")) for name in names):
         return Cause(
