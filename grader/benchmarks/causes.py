@@ -4,8 +4,8 @@
 
 The benchmark puts mistakes into correct packages with the operators of grader/tests/operators (two operators in a third
 of the packages), and judges the packages in simulated time. The correct packages are the solutions and the cases of
-tests/unusual that follow ROS time. A package that still passes is ignored. For all other packages, the benchmark prints
-how often each of these statements is true:
+tests/unusual that follow ROS time. A package that passes despite the mistake is ignored. For all other packages, the
+benchmark prints how often each of these statements is true:
 
 - first: the first failed check names the cause, at a line that must change;
 - at all: any failed check names the cause in this way;
@@ -14,8 +14,8 @@ how often each of these statements is true:
 Each statement is counted twice: according to the diagnoses that the operators expect, and according to facts without
 diagnoses (the difference between the two packages, the source and the recording; grader/tests/operators/facts.py). The
 benchmark also lists each wrong package whose report missed the cause, with the difference from the correct package.
-`--keep` stores recordings, and `--again` judges stored recordings again without running anything. A run with `--keep`
-that was stopped continues where it was.
+`--keep` stores recordings, and `--again` judges stored recordings again without running anything. If a run with
+`--keep` is stopped, the next run continues where it stopped.
 """
 
 from __future__ import annotations

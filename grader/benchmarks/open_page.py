@@ -51,8 +51,8 @@ _OBSERVE = """(line) => {
     });
     return null;
 }"""
-"""Wait without polling, which would keep the browser busy while the grader works. The result is the time of the frame
-with the verdict, since the way from the browser to this process takes some time, too."""
+"""Wait without polling, which would keep the browser busy while the grader works. The result is the time at which the
+browser drew the verdict, because the way from the browser to this process also takes time."""
 
 
 def main() -> None:

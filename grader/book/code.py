@@ -17,7 +17,10 @@ _NAMES = {"": "Text", "toml": "TOML", "xml": "XML", "python": "Python", "bash": 
 
 
 def code_html(text: str, language: str) -> str:
-    """Return the HTML of a block. A script adds a button that copies the code, or in a terminal only the commands."""
+    """Return the HTML of a block.
+
+    A script adds a button that copies the code. For terminal blocks, the button copies only the commands.
+    """
     text = text.rstrip("\n")
     lines = _console(text) if language == CONSOLE else _source(text, language)
     name = _NAMES.get(language, language)

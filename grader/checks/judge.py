@@ -67,7 +67,10 @@ def judge(evidence: Evidence) -> tuple[Outcome, ...]:
 
 
 def judge_so_far(evidence: Evidence, settled: Mapping[str, Finding]) -> Judgement:
-    """Judge the evidence of the stages completed so far. Checks whose findings are `settled` are not run again."""
+    """Judge the evidence of the stages completed so far.
+
+    Checks that already have a finding in `settled` are not run again.
+    """
     findings: dict[str, Finding] = {}
     causes: dict[str, CheckSpec] = {}
     stands = dict(settled)

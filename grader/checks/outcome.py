@@ -30,7 +30,7 @@ class Finding:
     """The result of a check. `observed`, `expected` and `cause` are text for a beginner; `diagnosis` is a stable id.
 
     `near_edge` is True if the distance between the measured value and the edge of the tolerance is at most a fifth of
-    the tolerance, or if the node did not stop in simulated time. A check with such a finding is judged again in wall
+    the tolerance, or if the node did not stop in simulated time. If this is True, the check is judged again in wall
     time.
     """
 
@@ -46,7 +46,8 @@ class Finding:
     tried: str = ""
     """A sentence about the result of trying the change."""
     change: str = ""
-    """The change as a unified diff if it has proved the cause. It is for instructors, because it is the solution."""
+    """The change as a unified diff if it has proved the cause. The change is only for instructors, because it is a part
+    of the solution."""
 
     def because(self, cause: Cause) -> Finding:
         """Return the finding with this cause instead of its own cause."""

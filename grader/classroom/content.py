@@ -1,4 +1,4 @@
-"""Read the package of a submission from a folder or an archive, or return why it cannot be read."""
+"""Read the package of a submission from a folder or an archive, or return the reason why it cannot be read."""
 
 from __future__ import annotations
 

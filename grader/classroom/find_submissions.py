@@ -4,8 +4,8 @@ Three layouts are supported and can be mixed: one folder or archive per student;
 and a folder of classroom clones, each of which contains the course's exercises/EXERCISE.
 
 No student is omitted. Each folder and archive becomes a submission. A submission that cannot be graded contains the
-reason. This module uses os.path, whose functions return False for a path that cannot be accessed. The methods of
-pathlib raise an exception instead.
+reason. This module uses os.path, whose functions return False for a path that cannot be accessed. For such a path, the
+methods of pathlib raise an exception.
 """
 
 # ruff: noqa: PTH110, PTH112, PTH114
@@ -76,7 +76,7 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
 def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
     """Yield each submission with its exercise.
 
-    Yield a submission that names no exercise once for each exercise that other submissions name.
+    If a submission names no exercise, yield it once for each exercise that other submissions name.
 
     Raises:
         UsageError: the exercise cannot be determined.

@@ -1,8 +1,8 @@
 """A worker process that grades one task after another, so that Python modules are imported only once.
 
 `python -m grader.classroom.worker DESCRIPTOR`. Student code does not run in the worker process, but in the sandbox
-cells that the worker starts. If the process that started the worker exits, the worker and everything that it started
-exit too.
+cells that the worker starts. If the process that started the worker exits, then the worker and all its descendants exit
+too.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from grader.classroom.task import Done, Pace, Task
 
 Message = tuple[Literal["tells"], str] | tuple[Literal["now"], "Pace"] | tuple[Literal["done"], "Done"]
-"""The messages from a worker. It also sends ("fails", text) for a MachineError that no submission caused."""
+"""The messages that a worker sends. It also sends ("fails", text) for a MachineError that no submission caused."""
 
 _LAST_WORDS = 1000
 

@@ -22,7 +22,7 @@ IMPORTING = threading.RLock()
 
 
 class _Lazy:
-    """A stand-in that imports a module on first use. Any thread can use the stand-in."""
+    """A stand-in that imports a module on first use. Any thread can use this object."""
 
     def __init__(self, name: str) -> None:
         self._name = name

@@ -21,7 +21,7 @@ class Need(NamedTuple):
     what: str
     package: str
     lost: str = ""
-    """The functions that do not work without it. Empty if nothing works without it."""
+    """The functions that do not work without this program. Empty if nothing works without this program."""
 
 
 class Manager(NamedTuple):
@@ -36,7 +36,8 @@ class Manager(NamedTuple):
     names: Mapping[str, str]
     """Maps Debian's name for a package to this package manager's name for it, if the two names differ."""
     python: str = ""
-    """A pattern for the package of a Python with venv, with the version as 3.12 (`dotted`) or 312 (`joined`)."""
+    """A pattern for the name of the package that contains a Python with venv. The version is written as 3.12 (`dotted`)
+    or 312 (`joined`)."""
     headers: str = ""
     newer: str = ""
     """Debian's name for a newer Python, which is installed if the default Python is too old."""

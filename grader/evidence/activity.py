@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Command, Endpoint, Recording
 
 ROS_TOPICS = ("/rosout", "/parameter_events", "/clock")
-"""Topics on which every node, or the grader, publishes."""
+"""Topics on which every node publishes, or on which the grader publishes."""
 OF_LIFECYCLE = "lifecycle_msgs/msg/TransitionEvent"
 """The type of the topic on which each lifecycle node publishes."""
 SPINS = re.compile(r'executors\.py", line \d+, in (?:await_or_execute|handler|_execute_\w+)\b')
@@ -29,9 +29,9 @@ def end_s(recording: Recording) -> float:
 def ended_at_start(recording: Recording) -> bool:
     """Return whether the node exited on its own before it could do anything.
 
-    A node that raised an exception inside rclpy's spin did run, no matter how soon it exited. This rule depends neither
-    on the clock nor on the time of the first observation. A node that exits in the initial period (START_S) without an
-    exception inside spin counts as a node that did not run.
+    A node that raised an exception inside rclpy's spin did run, no matter how soon it exited. The result depends
+    neither on the clock nor on the time of the first observation. A node that exits in the initial period (START_S)
+    without an exception inside spin counts as a node that did not run.
     """
     end = recording.end
     return end.by == "itself" and end.t_s <= START_S and not spun(recording)

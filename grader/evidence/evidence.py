@@ -231,7 +231,7 @@ class Evidence:
 def _seen_by(spec: TrialSpec, run: Run, specs: tuple[TrialSpec, ...]) -> Run:
     """Return the result of a trial from the viewpoint of one of its nodes.
 
-    The trial's other nodes count as nodes of the grader.
+    The other nodes in this trial are treated like nodes of the grader.
     """
     recording = run.recording
     if recording is None:

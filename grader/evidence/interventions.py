@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Floats, Recording
 
 MOVING = frozenset({"reset", "teleport_absolute", "teleport_relative", "rotate_absolute"})
-"""Calls that may move a turtle. They have no effect if the turtle is already at the destination."""
+"""Calls that may move a turtle. Such a call has no effect if the turtle is already at the destination."""
 ALWAYS = frozenset({"kill", "set_parameters"})
 """Calls that remove a turtle or change its response to commands."""
 FRAME_S = 0.016

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 START = "Traceback (most recent call last):"
 TOP = re.compile(r'\s*File ".*", line \d+, in <module>')
-"""The outermost frame of a program. Only the traceback of an uncaught exception contains it."""
+"""The outermost stack frame of a program. Only the traceback of an uncaught exception contains this frame."""
 
 
 def with_crash_first(recording: Recording) -> Recording:

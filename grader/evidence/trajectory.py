@@ -79,7 +79,7 @@ class Trajectory:
     def turns(self) -> float:
         """The number of turns about the centre of the fitted circle, positive if counter-clockwise.
 
-        Without a circle, the number is 0.
+        If there is no circle, the number is 0.
         """
         return 0.0 if self.circle is None else turns_about(*self.points, self.circle.x, self.circle.y)
 
@@ -92,7 +92,7 @@ class Trajectory:
 
     @property
     def sides(self) -> int:
-        """The number of straight pieces. A turn ends a piece, but a stop does not."""
+        """The number of straight pieces. A turn on the spot ends a straight piece, but a stop does not."""
         moves = self.steps > RESTS_M
         straight = moves & (np.abs(self.turn) <= STRAIGHT_RAD)
         turned = np.cumsum(np.abs(self.turn) > STRAIGHT_RAD)

@@ -98,7 +98,7 @@ class TrialSpec:
     the executable is called once for each call listed. With `tests`, the student's tests run without a simulator.
 
     If `beside` is the id of another trial, the node of this trial runs in that trial as an additional node, with the
-    same scenario. The checks of this trial judge the other trial from the viewpoint of the additional node.
+    same scenario. The checks of this trial judge the other trial's recording from the viewpoint of the additional node.
     """
 
     id: str
@@ -144,7 +144,8 @@ class Exercise:
     show_fix: bool = False
     """Whether a student's report shows the change that made a check pass when the grader tried it in a copy."""
     unsolved: tuple[str, ...] = ()
-    """The checks that the starting point must fail (for `grader validate`). Checks that depend on them are skipped."""
+    """The checks that the starting point must fail (for `grader validate`). Checks that need one of these checks are
+    skipped."""
     apart: bool = False
     """Whether the package has a separate workspace because it is not the package that grows from step to step."""
 

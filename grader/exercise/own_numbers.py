@@ -51,8 +51,8 @@ class OwnNumbers:
 def normal_id(student: str) -> str:
     """Return the normal form of an id, which ignores case, character width and extra spaces.
 
-    The normal form is used for comparing ids and for choosing the numbers. Without this form, students could try
-    different spellings of their ids until they get the same numbers as a friend.
+    The normal form is used for comparing ids and for choosing the numbers. Without the normal form, students could
+    spell their ids in different ways until they get the same numbers as a friend.
     """
     folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", student).casefold())
     return " ".join(folded.split())

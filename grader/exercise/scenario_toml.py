@@ -28,10 +28,10 @@ PARAMETER_TYPES = (
 )
 """Maps the type of a parameter to its number in rcl_interfaces/msg/ParameterType and the field for its value."""
 CALLS = ("function", "points", "bag")
-"""The keys of a `[[trial]]` without a simulator."""
+"""The keys of a `[[trial]]` that runs without a simulator."""
 MAX_DURATION_S = 600.0
 MOST_TARGETS = 5
-"""The maximum number of targets, since more would have no unambiguous order on the canvas (target_places.py)."""
+"""The maximum number of targets. With more targets, the order on the canvas would be ambiguous (target_places.py)."""
 MAX_SPEED = 10.0
 """The maximum speed (m/s, rad/s)."""
 

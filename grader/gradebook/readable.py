@@ -20,9 +20,10 @@ if TYPE_CHECKING:
 TIMESTAMP = "timestamp.txt"
 """The file in which nbgrader stores the time of a submission."""
 MOST_TIMESTAMP = 100
-"""The maximum size of that file (bytes)."""
+"""The maximum size of the file with the time of a submission (bytes)."""
 YEARS = range(2000, 2100)
-"""The years in which a time is valid. In year 9999, a time zone would make the formgrader fail for the whole class."""
+"""The years in which a time is valid. A time in the year 9999 could make nbgrader's formgrader fail for the whole
+class, because of time zones."""
 MOST_BYTES = tree.MAX_FILE_BYTES
 """The maximum size of a notebook (bytes)."""
 MOST_VALUES = 500_000

@@ -60,7 +60,7 @@ class Difference:
     """A check on which the kernel and the grader disagree.
 
     `kernel` is None if the notebook has no score for the check. `grader` is None if the grader has not confirmed a
-    score. A check without a confirmed score is worth 0 points, for the reason `why`.
+    score. If the grader has not confirmed a score, the check is worth 0 points, for the reason `why`.
     """
 
     student: str

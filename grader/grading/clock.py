@@ -50,7 +50,7 @@ class Clock:
 
 @dataclass(frozen=True)
 class Attempt:
-    """One run of a trial: the evidence with its recording, and the judgement of the checks."""
+    """One run of a trial: the evidence with its recording, and the results of the checks."""
 
     evidence: Evidence
     judgement: Judgement

@@ -102,9 +102,9 @@ class Trials:
         return False
 
     def run(self, evidence: Evidence, settled: Mapping[str, Finding]) -> Attempt:
-        """Run this trial. Return the evidence with the recording that counts, and the judgement.
+        """Run this trial. Return the evidence with the recording that counts, and the results of the checks.
 
-        Checks whose findings are `settled` are not judged again.
+        Checks that already have a finding in `settled` are not judged again.
 
         If the simulator fails once, the machine may be at fault. If the simulator fails twice, the submission's node is
         considered the cause. A node that kept the simulator busy for minutes does not get a second trial, because a

@@ -8,7 +8,7 @@ from typing import Any
 from grader.graph.names import hidden
 
 Named = tuple[str, tuple[str, ...]]
-"""A name and its types. There is more than one type if nodes disagree."""
+"""A name and its types. There is more than one type if nodes use different types for the topic."""
 
 
 @dataclass(frozen=True)

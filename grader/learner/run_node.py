@@ -39,7 +39,7 @@ class Program:
 
 
 def program_of(step: str | None, executable: str | None, workspace: Path | None) -> Program:
-    """Return the program to run. The default is the program of the current step.
+    """Return the program that is to be run. The default is the program of the current step.
 
     Raises:
         UsageError: the step has no node, was not started, or does not run this executable.

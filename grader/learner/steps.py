@@ -203,7 +203,7 @@ def _next(known: progress.Progress) -> Exercise:
 
 
 def _waiting(known: progress.Progress) -> list[str]:
-    """Return the steps after the current one that have not passed yet, or all these steps if all have passed."""
+    """Return the steps after the current one that have not passed yet; if all have passed, return all of them."""
     names = list(catalogue())
     later = names[names.index(known.current or names[0]) + 1 :]
     return [name for name in later if not known.step(name).passed] or later

@@ -197,7 +197,7 @@ class Watched:
     def prepare(self) -> None:
         """Start the simulator and the launcher of the next trial.
 
-        The start keeps two processors busy for half a second.
+        Starting them keeps two processors busy for half a second.
         """
         if self._warm is None and self._wanted is not None:
             plan, ros = self._wanted

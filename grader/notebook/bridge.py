@@ -4,7 +4,7 @@
 
 The kernel's sockets are on the cell's disk, so the cell needs no writable folder of the machine. The relay that reads
 the pipes (grader.gradebook.relay) limits how much it reads. FOLDER is a read-only copy of the submission. The kernel
-works on a second copy in WORKSPACE.
+works on a second copy of the submission, in WORKSPACE.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from grader.common.interpreter import interpreter
 from grader.notebook.frames import CHANNELS, CHUNK, ORDER, Unpacker, packed
 
 IDENTITY = b"bridge"
-"""The identity on all channels. The kernel sends an input request to the identity that sent the code."""
+"""The identity of the bridge on all channels. The kernel sends an input request to the identity that sent the code."""
 RETRY_MS = 10
 """The interval between attempts to connect to a kernel that is starting (ms)."""
 LAST_MS = 100

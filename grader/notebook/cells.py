@@ -45,7 +45,7 @@ class Cells:
                 print(f"Added next to this notebook: {a_list(written)}.")
 
     def lesson(self, line: str) -> None:
-        """`%lesson`: show the lesson of this notebook's step.
+        """`%lesson`: show the lesson of the step that this notebook is for.
 
         `%lesson 03-circle-publisher`: show the lesson of that step.
         """

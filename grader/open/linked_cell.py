@@ -57,7 +57,10 @@ class LinkedCell:
     """The limit that the node has exceeded, if it was stopped for this reason."""
 
     def interrupt(self) -> None:
-        """Send SIGINT to the process group of the node, as Ctrl-C does. Before the node has started, kill the cell."""
+        """Send SIGINT to the process group of the node, as Ctrl-C does.
+
+        If the node has not started yet, kill the cell.
+        """
         with suppress(ProcessLookupError):
             if os.getpgid(self.first) == self.first:
                 os.killpg(self.first, signal.SIGINT)

@@ -34,7 +34,7 @@ class CodeLine:
 
 @dataclass(frozen=True)
 class Excerpt:
-    """Some lines of a file."""
+    """Some successive lines of a file."""
 
     file: str
     lines: tuple[CodeLine, ...]

@@ -67,7 +67,7 @@ class Run:
 
 
 def runs_of(evidences: Sequence[Evidence], key: str = "run") -> list[Run]:
-    """Return the trials that ran, in order. Each trial has a title if there are several.
+    """Return the trials that ran, in order. If there are several trials, each trial has a title.
 
     `key` is the prefix of all ids.
     """

@@ -104,7 +104,7 @@ REFUTED = "The supposed cause was changed in a copy, but the check still failed.
 
 
 def _with_try(outcome: Outcome, evidence: Evidence) -> Outcome:
-    """Return the outcome with the result of fixing its cause in a copy. A refuted cause is left out."""
+    """Return the outcome with the result of fixing its cause in a copy. A cause that was refuted is left out."""
     finding, tries = outcome.finding, evidence.tries
     if outcome.status is not Status.FAILED:
         return outcome
@@ -130,7 +130,7 @@ def _in_one_line(difference: str) -> str:
 
 
 def _why_this_clock(evidence: Evidence) -> str:
-    """Return the reason for the first trial's clock, and for the clock of each trial judged on another clock."""
+    """Return the reason for the clock of the first trial, and of each trial that was judged on another clock."""
     first = evidence.run.recording
     if first is None and evidence.run.called is not None:
         return "No node was run. Your code was called, without a simulator."

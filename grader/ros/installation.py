@@ -64,7 +64,10 @@ class Ros:
 
     @property
     def name(self) -> str:
-        """The name in a report. The name contains no paths, so reports from different machines are identical."""
+        """The name of this ROS 2 installation in a report.
+
+        The name contains no paths, so reports from different machines are identical.
+        """
         return f"Jazzy (rclpy {self.version}, {'sourced' if self.kind == 'sourced' else 'wheels'})"
 
     @property

@@ -47,7 +47,10 @@ def is_message(value: Any) -> bool:  # noqa: ANN401
 
 
 def plain(value: Any, form: Form | None = None, declared: str = "") -> Any:  # noqa: ANN401
-    """Convert a message to dictionaries, lists, numbers and strings. `declared` is the type of the field."""
+    """Convert a message to dictionaries, lists, numbers and strings.
+
+    `declared` is the type of the field that contains the message.
+    """
     form = form or Form()
     if is_message(value):
         types = value.get_fields_and_field_types()

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 WORKSPACE = Path("/ws")
 """The workspace inside a cell, on a separate tmpfs."""
 HOME = Path("/tmp/home")
-"""HOME inside a room or cell. It is empty at first and is deleted with the cell."""
+"""HOME inside a room or cell. This folder is empty at first, and is deleted together with the cell."""
 
 ROOM_DISK = 256 * MIB
 
@@ -54,7 +54,7 @@ class View:
 
 
 def ros_view(ros: Ros, *more: Path) -> View:
-    """Return the view with the interpreter, ROS 2 and the folders or files `more`, without the grader.
+    """Return a view that contains the interpreter, ROS 2 and the folders or files in `more`, but not the grader.
 
     The grader is hidden even if it is installed in one of these folders.
     """

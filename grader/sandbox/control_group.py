@@ -1,9 +1,9 @@
 """Control groups: the kernel limits the total resource use of a cell, if the grader may create groups.
 
-Root can create control groups nearly everywhere. An ordinary user can create them if systemd has delegated a part of
-the tree and the grader runs in that part. The limit of the group is higher by `ABOVE` than the limit in usage.py, so
-that usage.py stops a cell first and records the reason. The group stops processes that grow too fast for usage.py, and
-limits socket and pipe memory.
+Root can create control groups nearly everywhere. An ordinary user can create control groups if systemd has delegated a
+part of the tree and the grader runs in that part. The limit of the group is higher by `ABOVE` than the limit in
+usage.py, so that usage.py stops a cell first and records the reason. The group stops processes that grow too fast for
+usage.py, and limits socket and pipe memory.
 
 Versions 1 and 2 of control groups are supported. In version 2, a group is a folder in one tree; in version 1, a folder
 in each controller's tree (https://docs.kernel.org/admin-guide/cgroup-v2.html and cgroup-v1/).
@@ -133,7 +133,7 @@ def _own() -> Iterator[tuple[str, str]]:
 
 
 def _remove(folder: Path) -> None:
-    """Remove a group. The kernel refuses to remove a group whose processes have not all exited."""
+    """Remove a group. The kernel does not remove a group before all of its processes have exited."""
     until = time.monotonic() + GONE_S
     while folder.is_dir() and time.monotonic() < until:
         with suppress(OSError):

@@ -14,16 +14,20 @@ if TYPE_CHECKING:
 
 MIB = 1024 * 1024
 MOST_SIGNALS = 1000
-"""The maximum number of pending signals and POSIX timers of a cell. The kernel also counts them per user."""
+"""The maximum number of pending signals and POSIX timers of a cell. The kernel counts them for each user as well."""
 NO_CORE_DUMP = 1
-"""The limit on core dumps (bytes). With 0, the kernel would still pass them to another program: core(5)."""
+"""The limit on core dumps (bytes). With the limit 0, the kernel would still pass core dumps to another program:
+core(5)."""
 MOST_OTHERS = 4096
 """The number of processes and threads that a user may have in addition to a grading without a cell."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """The limits of a cell. `memory` limits each process's address space, and `disk` each writable tmpfs (bytes)."""
+    """The limits of a cell.
+
+    `memory` limits the address space of each process, and `disk` limits each writable tmpfs (bytes).
+    """
 
     memory: int = 4096 * MIB
     total_memory: int = 2048 * MIB

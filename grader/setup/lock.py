@@ -3,7 +3,7 @@
 The file is in pip's format and has sections. `# part: NAME` starts the list of packages that only one part needs, and
 `# part: NAME NAME` starts a list of packages that several parts need. Each set-up installs exactly the packages of its
 parts. `python -m grader.setup.lock` (`make lock`) writes the file. This module uses only the standard library, because
-the set-up reads the file before anything is installed.
+the set-up reads the lock file before anything is installed.
 """
 
 from __future__ import annotations
@@ -38,12 +38,13 @@ PARTS = {
 """The name of each part and its purpose, in the order of the file."""
 
 ALWAYS = ("setup", "grader")
-"""The parts of every set-up. Their packages are listed only in these parts. All other parts, including `ros`, are
-optional, so each of them lists all packages that it needs in addition to these.
+"""The parts of every set-up. The packages of these two parts are not repeated in other parts. All other parts,
+including `ros`, are optional, so each of them lists all packages that it needs in addition to these.
 """
 
 SOURCED_BRINGS = frozenset({"numpy", "empy"})
-"""The packages that a sourced ROS 2 provides. Its extensions need its own numpy, and its generators its own empy."""
+"""The packages that a sourced ROS 2 provides. The extensions of a sourced ROS 2 need its own numpy, and its generators
+need its own empy."""
 
 _MARK = "# part: "
 _NAME = re.compile(r"([A-Za-z0-9][A-Za-z0-9._-]*)==(\S+)")

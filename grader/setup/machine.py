@@ -60,7 +60,10 @@ print(json.dumps({
 
 
 class Python(NamedTuple):
-    """An interpreter. `path` contains no symlinks; `cpython` means a CPython that the ROS 2 wheels support."""
+    """An interpreter.
+
+    `path` contains no symlinks, and `cpython` says whether the interpreter is a CPython that the ROS 2 wheels support.
+    """
 
     path: str
     version: Tuple[int, int, int]

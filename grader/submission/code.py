@@ -30,7 +30,10 @@ SRC = "src/"
 
 @dataclass(frozen=True)
 class Unreadable:
-    """The reason why Python cannot parse a file. `line` counts from 1; it is None if Python does not name a line."""
+    """The reason why Python cannot parse a file.
+
+    `line` counts from 1; it is None if Python's error message contains no line number.
+    """
 
     message: str
     line: int | None = None
@@ -69,7 +72,7 @@ class Call:
 
     @property
     def where(self) -> Where:
-        """The line of the call."""
+        """The line that contains the call."""
         return Where(self.module.file, self.node.lineno)
 
     def argument(self, place: int, name: str) -> ast.expr | None:
@@ -112,7 +115,7 @@ class Code:
         return self._calls.get(name, [])
 
     def assigned(self, *path: str) -> Where | None:
-        """Return the place where an attribute such as ("linear", "x") is first set, by assignment or by keyword."""
+        """Return the first place that sets an attribute such as ("linear", "x"), by assignment or by keyword."""
         for module in self.modules:
             lines = [line for node in module.nodes for line in _sets(node, path)]
             if lines:

@@ -24,8 +24,8 @@ MAX_FILE_BYTES = 8 * 1024 * 1024
 MAX_TOTAL_BYTES = 64 * 1024 * 1024
 MAX_FILES = 4000
 MAX_ENTRIES = 20_000
-"""The maximum number of entries in one folder, and in total. A larger folder is left out, because the order of its
-entries is random."""
+"""The maximum number of entries in one folder, and in total. A folder with more entries is left out, because the order
+of its entries is random."""
 MAX_DEPTH = 24
 MAX_PATH_BYTES = 1000
 
@@ -86,7 +86,7 @@ class Tree:
 def open_folder(name: str, parent: int | None = None, *, follow: bool = False) -> Iterator[int]:
     """Open a folder and return its descriptor.
 
-    With `parent`, the name is looked up in that folder. With `follow`, the name may be a link.
+    With `parent`, the name is looked up in the folder with this descriptor. With `follow`, the name may be a link.
     """
     flags = os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC | (0 if follow else os.O_NOFOLLOW)
     descriptor = os.open(name, flags, dir_fd=parent)
@@ -263,7 +263,10 @@ def _add(tree: Tree, path: str, data: bytes, *, executable: bool) -> None:
 
 
 def _resolve(tree: Tree, path: str) -> None:
-    """Replace a link by the content of its target, if the target is one of the files. Nothing is read from the disk."""
+    """Replace a link by the content of its target, if the target is one of the files.
+
+    No file is read from the disk for this.
+    """
     at = path
     for _ in range(len(tree.links)):
         target = tree.links[at]

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from grader.exercise.node_under_test import Behaviour
 
 MOST_NODES = 1000
-"""The maximum number of nodes in one run. A test creates one or two."""
+"""The maximum number of nodes in one run. A normal test creates one or two nodes."""
 
 Values = list[float]
 """The six values of a command, in the order of FIELDS."""

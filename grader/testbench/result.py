@@ -20,8 +20,8 @@ class NodeRun:
     `exit_code` is the exit code of pytest, or None if the run did not finish on its own. `collected` is the number of
     tests that pytest found. The other fields describe the first test that did not pass: its name, the message, the
     file, the line, and what failed: the test itself ("failed"), a fixture ("setup") or the import of its file
-    ("import"). A student's process reports all of these values. So only the success or failure of a run counts, and
-    only together with the other runs.
+    ("import"). A student's process reports all of these values. Therefore, only the success or failure of a run counts,
+    and only in combination with the other runs.
     """
 
     node: str

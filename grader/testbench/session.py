@@ -3,7 +3,7 @@
 This file runs as a separate script. The session reads one line of JSON and the files of the package (a tar stream) from
 standard input, then one byte per run. The session writes to standard output: READY as soon as it can run tests, and
 after each run the exit code of pytest, whether the time limit was exceeded, the duration (s), the report's size, and
-the report. The session does not know which node a run uses.
+the report. The session does not know whether a run uses the correct node or a broken one.
 
 Between two runs, the session kills all other processes of the cell and empties the disks of the cell. So a run finds no
 trace of earlier runs.

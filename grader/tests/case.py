@@ -59,7 +59,8 @@ class Case:
     clock: str = ""
     """The clock that `--clock auto` must choose; empty for any clock."""
     wall_varies: str = ""
-    """The reason why two runs in wall time can differ. If set, the clocks are not compared. Usually empty."""
+    """The reason why two runs in wall time can have different results. If set, the clocks are not compared. Usually
+    empty."""
     points: float | None = None
     failed: tuple[str, ...] = ()
     skipped: tuple[str, ...] = ()

@@ -93,7 +93,7 @@ def page() -> str:
 
 
 def _number(case: Case) -> str:
-    """Return the number of a case, with its folder unless it is mistakes/: the numbers of both folders start at 101."""
+    """Return a case's number, with its folder unless that is mistakes/: the numbers of each folder start at 101."""
     number = case.name.partition("-")[0]
     return number if case.folder.parent == MISTAKES else f"{case.folder.parent.name}/{number}"
 

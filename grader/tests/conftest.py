@@ -27,7 +27,7 @@ os.environ["ROS_DOMAIN_ID"] = str(default_domain())
 os.environ["GRADER_ROS2_DAEMON"] = "0"
 
 collect_ignore = ["cases", "mistakes", "unusual", "hostile"]
-"""Folders with submissions. Some of these contain their own tests."""
+"""Folders with submissions. Some of these folders contain tests of their own."""
 
 
 LONGEST = (
@@ -53,7 +53,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session")
 def in_ros(tmp_path_factory: pytest.TempPathFactory) -> InRos:
-    """Processes with ROS 2 and the turtlesim interfaces, which are built on first use."""
+    """Processes with ROS 2 and the turtlesim interfaces. The interfaces are built on first use."""
     home: Path = tmp_path_factory.mktemp("ros")
     return InRos(underlay.with_turtlesim(installation.find_ros()), home)
 

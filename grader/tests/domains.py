@@ -16,7 +16,8 @@ FIRST, LAST = 2, 101
 """The domains that tests use. Domain 1 belongs to root, and root may be using this machine at the same time. Domains
 above 101 use ports that Linux may assign to any program."""
 MOST = 8
-"""The number of domains that a process keeps besides its default one. Then it takes the least recently used one."""
+"""The number of domains that a process keeps in addition to its default domain. After that, a process uses the domain
+again that it has not used for the longest time."""
 _held: dict[int, IO[str]] = {}
 _own: list[int] = []
 

@@ -32,7 +32,7 @@ USER = 65531
 """An ordinary user, for tests that root runs."""
 HANG_S = 400.0
 SETTLE_S = 0.5
-"""How long to wait for processes that outlive the grading (s)."""
+"""The maximum time to wait for processes that continue after the grading (s)."""
 
 
 @dataclass(frozen=True)

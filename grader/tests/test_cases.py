@@ -1,4 +1,4 @@
-"""Every case in cases/ gets the report that it expects."""
+"""For every case in cases/, the grader writes the expected report."""
 
 from __future__ import annotations
 

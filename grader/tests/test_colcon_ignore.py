@@ -31,7 +31,10 @@ PACKAGES = [pair for pair in itertools.product(("exercises", "solutions"), STEPS
 
 
 def colcon_list(folder: Path) -> list[str]:
-    """Return the folders of the packages that colcon finds from `folder`. A message of colcon fails the test."""
+    """Return the folders of the packages that colcon finds from `folder`.
+
+    If colcon prints a message, the test fails.
+    """
     done = subprocess.run(
         [COLCON, "--log-base", "/dev/null", "list", "--paths-only"],
         cwd=folder,
@@ -45,7 +48,10 @@ def colcon_list(folder: Path) -> list[str]:
 
 
 def marker_maker(folder: Path) -> Path:
-    """Create a submission in `folder` whose setup.py creates a file. Return the path of that file."""
+    """Create a submission in `folder` whose setup.py creates a file.
+
+    Return the path of the file that setup.py creates.
+    """
     shutil.copytree(PACKAGE, folder / "my_robot_controller", dirs_exist_ok=True)
     trace = folder / "setup.py was run"
     setup = folder / "my_robot_controller/setup.py"

@@ -224,7 +224,7 @@ def test_the_thermometer_runs_on_the_real_rclpy(block: Block, tmp_path: Path) ->
 
 
 def test_the_tests_of_the_kettle_pass(tmp_path: Path) -> None:
-    """pytest runs the blocks of lesson 12 as one file. With a kettle that never switches off, tests fail."""
+    """pytest runs the blocks of lesson 12 as one file. If the kettle never switches off, tests fail."""
     shown = blocks((ROOT / "course/12-tests/lesson.md").read_text("utf-8"))
     code = "\n\n".join(block.text for block in shown if (block.language, block.about) == ("python", "example"))
     (tmp_path / "test_kettle.py").write_text(code, "utf-8")

@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
 MOST_AT_ONCE = 2000
-"""The maximum number of messages or requests that are taken at once. A flood of messages must not stop time."""
+"""The maximum number of messages or requests that are taken at once. Even if a flood of messages arrives, the clock
+must advance."""
 
 
 def take_messages(subscription: Subscription) -> None:

@@ -2,8 +2,8 @@
 
 In simulated time, a node that follows wall time would get a wrong verdict.
 
-Only the executable's module and the modules of the package that it imports are searched. A sleep in another node of the
-package does not matter.
+The search is limited to the executable's module and the modules of the package that it imports. A sleep in another node
+of the package does not matter.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ _NAMES = {
 _CLOCKS = {"Clock", "ROSClock"}
 """A clock other than the node's own clock does not follow /clock."""
 _TIMELESS = {"threading.Lock", "threading.RLock", "threading.local", "threading.current_thread", "threading.get_ident"}
-"""Names that multi-threaded nodes need. None of them waits for time to pass."""
+"""Names that multi-threaded nodes need. None of these names waits for time to pass."""
 MOST_NODES = 30
 """The size of the largest expression that is shown in full (AST nodes)."""
 

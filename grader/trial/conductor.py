@@ -156,7 +156,7 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
 def _run(trial: SimulatedTrial | WallTrial, duration_s: float) -> float:
     """Run the scenario, and return the time of SIGINT (s).
 
-    From the start of the scenario on, the node is the cause of every failure.
+    After the start of the scenario, the node is considered the cause of every failure.
     """
     try:
         return trial.run(duration_s)

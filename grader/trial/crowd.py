@@ -17,8 +17,8 @@ simulator counts as work of the node: a simulator that answers thousands of call
 machine.
 """
 SIMULATOR = 0.3
-"""The share of a processor that the simulator may use for itself. The measured share is a tenth. The rest counts as
-work for the node."""
+"""The share of a processor that the simulator may use for itself. In measurements, the simulator uses a tenth of a
+processor. The rest counts as work for the node."""
 OTHERS = 0.2
 """Other programs use the machine if they take at least this share of one processor."""
 WAITED = 0.05

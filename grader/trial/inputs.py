@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from grader.turtlesim.turtle import Pen, Rgb
 
 MOST_DRAWS = 200
-"""The number of draws after which a trajectory is accepted even if it is too close to a wall."""
+"""After this number of random draws, a trajectory is accepted even if it is too close to a wall."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Inputs:
     """The inputs of a trial.
 
     `drives` contains start times (s) with speeds (m/s, rad/s). `arguments` are additional ROS arguments of the node,
-    and `params_file` is the text of a file with parameters. All other fields are those of Scenario.
+    and `params_file` is the text of a file with parameters. All other fields have the same meaning as in Scenario.
     """
 
     drives: tuple[tuple[float, float, float], ...] = ()

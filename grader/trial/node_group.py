@@ -99,7 +99,7 @@ class GroupThreads:
         return Look(all(look.asleep for look in looks), sum((look.runs for look in looks), ()))
 
     def looks(self) -> list[Look]:
-        """Look at every thread once, and return the result for each process."""
+        """Read the state of every thread once, and return the result for each process."""
         return [threads.look() for threads in self._each]
 
     def runs(self) -> tuple[bytes, ...]:
@@ -119,5 +119,5 @@ class GroupThreads:
         return {tid: ran_s for threads in self._each for tid, ran_s in threads.run_times_s().items()}
 
     def waits(self) -> list[Wait]:
-        """Return the current wait of each thread, except those of Fast DDS."""
+        """Return what each thread, except those of Fast DDS, is waiting for."""
         return [wait for threads in self._each for wait in threads.waits()]

@@ -136,7 +136,7 @@ class NodeProcess:
         os.close(self._info)
 
     def await_ready(self) -> None:
-        """Wait until the launcher is ready for its order.
+        """Wait until the launcher is ready to receive the command that it must run.
 
         Raises:
             LaunchError: the launcher exited.

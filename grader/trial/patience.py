@@ -65,7 +65,7 @@ class TickPatience:
     def ended(self, now_s: float) -> bool:
         """Return whether the node has worked too long.
 
-        CPU time is counted from the first call that reads the CPU time.
+        CPU time is counted from the time when it is read for the first time.
         """
         if now_s < self._request_s:
             return False

@@ -237,7 +237,7 @@ class Recorder(Node):
 
 
 def _each_type_first(endpoints: set[Endpoint]) -> list[Endpoint]:
-    """Return one endpoint of each type first, so that a hundred endpoints of one type cannot crowd out another type."""
+    """Return one endpoint of each type first, so that a hundred endpoints of one type do not displace another type."""
     ordered = sorted(endpoints, key=str)
     first = list({end.type: end for end in reversed(ordered)}.values())
     return first + [end for end in ordered if end not in first]

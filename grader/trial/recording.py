@@ -223,7 +223,7 @@ class Recording:
     def stalled(self, t_s: float) -> bool:
         """Return whether this time was in a stall or right after a stall.
 
-        At such times, the arrival time of a message depends on the machine, not on the node.
+        At such times, the arrival time of a message depends more on the machine than on the node.
         """
         return any(begin <= t_s <= end + AFTER_STALL_S for begin, end in self.stalls)
 

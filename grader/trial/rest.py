@@ -124,7 +124,7 @@ class Threads:
         self._files = {}
 
     def look(self) -> Look:
-        """Look at every thread once.
+        """Read the state of every thread once.
 
         Raises:
             GoneError: the process has exited.
@@ -145,7 +145,7 @@ class Threads:
         raise GoneError
 
     def runs(self) -> tuple[bytes, ...]:
-        """Return the number of runs of each thread of the last look.
+        """For each thread in the last observation, return how many times the thread has run.
 
         Reading the counters is three times as fast as a full observation of the threads.
         """
@@ -180,7 +180,7 @@ class Threads:
         return found
 
     def waits(self) -> list[Wait]:
-        """Return the current wait of each thread, except those of Fast DDS.
+        """Return what each thread, except those of Fast DDS, is waiting for.
 
         A running thread waits for nothing.
         """

@@ -32,12 +32,13 @@ if TYPE_CHECKING:
 
 QUIET_S = 0.02
 """The time without discovery traffic after which discovery counts as finished (s). This is less than half the time
-between two announcements (fastdds.xml). If it were longer, the announcements of the simulator and the node might leave
-no such gap for many seconds."""
+between two announcements (fastdds.xml). If this time were longer, the announcements of the simulator and the node might
+leave no gap of this length for many seconds."""
 WAKE_S = 1.0
 """The maximum time to wait until the node notices /clock (s). A node that uses create_rate never wakes up at time 0."""
 MOST_CPU = 2.0
-"""A node whose CPU time exceeds this multiple of the duration cannot keep up in wall time either. Wall time decides."""
+"""In wall time, too, a node is too slow if its CPU time exceeds this multiple of the trial's duration. Wall time
+decides."""
 GRAPH_EVERY = 31
 """The number of frames between two checks of the graph and of the DDS events: half a second."""
 OWN_EVERY = 5
@@ -46,7 +47,8 @@ of an action."""
 WAITS_EVERY = 7
 """The number of frames between two checks of the waits of the node's threads."""
 ENDING_S = 0.5
-"""The time limit for a sleeping node to exit (s of wall time). If it does not, the sleep counts as a doubt."""
+"""The time limit for a sleeping node to exit (s of wall time). If the node has not exited by then, its sleep is taken
+as a sign that it follows wall time."""
 _POLL_S = 0.00005
 
 
@@ -137,7 +139,10 @@ class SimulatedTrial(Simulation):
         self._handled: tuple[bytes, ...] = ()
 
     def _rest(self, patience: TickPatience) -> bool:
-        """Wait until nothing more can happen at this instant. Return False if the node never becomes idle."""
+        """Wait until neither the node nor the simulator has anything left to do before the clock advances.
+
+        Return False if the node never becomes idle.
+        """
         before: tuple[bytes, ...] | None = None
         equal = 0
         while True:

@@ -224,7 +224,10 @@ class Simulation:
         return handled
 
     def follow_graph(self) -> bool:
-        """Record new topics, and calls of new services between several nodes. Return whether there were any."""
+        """Record new topics.
+
+        If several nodes run, also record the calls of new services between them. Return whether there were any.
+        """
         fresh = self.recorder.follow_graph()
         return (self._silent_servers is not None and self._silent_servers.follow()) or fresh
 

@@ -99,7 +99,7 @@ def compile_conductor() -> None:
 class Trial:
     """One trial, as a context manager.
 
-    On entry, the trial starts the simulator and the launcher, so that both are ready when the build is done.
+    Entering the context starts the simulator and the launcher, so that both are ready when the build is done.
     """
 
     def __init__(self, plan: Plan, ros: installation.Ros, *, in_cell: bool) -> None:

@@ -63,8 +63,8 @@ class TurtlesimNode(Node):
         """Create the node. turtle1 starts at `start` (m, m, rad), also after a reset.
 
         `Hooks` describes the callbacks. A pose is published every `pose_every` frames, starting at `pose_from_s` (s).
-        The real turtlesim publishes a pose in each frame. Services are answered `answers_after_s` (s) late. The turtles
-        draw on `canvas`.
+        The real turtlesim publishes a pose in each frame. Services respond `answers_after_s` (s) late. The turtles draw
+        on `canvas`.
         """
         self._pose_every, self._pose_from_s = pose_every, pose_from_s
         self._late = LateAnswers(answers_after_s) if answers_after_s else None

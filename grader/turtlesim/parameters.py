@@ -47,7 +47,7 @@ def declare(node: Node) -> None:
 def refusal(node: Node, parameters: Iterable[Parameter]) -> SetParametersResult | None:
     """Return why these parameters cannot be set, in the words of rclcpp, or None if they can be set.
 
-    The messages of rclpy itself have other words.
+    rclpy's own messages are worded differently.
 
     Source: rclcpp/src/rclcpp/node_interfaces/node_parameters.cpp, which checks a request in this order.
     """

@@ -30,7 +30,7 @@ SENT_EVERY_S = 0.25
 whether the simulator is running.
 """
 MOST_LINES = 1500
-"""The maximum number of lines in a message. Each has 60 bytes, so a message fits into the buffer of a socket."""
+"""The maximum number of lines in a message. Each line has 60 bytes, so a message fits into the buffer of a socket."""
 LARGEST = 1 << 20
 """The buffer size for receiving a message (bytes). No message is larger."""
 LARGEST_PICTURE = 100_000

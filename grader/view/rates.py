@@ -1,4 +1,4 @@
-"""Compute rates from counts of arrivals. The caller passes the time (s)."""
+"""Compute rates from counts of arrivals. The current time (s) is an argument."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Arrivals:
     """The arrivals of messages on one topic."""
 
     _observed: deque[tuple[float, int]] = field(default_factory=deque)
-    """The time of the last arrival and the number of arrivals of each group."""
+    """For each group of messages: the time of its last arrival, and the number of its arrivals."""
 
     def add(self, when_s: float, count: int = 1) -> None:
         """Record that `count` messages have arrived since the last call. The last arrival was at `when_s` (s)."""

@@ -21,7 +21,7 @@ START = "Traceback (most recent call last):"
 IGNORED = "Exception ignored in"
 """Python prints this before the traceback of an exception that it ignores, such as one in a destructor."""
 PACKAGES = ("site-packages", "dist-packages")
-"""Folders of installed modules. A module next to setup.py is installed directly into such a folder."""
+"""Folders of installed modules. A module next to setup.py is installed directly into one of these folders."""
 FRAME = re.compile(r'\s*File "(?P<file>[^"]*)", line (?P<line>\d{1,7})(?:, in (?P<function>.*))?')
 ERROR = re.compile(r"(?P<type>[A-Za-z_][\w.]*)(?:: (?P<message>.*))?")
 GUESS = re.compile(r" \(/[^)]*\)$|\.? Did you mean: .*| The following argument types are supported:.*")

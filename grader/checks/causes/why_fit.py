@@ -40,7 +40,7 @@ class Fit:
 
     @property
     def centre_right(self) -> bool:
-        """Whether the centre is within its tolerances."""
+        """Whether the two coordinates of the centre are within their tolerances."""
         return self.is_like(self.truth[:2])
 
     def is_like(self, other: Sequence[float], more: float = 0.0) -> bool:

@@ -55,7 +55,7 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class OneOf:
-    """The correct strings. Neither case nor spaces matter."""
+    """The correct strings. Upper and lower case and spaces do not matter."""
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
     accepts: tuple[str, ...] = strings(about="The right answers. Upper and lower case and spaces do not matter.")

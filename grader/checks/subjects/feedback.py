@@ -28,7 +28,8 @@ BEGIN_S = 0.1
 """A log line may be about the previous goal until this time after a new goal was accepted (s)."""
 FRAME_S = 0.016
 LONG = 2.0
-"""A goal counts if it lasts at least this many periods. A shorter one may end between two lines."""
+"""A goal counts if it lasts at least this many periods. A goal that lasts for a shorter time can end between two log
+lines."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -33,7 +33,7 @@ class Goal:
 
 
 NEARLY_M = 1.0
-"""A turtle that stops this near to its goal (m), which is in the code, may have stopped too early."""
+"""If a turtle stops this near (m) to a goal that is a constant in the code, it may have stopped too early."""
 
 
 def goal(evidence: Evidence, params: Goal) -> Finding:

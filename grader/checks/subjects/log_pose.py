@@ -189,7 +189,7 @@ def _reads(step: ast.BinOp, begin: str) -> bool:
 
 
 def _trusted(recording: Recording, format_: str) -> list[Line]:
-    """Return the lines in the format that were not delayed because the machine stalled."""
+    """Return the lines in the required format, except lines that were delayed because the machine stalled."""
     return [line for line in student_log.in_format(recording, format_) if not recording.stalled(line.t_s)]
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grader.trial.observed import Call
 
 AT_ONCE_S = 0.05
-"""In wall time, a call that is at most this much earlier than a response may be simultaneous with it (s)."""
+"""In wall time, a call and a response may be simultaneous if the call is recorded at most this much earlier (s)."""
 CLOSE = 1e-3
 """The maximum error of a number in a request. Many fields are float32."""
 

@@ -31,7 +31,7 @@ Six = tuple[float, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class Values:
-    """The values that each command must have. Fields that are not given must be 0."""
+    """The values that each command must have. Fields that are not in the table must be 0."""
 
     linear_x_m_s: float = number(0.0, about="linear.x of each command.")
     linear_y_m_s: float = number(0.0, about="linear.y of each command.")

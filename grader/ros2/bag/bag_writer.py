@@ -132,7 +132,7 @@ class BagWriter:
 def _as_rosbag2_names_it(folder: Path, ending: str) -> None:
     """Rename the file and the distribution as in rosbag2: bag/bag_0.mcap, jazzy.
 
-    The metadata is replaced last. If the metadata is missing, `ros2 bag reindex` restores it.
+    The file metadata.yaml is replaced last. If the metadata is missing, `ros2 bag reindex` restores it.
     """
     metadata = folder / "metadata.yaml"
     data = yaml.safe_load(metadata.read_text("utf-8"))

@@ -1,4 +1,4 @@
-"""Edits of a copy: where they apply, and what they leave unchanged."""
+"""Tests of edits: where an edit applies, and what it leaves unchanged."""
 
 from __future__ import annotations
 

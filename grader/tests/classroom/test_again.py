@@ -29,7 +29,10 @@ STEP = "03-circle-publisher"
 
 
 class Scripted:
-    """An engine with a planned sequence of results for each submission. The last result is repeated."""
+    """An engine with a planned sequence of results for each submission.
+
+    After the last planned result, this result is repeated.
+    """
 
     def __init__(self, ends: dict[str, list[str]]) -> None:
         self.graded: Counter[str] = Counter()

@@ -1,4 +1,4 @@
-"""Each odd submission of a class has a line in the CSV, and all others are graded."""
+"""Each unusual submission of a class has a line in the CSV, and all other submissions are graded."""
 
 from __future__ import annotations
 

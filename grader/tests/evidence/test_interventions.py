@@ -1,4 +1,4 @@
-"""Movements that count as interventions, which depends on the movement and not on the service that was called."""
+"""Test which movements count as interventions. This depends on the movement and not on the service that was called."""
 
 from __future__ import annotations
 

@@ -72,7 +72,7 @@ class Fault:
     nth: int
     since: str
     in_rooms: bool = False
-    """Whether the conductor calls the function."""
+    """Whether the conductor is the process that calls the function."""
 
 
 @dataclass(frozen=True)

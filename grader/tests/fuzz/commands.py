@@ -72,7 +72,7 @@ def graded(
     clock: ClockChoice = "wall",
     unjudged: Collection[str] = (),
 ) -> Report:
-    """Return the report. Sometimes write the report in every format.
+    """Return the report. For some inputs, also write the report in every format.
 
     Only the checks `unjudged` may end with `error`.
     """

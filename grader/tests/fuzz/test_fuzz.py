@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 MOST = 4000
-"""The length of an invented input (bytes). A changed seed keeps about its length."""
+"""The length of an invented input (bytes). A changed seed has about the same length as before."""
 
 
 @pytest.fixture(autouse=True)

@@ -32,7 +32,7 @@ SLEEPS = WallTimeNeeded("the node sleeps in wall time")
 class Trials:
     """A replacement for the class `Trial`.
 
-    Each trial in simulated time raises the next of the `doubts`, until none is left.
+    Each trial in simulated time raises the next error in `doubts`, until no error is left.
     """
 
     doubts: list[WallTimeNeeded]

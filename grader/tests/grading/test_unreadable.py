@@ -127,7 +127,7 @@ def test_what_takes_its_reader_along_fails_every_check_and_nothing_more_is_read(
 
 
 def _in_a_child(how: Callable[..., NoReturn]) -> Callable[..., Any]:
-    """Return a function that fails in a child process, and is the real judge in this process, as in `regrade`."""
+    """Return a judge that fails in a child process and works normally in this process, as in `regrade`."""
     return lambda *given: how() if reader._Child.inside else judge_so_far(*given)
 
 

@@ -39,7 +39,8 @@ SHARED = "grader.checks.outcome"
 modules."""
 SURVIVED, KILLED = 0, 1
 LIMIT_S = 60
-"""The limit on CPU time. A mutant that exceeds it never ends, and counts as noticed. Other load does not matter."""
+"""The limit on CPU time. A mutant that exceeds it never ends, and counts as noticed. Other load on the machine does not
+matter."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +65,7 @@ class Job:
 
 
 def load(recorded: Iterable[Recorded]) -> list[Material]:
-    """Read recordings. Then unload the checks, so that the next import loads them again."""
+    """Read recordings. At the end, unload the checks, so that the next import loads them again."""
     from grader.checks.exercises import load_exercise
     from grader.evidence.recording_format import load as open_archive
 
@@ -159,8 +160,8 @@ def who_runs(mutant: Mutant, lines: Lines) -> set[str]:
 def requested(mutant: Mutant, lines: Lines, alike: int) -> list[str]:
     """Return some of the cases or tests that run the mutant's lines. Many cases that run the same lines are left out.
 
-    Hundreds of cases pass a check with the same lines. A mutant may seem to survive although a case that was left out
-    would notice it. Leaving out cases can never make a mutant seem noticed.
+    Hundreds of passing cases run the same lines of a check. A mutant may seem to survive although a case that was left
+    out would notice it. Leaving out cases can never make a mutant seem noticed.
     """
     names = sorted(who_runs(mutant, lines))
     if mutant.at_import:

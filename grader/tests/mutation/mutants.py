@@ -35,14 +35,15 @@ LEFT_OUT = {
     mutators.operator_arg_removal,
     mutators.operator_match,
 }
-"""The text of a finding does not change its diagnosis, and other tests check it. A match covers several lines."""
+"""The text of a finding does not change its diagnosis, and other tests check it. One match can cover several lines."""
 IDS = frozenset(DIAGNOSES)
 """Strings that are not only text for readers."""
 WORDS = frozenset({"shorten", "a_list", "count", "shown"})
 """Functions that create text. Numbers in their arguments do not change a diagnosis."""
 STRINGS = cst.SimpleString | cst.FormattedString | cst.ConcatenatedString
 MAKERS = {"failed": None, "Cause": 2}
-"""Maps calls whose first argument is the id of a diagnosis to the index of the place among the positional arguments."""
+"""Maps each function whose first argument is the id of a diagnosis to the index of the positional argument that states
+the place."""
 OTHER = cst.SimpleString('"another"')
 KINDS = OUT, ALWAYS, NAME, PLACE, DETAIL = ("taken out", "always", "other name", "no place", "detail")
 """The effect of a change on a diagnosis. A "detail" is a change by one of mutmut's operators."""
@@ -131,8 +132,8 @@ def _changes(node: cst.CSTNode) -> Iterator[Change]:
 
 
 def _places(call: cst.Call, index: int | None) -> Iterator[cst.BaseExpression]:
-    """Return the arguments of a call that state a place in the source: those with the keyword `where` or at this
-    index."""
+    """Return the arguments of a call that state a place in the source: those at this index or with the keyword
+    `where`."""
     for number, argument in enumerate(call.args):
         if number == index if argument.keyword is None else argument.keyword.value == "where":
             yield argument.value
@@ -205,7 +206,7 @@ def _is_docstring(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode])
 
 
 def _lines(statement: cst.CSTNode, positions: Mapping[cst.CSTNode, CodeRange]) -> tuple[int, int]:
-    """Return the lines of a statement. For a compound statement, return the lines of its head."""
+    """Return the lines of a statement. For a compound statement, return only the lines of its header."""
     where = positions[statement]
     body = getattr(statement, "body", None)
     if isinstance(statement, cst.BaseCompoundStatement) and isinstance(body, cst.IndentedBlock):

@@ -45,7 +45,7 @@ def _measured(files: Iterable[Path]) -> Lines:
 
 
 class _Contexts:
-    """Reports to the coverage measurement which test is running."""
+    """Tells the coverage measurement which test is running."""
 
     def __init__(self, measured: object) -> None:
         self._measured = measured

@@ -35,7 +35,7 @@ class Notebook:
     outputs: list[Any] = field(default_factory=list)
 
     def run(self, source: str) -> str:
-        """Run a cell. Return all text below it, including errors."""
+        """Run a cell. Return all text below the cell, including errors."""
         cell = nbformat.v4.new_code_cell(source)  # type: ignore[no-untyped-call]
         self.client.nb.cells.append(cell)
         self.client.execute_cell(cell, len(self.client.nb.cells) - 1)

@@ -57,7 +57,7 @@ def _attribute_without_self(package: Package, draw: Random) -> Change | None:
 
 
 def _stored_without_self(package: Package, draw: Random) -> Change | None:
-    """Remove `self.` where an attribute is set that is set only once, and used elsewhere."""
+    """Remove `self.` where an attribute is set, if the attribute is set only once and is used elsewhere."""
     text = package.files[package.source]
     stores = [
         m

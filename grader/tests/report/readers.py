@@ -1,4 +1,4 @@
-"""Readers for the formats of a class.
+"""Read the files that the grader writes about a class.
 
 The readers imitate a spreadsheet, Gradescope and the runner of GitHub Actions.
 """

@@ -1,6 +1,6 @@
 """Reports for tests: one for each status, and a hostile one.
 
-The real judge creates all these reports from invented evidence.
+The grader judges invented evidence to create all these reports.
 """
 
 from __future__ import annotations

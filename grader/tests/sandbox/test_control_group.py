@@ -1,6 +1,6 @@
 """If control groups are allowed, the kernel limits what a cell uses in total.
 
-If groups are not allowed, the cell has none.
+If control groups are not allowed, the cell has no control group.
 """
 
 from __future__ import annotations

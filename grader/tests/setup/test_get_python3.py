@@ -21,7 +21,7 @@ SUDO_ASKS = '[ "$1" = -n ] && exit 1; exec "$@"'
 class Machine:
     """A machine without python3.
 
-    The PATH of the machine contains stand-ins and the few programs that the script runs.
+    The PATH of the machine contains fake programs and the few real programs that the script runs.
     """
 
     def __init__(self, folder: Path, user: int) -> None:

@@ -26,7 +26,7 @@ APT = "apt-get install -y -q --no-install-recommends -o DPkg::Lock::Timeout=60 -
 
 
 class Machine:
-    """A machine with stand-ins, and the messages of the set-up."""
+    """A machine on which fake programs replace the system's programs, and the messages of the set-up."""
 
     def __init__(self, folder: Path) -> None:
         self.stand_ins = StandIns(folder)

@@ -105,7 +105,7 @@ def test_it():
 
 
 def test_the_code_and_the_environment_are_the_same_for_all_nodes(files: dict[str, bytes]) -> None:
-    """Each run fails with the digest of everything that it can read. All these digests are equal."""
+    """Each run fails, with a digest of everything that the run can read. All these digests are equal."""
     nodes = spec("rate", "sign")
     # The correct node is not run, because its rejection would end the other runs.
     runs = run(dataclasses.replace(nodes, right_runs=0), {**files, TESTS: PEEKS.encode()})

@@ -34,7 +34,10 @@ for _ in sys.stdin:
 
 @contextmanager
 def program(work_s: float) -> Iterator[subprocess.Popen[str]]:
-    """Yield a program that uses this CPU time (s) for each line of input. All such programs share one processor."""
+    """Yield a program that uses this CPU time (s) for each line of input.
+
+    All programs of this kind share one processor.
+    """
     code = WORKS.format(processor=min(os.sched_getaffinity(0)), work_s=work_s)
     with python(code) as process:
         yield process
@@ -142,7 +145,10 @@ def test_what_the_simulator_works_beyond_its_own_share_is_the_nodes(monkeypatch:
 
 
 class Busy:
-    """A replacement for a node and a trial. The processes have always worked for these times (s)."""
+    """An object that replaces both a node and a trial in tests.
+
+    The processes have always worked for these times (s).
+    """
 
     def __init__(
         self,

@@ -40,7 +40,7 @@ _DISCOVERY_S = 2.0
 
 
 class Teleop(Node):
-    """The node teleop_turtle. A view gives the node another name, chooses the turtle, and suppresses messages."""
+    """The node teleop_turtle. A view replaces the name of the node, chooses the turtle, and suppresses messages."""
 
     def __init__(
         self,

@@ -38,7 +38,7 @@ def solution() -> Submission:
 
 
 def judged(check: str, called: Called | None = None, files: dict[str, bytes] | None = None) -> Finding:
-    """Return the finding of one check for one result, or for the solution with these files in it."""
+    """Return the finding of one check on this result of a call, or on the solution with these files added."""
     spec = SPECS[check]
     files = files or {}
     bag = any(path.startswith("circle_bag/") for path in files)
