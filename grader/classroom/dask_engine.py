@@ -71,7 +71,7 @@ class DaskEngine:
         try:
             from distributed import Client
         except ImportError as error:
-            message = "Dask is not installed. Run `make cluster` in the course's folder to install it."
+            message = "Dask is not installed. Run `make cluster` in the course's folder to install Dask."
             raise UsageError(message) from error
         try:
             # Dask has no type annotations.

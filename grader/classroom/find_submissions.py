@@ -88,7 +88,7 @@ def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
             continue
         if not known:
             message = (
-                f"Which exercise is {shown(str(each.path))} for? Name it with --exercise, one of: "
+                f"Which exercise is {shown(str(each.path))} for? Name the exercise with --exercise, one of: "
                 f"{', '.join(catalogue())}. (In nbgrader's submitted/STUDENT/EXERCISE, it is the name "
                 "of the folder.)"
             )

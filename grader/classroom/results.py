@@ -150,7 +150,9 @@ def opened(folder: Path) -> Iterator[Results]:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
-            message = f"Another `grader grade` is using {folder}. Let it finish, or name another folder with --out."
+            message = (
+                f"Another `grader grade` is using {folder}. Let that command finish, or name another folder with --out."
+            )
             raise UsageError(message) from error
         for leftover in folder.rglob(f"*{_PARTIAL}"):
             leftover.unlink(missing_ok=True)

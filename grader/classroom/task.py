@@ -84,7 +84,7 @@ def perform(
     """
     if task.grader != grader_key():
         message = (
-            f"A worker has another version of the grader ({grader_key()} instead of {task.grader}). Update it "
+            f"A worker has another version of the grader ({grader_key()} instead of {task.grader}). Update the worker "
             "and start it again."
         )
         raise MachineError(message)

@@ -127,7 +127,7 @@ def open_class(folder: Path | None) -> ClassFolders:
         from nbgrader.coursedir import CourseDirectory
         from traitlets.config.loader import PyFileConfigLoader
     except ImportError as error:
-        message = "nbgrader is not installed. Run `make notebooks` to install it."
+        message = "nbgrader is not installed. Run `make notebooks` to install nbgrader."
         raise MachineError(message) from error
     config = PyFileConfigLoader(CONFIG, path=str(found.resolve())).load_config()
     return ClassFolders(CourseDirectory(config=config), config)

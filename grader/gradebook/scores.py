@@ -100,7 +100,7 @@ def sync(
     if not submissions:
         message = (
             f"{folders.course.submitted_directory} has no submissions yet. Run `nbgrader collect STEP`, or "
-            "copy submissions to it."
+            "copy submissions to this folder."
         )
         raise UsageError(message)
     found, why = _put_together(folders, submissions)

@@ -25,7 +25,8 @@ def meant(path: Path | None, exercise: str | None, folder: Path | None = None) -
     known, place = guessed(path, exercise, folder)
     if known is None:
         message = (
-            f"Which exercise is {place.resolve().name} for? Name it with --exercise, one of: {', '.join(catalogue())}. "
+            f"Which exercise is {place.resolve().name} for? Name the exercise with --exercise, one of: "
+            f"{', '.join(catalogue())}. "
             "Or start a step in your workspace: `grader start 01`."
         )
         raise UsageError(message)

@@ -89,7 +89,7 @@ def run(program: Program, *, view: bool) -> int:
             return 1
         with nullcontext() if _beside_another(env) else _turtlesim(env, view=view):
             print(
-                f"{program.executable} is running. Press Ctrl-C to stop it and turtlesim.\n",
+                f"{program.executable} is running. Press Ctrl-C to stop the program and turtlesim.\n",
                 file=sys.stderr,
                 flush=True,
             )

@@ -74,7 +74,7 @@ def install(prefix: Path | None = None) -> Path:
     try:
         from jupyter_client.kernelspec import KernelSpecManager
     except ImportError as error:
-        message = "Jupyter is not installed. Run `make notebooks` to install it."
+        message = "Jupyter is not installed. Run `make notebooks` to install Jupyter."
         raise MachineError(message) from error
     with tempfile.TemporaryDirectory() as folder:
         Path(folder).chmod(0o755)

@@ -177,7 +177,7 @@ def _command(executable: str) -> tuple[list[str], Path]:
     name = executable.removesuffix(".py")
     files = [file for file in Path.cwd().glob(f"*/*/{name}.py") if file.parent.name == file.parent.parent.name]
     if not files:
-        message = f"The package next to this notebook has no {name}.py. Write it with `%%node {name}.py`."
+        message = f"The package next to this notebook has no {name}.py. Write the file with `%%node {name}.py`."
         raise UsageError(message)
     package = files[0].parent
     start = f"import sys; sys.path.insert(0, {str(package.parent)!r}); from {package.name}.{name} import main; main()"

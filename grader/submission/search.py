@@ -145,7 +145,7 @@ def _for_a_file(name: str) -> str:
         if any((above / file).is_file() for file in PACKAGE_FILES):
             return f"The grader grades whole packages. Give the folder of the package: {shown(str(above))}."
     if name.lower().endswith((".zip", ".tar", ".tar.gz", ".tgz")):
-        return "Unpack it, and give the folder of the package."
+        return "Unpack the archive, and give the folder of the package."
     if name.endswith(".py"):
         return "The grader grades whole packages. Give the folder that contains package.xml."
     return GIVE

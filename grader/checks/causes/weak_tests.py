@@ -60,7 +60,7 @@ def always_false(code: TestCode) -> Cause | None:
             value = node.test if isinstance(node, ast.Assert) else None
             is_false = isinstance(value, ast.Constant) and not value.value
             if is_false or _is_call_of(node, "fail"):
-                text = f"{shorten(test.node.name, 60)} fails on every node, even on the right one."
+                text = f"{shorten(test.node.name, 60)} fails on every node, even on the correct node."
                 return Cause("always-fails", text, Where(test.module.file, node.lineno))
     return None
 

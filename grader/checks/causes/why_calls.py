@@ -216,7 +216,7 @@ def _too_many(scene: CrashScene, many: re.Match[str]) -> Cause | None:
     return Cause("too-many-arguments", text)
 
 
-MORE = {"get_logger": " It returns the logger, and the methods of the logger take the text."}
+MORE = {"get_logger": " get_logger() returns the logger, and the methods of the logger take the text."}
 
 
 def _published(wanted: str, got: str) -> Cause:

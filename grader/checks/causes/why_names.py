@@ -208,7 +208,9 @@ def why_unbound(scene: CrashScene) -> Cause:
     if local and local[0] > scene.line and not outside:
         inner = next((each for each in scene.functions(name) if each.lineno == local[0]), None)
         if own is not None and inner is not None and inner.args.args[:1] and inner.args.args[0].arg == "self":
-            text = f"{name} is indented too far. It is inside another method, so it is not a method of the class."
+            text = (
+                f"{name} is indented too far. {name} is inside another method, so {name} is not a method of the class."
+            )
             return Cause("method-in-method", text, scene.at(inner))
         return Cause("name-too-early", f"{name} gets its value in line {local[0]}, after this line.")
     return Cause(

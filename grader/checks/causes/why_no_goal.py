@@ -34,7 +34,9 @@ def why_no_goal(evidence: Evidence, action: str, type_name: str) -> Cause:
             Cause("goal-not-sent", "", evidence.place(*SENDS))
             if any(code.calls(name) for name in SENDS)
             else Cause(
-                "goal-not-sent", "Creating a client sends nothing. Its method send_goal_async sends a goal.", where
+                "goal-not-sent",
+                "Creating a client sends nothing. The client's method send_goal_async sends a goal.",
+                where,
             )
         )
     )

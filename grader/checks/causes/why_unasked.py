@@ -42,7 +42,8 @@ def waits_in_callback(evidence: Evidence) -> Cause | None:
         for node in ast.walk(method):
             if waits_inside(node):
                 text = (
-                    "A callback waits for a response. While it waits, rclpy.spin cannot receive the response. "
+                    "A callback waits for a response. While the callback waits, rclpy.spin cannot receive the "
+                    "response. "
                     "Use the method that ends in _async, and add_done_callback for what comes next."
                 )
                 return Cause("waits-in-callback", text, Where(module.file, getattr(node, "lineno", None)))
@@ -74,6 +75,6 @@ def _never_called(evidence: Evidence) -> Cause:
             "service-not-called", "The node has no client for this service. See create_client.", evidence.code.start
         )
     if not evidence.code.calls("call_async") and not evidence.code.calls("call"):
-        text = "Creating a client sends nothing. Its method call_async sends a request."
+        text = "Creating a client sends nothing. The client's method call_async sends a request."
         return Cause("service-not-called", text, evidence.place("create_client"))
     return Cause("service-not-called", "", evidence.place("call_async", "call"))

@@ -180,7 +180,7 @@ def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
             return failed(observed, expected, Cause("target-name", text, where))
         away_m = distance_m(recording, track, call.t_s)
         if not away_m <= params.reach_m + SLACK_M:
-            observed = f"When the node called {params.service} for {track.turtle}, it was {away_m:.2f} m away."
+            observed = f"When the node called {params.service} for {track.turtle}, this turtle was {away_m:.2f} m away."
             return failed(observed, expected, Cause("from-afar", "", where), near_edge=_near(away_m, params))
     if often:
         observed = f"The node called {params.service} for {often[0]} repeatedly."

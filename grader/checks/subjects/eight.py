@@ -180,8 +180,8 @@ EIGHT = Kind(
     "The turtle drives a figure eight",
     Eight,
     eight,
-    about="The turtle drives two round lobes of the same size, one to each side, that meet where it started; then it "
-    "stands still.",
+    about="The turtle drives two round lobes of the same size, one to each side, which meet at the start position. "
+    "Then the turtle stands still.",
     drives=True,
     requested=requested_eight,
     radius_m=lambda params: params.radius_m,

@@ -52,7 +52,7 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
     if not close.holds(end):
         observed = f"The turtle ends at x={trajectory.x[-1]:.2f} y={trajectory.y[-1]:.2f}, {end:.2f} m from the goal."
         if close.holds(nearest):
-            observed += f" On the way it came within {nearest:.2f} m of the goal."
+            observed += f" On the way, the turtle came within {nearest:.2f} m of the goal."
             cause = "The turtle does not stop at the goal. Near the goal, publish a command with all values 0."
             return failed(observed, expected, Cause("goes-on", cause, where), near_edge=near)
         last = evidence.commands[-1] if evidence.commands else None
@@ -64,7 +64,7 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
             if end <= NEARLY_M and _in_code(evidence, params.x_m, params.y_m):
                 cause = (
                     "The last command has all values 0, as if the turtle had arrived. "
-                    f"At which distance from the goal does the node stop? It is {end:.1f} m here."
+                    f"At which distance from the goal does the node stop? Here, this distance is {end:.1f} m."
                 )
             return failed(observed, expected, Cause("not-there", cause, where), near_edge=near)
         if end >= away[0] - MOVED_M:

@@ -131,7 +131,10 @@ def _other_turn(before: Goal, goal: Goal, turn_deg: float) -> str:
     if abs(normalize(theta - math.radians(turn_deg))) <= SAME_RAD:
         return "A goal is an absolute heading, not a turn: 0 is to the right, whatever the heading was before."
     more = math.degrees(normalize(theta - float(before.request["theta"])))
-    return f"It is {more:.0f} degrees further to the left than the previous goal; the exercise asks for {turn_deg:g}."
+    return (
+        f"This heading is {more:.0f} degrees further to the left than the previous goal; the exercise asks for "
+        f"{turn_deg:g}."
+    )
 
 
 def _other_heading(

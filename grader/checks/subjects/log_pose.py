@@ -196,7 +196,8 @@ def _trusted(recording: Recording, format_: str) -> list[Line]:
 def _too_few(evidence: Evidence, text_: str) -> Finding:
     if len(student_log.in_format(evidence.recording, text_)) >= FEWEST:
         return Finding(
-            Status.ERROR, "The machine was too busy to judge this in wall time. Try again when it is less busy."
+            Status.ERROR,
+            "The machine was too busy to judge this in wall time. Try again when the machine is less busy.",
         )
     expected = f"The log has at least {FEWEST} lines in this format."
     where = evidence.place("info")

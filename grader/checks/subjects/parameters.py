@@ -158,7 +158,9 @@ def _refused(evidence: Evidence, observed: str, expected: str, reason: str) -> F
         text = "Only a declared parameter can be set."
         return failed(observed, expected, Cause("parameter-undeclared", text, evidence.place("declare_parameter")))
     if "Callback returned" in reason:
-        text = "The callback must return a SetParametersResult in every case. Without return, it returns None."
+        text = (
+            "The callback must return a SetParametersResult in every case. Without return, the callback returns None."
+        )
         return failed(observed, expected, Cause("result-not-returned", text, where))
     if "type" in reason:
         text = "The type of the default value is the type of the parameter. Write 2.0 for 2."

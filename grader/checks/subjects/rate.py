@@ -99,7 +99,8 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
         return _few(evidence, params, what, measured, f"{expected[:-1]} until Ctrl-C.")
     if measured.trusted < TRUSTED:
         return Finding(
-            Status.ERROR, "The machine was too busy to measure a rate in wall time. Try again when it is less busy."
+            Status.ERROR,
+            "The machine was too busy to measure a rate in wall time. Try again when the machine is less busy.",
         )
     share = params.tolerance_percent / 100.0
     mean_hz = 1.0 / measured.mean_s if measured.mean_s > 0.0 else float("inf")

@@ -201,7 +201,7 @@ def _wrong_names(evidence: Evidence, message: Announcement, expected: str) -> Fi
         text = 'The text consists of the names, separated by single spaces: " ".join(names).'
         return failed(f'{at} is "{shorten(message.text)}".', expected, Cause("target-format", text, where))
     if strange:
-        text = "Remove a name from the list when it is caught, and add it when the response of /spawn arrives."
+        text = "Remove a name when its turtle is caught, and add a name when the response of /spawn arrives."
         observed = f"{at} names {a_list([shorten(name) for name in strange])}, which does not exist."
         return failed(observed, expected, Cause("still-announced", text, where))
     missing = sorted(throughout - called - set(message.names))

@@ -39,11 +39,11 @@ def pass_(evidence: Evidence, _: NoParams) -> Finding:
     spec = evidence.trial.tests
     assert spec is not None
     runs, code = evidence.bench.right, code_of(evidence)
-    expected = "All tests pass on the right node in every run."
+    expected = "All tests pass on the correct node in every run."
     rejected = [run for run in runs if not run.accepted]
     if not rejected and len(runs) == spec.right_runs:
         if any(run.passed for run in runs):
-            return passed(f"All tests pass on the right node ({count(len(runs), 'run')}).")
+            return passed(f"All tests pass on the correct node ({count(len(runs), 'run')}).")
         where = code.tests[0].where if code.tests else None
         skipped = any(run.skipped for run in runs)
         why = "Every test is skipped, and a skipped test tests nothing." if skipped else LEFT_OUT
@@ -53,7 +53,7 @@ def pass_(evidence: Evidence, _: NoParams) -> Finding:
         return _hung(expected, code, hung)
     if len(rejected) < len(runs):
         cause = Cause("unsteady-tests", UNSTEADY, why_rejected(rejected[0], code).where)
-        observed = f"The tests pass on the right node in {len(runs) - len(rejected)} of {count(len(runs), 'run')}."
+        observed = f"The tests pass on the correct node in {len(runs) - len(rejected)} of {count(len(runs), 'run')}."
         return failed(observed, expected, cause)
     return failed(_observed(rejected[0]), expected, why_rejected(rejected[0], code))
 
@@ -64,14 +64,14 @@ UNSTEADY = "The tests depend on timing, on random numbers, or on the state that 
 
 def _observed(run: NodeRun) -> str:
     if run.over:
-        return "The tests of the right node did not finish in time."
+        return "The tests of the correct node did not finish in time."
     name = shorten(run.test.rpartition("::")[2] or run.test, 60)
     if run.outcome == "import":
         return f"{shorten(run.test, 60)} cannot be imported."
     if not name:
-        return f"The tests on the right node ended with exit code {run.exit_code}."
+        return f"The tests on the correct node ended with exit code {run.exit_code}."
     message = last_error(f"E   {run.message}") if run.message else ""
-    return f"{name} fails on the right node: {shorten(_one_line(message), MOST_TEXT)}."
+    return f"{name} fails on the correct node: {shorten(_one_line(message), MOST_TEXT)}."
 
 
 def _one_line(text: str) -> str:
@@ -84,7 +84,7 @@ class Catches:
 
     broken: str = string("the id of a broken node", about="The `id` of the `[[trial.tests.broken]]`.")
     does: str = string("a description", about="A description of the broken node, such as: a node that turns right.")
-    cause: str = string("a reason", about="The text that the student reads if all tests pass on it.")
+    cause: str = string("a reason", about="The text that the student reads if all tests pass on the broken node.")
 
 
 def catches(evidence: Evidence, params: Catches) -> Finding:
@@ -137,7 +137,7 @@ PASS = Kind(
     "The tests pass on the right node",
     NoParams,
     pass_,
-    about="All tests pass in every run on the right node.",
+    about="All tests pass in every run on the correct node.",
 )
 CATCHES = Kind(
     "tests_catch",

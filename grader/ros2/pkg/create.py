@@ -142,8 +142,10 @@ def _advice(wanted: NewPackage) -> list[str]:
         )
     if wanted.build_type != "ament_python":
         advice.append(
-            f"A package of build type {wanted.build_type} is written in C++. To build it, you need CMake and a C++ "
-            "compiler. A node in C++ also needs rclcpp, which is part of a full ROS 2. For Python, use --build-type "
+            f"A package of build type {wanted.build_type} is written in C++. To build the package, you need CMake and "
+            "a "
+            "C++ compiler. A node in C++ also needs rclcpp, which is part of a full ROS 2. For Python, use "
+            "--build-type "
             "ament_python."
         )
     return advice

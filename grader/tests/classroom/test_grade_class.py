@@ -114,7 +114,7 @@ def test_fail_under_is_the_exit_code(undisturbed: Run, tmp_path: Path, under: st
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["{class}"], "Name it with --exercise"),
+        (["{class}"], "Name the exercise with --exercise"),
         (["{class}", "--exercise", "99"], "there is no exercise"),
         (["{class}/nowhere", "--exercise", STEP], "does not exist"),
         (["{class}/gina/notes.txt", "--exercise", STEP], "neither a folder nor an archive"),

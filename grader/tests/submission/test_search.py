@@ -86,7 +86,7 @@ def test_a_node_file_is_answered_with_its_package(package: Path) -> None:
 
 def test_an_archive_is_to_be_unpacked(tmp_path: Path) -> None:
     make(tmp_path, {"work.zip": "PK"})
-    assert "Unpack it" in refused(tmp_path / "work.zip")
+    assert "Unpack the archive" in refused(tmp_path / "work.zip")
 
 
 def test_a_link_to_nowhere_is_named(tmp_path: Path) -> None:

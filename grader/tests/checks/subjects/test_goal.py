@@ -41,7 +41,10 @@ def test_whoever_stops_near_enough_has_arrived(length_m: float) -> None:
         (
             (ahead(6.0, 30),),
             "goes-on",
-            "The turtle ends at x=9.00 y=5.00, 2.00 m from the goal. On the way it came within 0.00 m of the goal.",
+            (
+                "The turtle ends at x=9.00 y=5.00, 2.00 m from the goal. "
+                "On the way, the turtle came within 0.00 m of the goal."
+            ),
         ),
         ((ahead(-2.0),), "not-there", "The turtle ends at x=1.00 y=5.00, 6.00 m from the goal."),
         (
