@@ -59,7 +59,7 @@ class InF:
 class Bench:
     """The measurements of one run.
 
-    The measurements write their files to `folder`, and each is repeated `times` times.
+    The measurements write their files to `folder`, and each measurement is repeated `times` times.
     """
 
     def __init__(self, folder: Path, times: int) -> None:

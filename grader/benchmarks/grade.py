@@ -6,8 +6,8 @@
 F (see grader.benchmarks.check) is measured before and after the class, in the same run. The class is mixed: out of
 every eight submissions, four are correct, three are wrong in different ways, and one is hostile. With `--mix right`,
 all submissions are correct. Each submission contains a different comment, so that the grader grades every one of them.
-The benchmark also measures the memory of all processes of the run, including those in sandbox cells. It samples this
-memory several times per second, and counts shared memory once.
+The benchmark also measures the memory of all processes of the run, including those in sandbox cells. The benchmark
+samples the memory several times per second, and counts shared memory once.
 """
 
 from __future__ import annotations
@@ -166,7 +166,10 @@ def _alone(command: list[str]) -> Cost:
 
 @contextmanager
 def _cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[int]]]:
-    """Start a scheduler, and workers with one thread each. Yield the address and the process ids."""
+    """Start a scheduler, and workers with one thread each.
+
+    Yield the scheduler's address and the process ids of the workers.
+    """
     folder.mkdir()
     file = folder / "scheduler.json"
     started: list[subprocess.Popen[bytes]] = []

@@ -69,7 +69,7 @@ def main() -> None:
 
 
 def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
-    """Return the cost of checking each case, divided by F. Cases that needed wall time are left out."""
+    """Return the cost of checking each case, divided by F. Cases that need wall time are left out."""
     bare = _bare_s(folder / "bare")
     found: dict[str, float] = {}
     for case in cases:

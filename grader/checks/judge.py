@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 class Judgement:
     """The findings of the checks so far.
 
-    `findings` has a finding for every check. The findings in `settled` are final, because the evidence of their stage
-    was complete. Each other finding says that the node was not run, or that a required check has not passed yet.
+    `findings` contains a finding for every check. The findings in `settled` are final, because the evidence of their
+    stage was complete. Each other finding says that the node was not run, or that a required check has not passed yet.
     """
 
     exercise: Exercise
@@ -178,8 +178,8 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
 def unreadable(how: str) -> Finding:
     """Return a failed finding about a submission that the grader cannot read.
 
-    The finding's status is not `error`: a check reads only data from the submission, so only the submission can make
-    the check fail.
+    The status of this finding is not `error`: a check reads only data from the submission, so only the submission can
+    make the check fail.
     """
     observed = f"The submission could not be read: {shorten(how, 150)}."
     expected = "The grader can read the submitted files and the data that the node sends."

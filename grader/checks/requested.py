@@ -43,7 +43,10 @@ class Requested:
 
 
 def first_heading(evidence: Evidence) -> Pose:
-    """Return the start position with the heading of the first movement. The turtle may turn before it drives."""
+    """Return the turtle's start position with the heading of its first movement.
+
+    The turtle may turn before it drives.
+    """
     start, trajectory = evidence.recording.start, evidence.trajectory
     if not trajectory.finite:
         return start

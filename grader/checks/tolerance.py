@@ -18,8 +18,8 @@ NEAR = 0.2
 class Band:
     """The values from `low` to `high`; `low_width` and `high_width` are the tolerances that define these edges.
 
-    None means that there is no edge on that side. NaN is never inside a band: every comparison with NaN is False, so
-    each comparison below states what must be true.
+    An edge that is None does not exist. NaN is never inside a band: every comparison with NaN is False, so each
+    comparison below states what must be true.
     """
 
     low: float | None

@@ -1,7 +1,7 @@
 """Find the submissions of a class with their students and exercises.
 
 Three layouts are supported and can be mixed: one folder or archive per student; nbgrader's submitted/STUDENT/EXERCISE;
-and a folder of classroom clones, each of which contains the course's exercises/EXERCISE.
+and a folder with students' clones of the course, each of which contains exercises/EXERCISE.
 
 No student is omitted. Each folder and archive becomes a submission. A submission that cannot be graded contains the
 reason. This module uses os.path, whose functions return False for a path that cannot be accessed. For such a path, the
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
 UNKNOWN = ""
-"""The exercise of a folder whose layout does not name one."""
+"""The exercise id for a folder whose layout does not name an exercise."""
 OWN = "exercises"
 """The folder of a clone in which the student works."""
 

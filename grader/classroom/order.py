@@ -114,7 +114,7 @@ def sources_for(found: tuple[Found, ...], checks: Path | None) -> dict[str, Sour
 
 @dataclass(frozen=True)
 class Todo:
-    """A submission to grade, with a short reason in `why`: "new", "changed", ..."""
+    """A submission that must be graded, with a short reason in `why`: "new", "changed", ..."""
 
     found: Found
     key: Key

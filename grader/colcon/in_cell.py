@@ -3,8 +3,8 @@
 colcon runs the setup.py of a package three times, each time in a new interpreter that imports setuptools and reads the
 metadata of all installed packages again. These imports take most of the CPU time of a build. To avoid this, one process
 does these imports once, before the submission arrives, and forks for each run of setup.py. The fork gets the folder,
-environment, arguments and streams of the process that colcon started, and the process that colcon started only waits
-for the exit code of the fork. If a fork might behave differently from a new interpreter, no fork is used (`Run.of`).
+environment, arguments and streams of the process that colcon started. This process then only waits for the exit code of
+the fork. If a fork might behave differently from a new interpreter, no fork is used (`Run.of`).
 
 This file runs as a separate script. Standard input is the submission, a tar stream that is unpacked into src.
 """

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
 IMPORTING = threading.RLock()
-"""Held while numpy or catkin_pkg is imported, and while the process forks."""
+"""This lock is held while numpy or catkin_pkg is imported, and while the process forks."""
 
 
 class _Lazy:

@@ -39,7 +39,10 @@ def of_the_machine(error: OSError) -> bool:
 
 
 def sentence(number: int, where: str = "", room: str = ROOM) -> str:
-    """Return the sentence for an errno. `where` is the path concerned; `room` says what to do if a disk is full."""
+    """Return the sentence for an errno.
+
+    `where` is the path that caused the error; `room` says what to do if a disk is full.
+    """
     at = f" for {where}" if where else ""
     if number in (errno.ENOSPC, errno.EDQUOT):
         return f"The disk is full{at}: {room}."

@@ -58,7 +58,8 @@ SYNTAX = {
     **dict.fromkeys((".xml", ".md", ".html"), ANGLE),
 }
 MEANT = re.compile(r"(?:begin|end)[ _-]*(?:solution|starter)", re.IGNORECASE)
-"""Matches lines that look like a marker. Without this pattern, a typo in a marker would give students the solution."""
+"""Matches lines that look like a marker. If this pattern did not find a typo in a marker, students could get the
+solution."""
 
 
 @dataclass(frozen=True)

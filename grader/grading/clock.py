@@ -2,16 +2,17 @@
 
 The rules, in the order in which they are applied:
 
-1. `--clock simulated` or `--clock wall` sets the clock. 2. Without these options, a trial starts in simulated time.
-Nothing has to wait then, and no other program can disturb
+1. `--clock simulated` or `--clock wall` sets the clock.
+2. Without these options, a trial starts in simulated time, in which nothing has to wait and no other program can
+disturb
    the trial. If the source contains a sign that the node may follow wall time, the trial starts in wall time instead
    (grader.trial.clues).
 3. A trial in simulated time stops at the first sign that the node follows wall time after all: a thread sleeps,
    commands arrive while the clock is held, or the node never becomes idle (grader.trial.simulated). Wall time decides
    then. But if several threads kept the node from becoming idle, this may have happened by chance, so the trial in
    simulated time is first repeated once.
-4. Wall time also decides if a measured value is near the edge of its tolerance, or if the node did not stop. 5. If a
-trial in wall time fails while other programs use the processors, it is repeated while nothing else is graded.
+4. Wall time also decides if a measured value is near the edge of its tolerance, or if the node did not stop.
+5. If a trial in wall time fails while other programs use the processors, it is repeated while nothing else is graded.
    A busy machine can make a correct node look wrong, but it cannot make a wrong node look correct. So the first trial
    that passes counts. If no trial of WALL_TRIALS passes, the trial with the least disturbance counts.
 """

@@ -83,7 +83,9 @@ class Trials:
                 self._ahead.run(view.trial.id, self._predicted.package, view.trial.executable, self._predicted.tree)
 
     def run_ahead(self, views: Sequence[Evidence], tree: bytes) -> None:
-        """Start the nodes of the trials that were started in simulated time. `run` waits for their recordings.
+        """Start the nodes of the trials that were started in simulated time.
+
+        `run` waits for the recordings of these trials.
 
         Nodes that already run from the predicted install tree go on if `tree`, the one of the build, is equal to it.
         Otherwise, all of these trials start again.

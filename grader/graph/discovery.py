@@ -130,7 +130,7 @@ class Settling:
         self._observed: object = None
 
     def observe(self) -> None:
-        """Look at the graph, and note whether it has changed since the last look."""
+        """Read the graph, and record whether it has changed since it was last read."""
         graph = _graph(self._node)
         if graph != self._observed:
             self._observed, self._changed = graph, time.monotonic()

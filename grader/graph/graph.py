@@ -158,7 +158,7 @@ def _quoted(text: str) -> str:
 
 @dataclass(frozen=True)
 class _Strokes:
-    """The characters for the lines that lead from publishers to a topic, and from the topic to subscribers."""
+    """The characters for the lines from publishers to a topic, and from the topic to subscribers."""
 
     one: str
     into: tuple[str, str, str]

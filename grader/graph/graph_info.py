@@ -33,9 +33,9 @@ class EndpointLook:
     node: str
     """The name of its node, without the namespace."""
     reliability: str
-    """Either "reliable" or "best_effort", as in `--qos-reliability`."""
+    """The reliability is "reliable" or "best_effort", as in `--qos-reliability`."""
     durability: str
-    """Either "volatile" or "transient_local", as in `--qos-durability`."""
+    """The durability is "volatile" or "transient_local", as in `--qos-durability`."""
     text: str
 
 

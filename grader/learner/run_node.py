@@ -60,7 +60,7 @@ def program_of(step: str | None, executable: str | None, workspace: Path | None)
 
 
 def executables(exercise: Exercise) -> list[str]:
-    """Return the executables that the exercise runs, without repetition."""
+    """Return the names of the executables that the exercise runs, each once."""
     return list(dict.fromkeys(trial.executable for trial in exercise.trials if trial.executable and not trial.calls))
 
 

@@ -102,7 +102,7 @@ def current(folder: Path | None) -> tuple[Exercise, Path] | None:
 
 
 def note(exercise: Exercise, submission: Path, report: Report, folder: Path | None = None) -> str:
-    """Store a report in the learner's progress. Return a message about the next command, or an empty string."""
+    """Store a report in the learner's progress. Return a message about the next command to type, or an empty string."""
     root = progress.workspace_of(folder)
     begun = progress.load(root)
     if begun.current is None:

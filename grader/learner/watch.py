@@ -1,7 +1,7 @@
 """Watch a folder, and grade the submission in it after every save.
 
-While the learner edits, the simulator and the launcher of the next trial are already waiting, and the last build is
-kept. Therefore, the verdict after a save takes little longer than the trial itself.
+While the learner edits, the simulator and the launcher of the next trial are already waiting, and the result of the
+last build is kept. Therefore, the verdict after a save takes little longer than the trial itself.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ DEBOUNCE_MS = 50
 """The time within which events count as one (ms), because an editor that saves by renaming causes several events."""
 
 _STEP_MS = 25
-"""The polling interval for new events (ms). At 10 ms, an idle watch uses 0.7 % of a core."""
+"""The polling interval for new events (ms). With an interval of 10 ms, an idle watch would use 0.7 % of a core."""
 SUSPEND_S = 20.0
 """The time without a save after which the next trial is suspended (s)."""
 _LOOK_MS = 500

@@ -95,8 +95,7 @@ def ended(text: str) -> str:
 def counts(file: str | None, start: str | None) -> Literal["cell", "file"]:
     """Return the text that counts: that of the file if the student has changed the file, or else that of the cell.
 
-    `file` is the text of the file, and `start` is its text in the starting point. A text is None if the file is
-    missing.
+    `file` is the text of the file, and `start` is its text in the starting point. The text of a missing file is None.
     """
     if file is None or (start is not None and ended(file) == ended(start)):
         return "cell"

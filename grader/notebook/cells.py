@@ -74,7 +74,7 @@ class Cells:
             run_below([str(Path(sys.prefix, "bin", "ros2")), *shlex.split(line)])
 
     def current(self) -> Exercise:
-        """Return the step of this notebook. Raises UsageError if `%step` has not been run."""
+        """Return the step that this notebook is for. Raises UsageError if `%step` has not been run."""
         if self.exercise is None:
             message = "The notebook's step is not set. Run the first cell, for example `%step 03-circle-publisher`."
             raise UsageError(message)

@@ -18,7 +18,8 @@ Cell = dict[str, Any]
 
 _FILE_CELL = re.compile(r"\s*%%\w+[ \t]+(\S+)\s*")
 _HIDDEN = {"BEGIN HIDDEN TESTS": True, "END HIDDEN TESTS": False}
-"""nbgrader's markers for hidden tests. The value is True if hidden tests begin there."""
+"""nbgrader's markers for hidden tests. The value is True if hidden tests begin at the marker, and False if they end
+there."""
 
 
 def released_notebook(data: bytes, name: str) -> bytes:

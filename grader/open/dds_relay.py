@@ -30,7 +30,9 @@ _HERE = socket.inet_aton(HOST)
 
 
 class Relay:
-    """Forwards datagrams while the caller serves `selector`: it must call the data of each ready key.
+    """Forwards datagrams.
+
+    The caller waits for `selector`, and calls the function in the `data` of each key that is ready.
 
     `inside` contains sockets in the cell's network, bound to `ports.others` in this order.
     """

@@ -41,12 +41,12 @@ def run(desk: Desk, events: Events, workspace: Path | None) -> None:
 
 
 def _await_step(events: Events) -> bool:
-    """Wait for an event that may mean that a step was started. Return False at the end of the events."""
+    """Wait for an event that may mean that a step was started. Return False when there are no more events."""
     return any(happened.key == STEP for happened in events)
 
 
 def _grade_until_another(desk: Desk, events: Events, watched: Watched, workspace: Path | None) -> bool:
-    """Grade a step until the learner starts another step. Return False at the end of the events."""
+    """Grade a step until the learner starts another step. Return False when there are no more events."""
     for happened in events:
         if happened.key == STEP:
             current = steps.current(workspace)

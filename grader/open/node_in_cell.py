@@ -114,7 +114,7 @@ def _until_it_ends(cell: LinkedCell, program: Program) -> int:
 
 
 def _read_order(cell: LinkedCell, stop: Callable[[], None]) -> None:
-    """Stop at the end of standard input, on which no data arrives."""
+    """At the end of standard input, which receives no data, call `stop`."""
     if not os.read(sys.stdin.fileno(), _CHUNK):
         cell.selector.unregister(sys.stdin)
         stop()

@@ -87,7 +87,7 @@ def cause_label(outcome: Outcome) -> Literal["why", "likely"]:
 def cause_sentence(outcome: Outcome) -> str:
     """Return the cause as a sentence that says "Likely cause" if the cause is not certain.
 
-    Without a cause, the sentence is empty.
+    If there is no cause, the sentence is empty.
     """
     cause = outcome.finding.cause
     return cause if is_certain(outcome) or not cause else f"Likely cause: {cause}"

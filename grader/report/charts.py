@@ -95,7 +95,7 @@ def ticks(low: float, high: float, most: int = 5) -> list[float]:
 
 
 def thin(series: Series, end_s: float, bins: int = BINS) -> Series:
-    """Return the series, or the lowest and highest value of each bin if the series is long.
+    """Return the series. If it is long, return the lowest and the highest value of each bin instead.
 
     Values that are not finite are omitted.
     """

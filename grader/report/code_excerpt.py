@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 AROUND = 4
 """The number of lines that are shown before and after the line."""
 MOST_COLOURED = 60_000
-"""The maximum length of a file that is coloured (characters). Colouring a longer one would take too long."""
+"""The maximum length of a file that is coloured (characters). It would take too long to colour a longer file."""
 
 NEWLINE = re.compile(r"\r\n|\r|\n")
 """The line endings that Python recognizes. str.splitlines recognizes more, so it would count lines differently."""

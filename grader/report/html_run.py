@@ -42,7 +42,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Run:
-    """A trial, ready for the template.
+    """A trial in the form that the page's template needs.
 
     `data` is the input of the player. `end` describes how the node's process exited. `idle` is true if the exercise
     requires commands and none arrived.

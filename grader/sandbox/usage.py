@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 EVERY_S = 0.1
 LAUNCHERS = 16
-"""The number of processes above the limit that are not the student's: bubblewrap and other processes that start a cell.
+"""In addition to the student's processes, this number is allowed: bubblewrap and other processes that start a cell.
 
 In a cell, the kernel counts processes too and refuses new ones before this number is reached.
 """

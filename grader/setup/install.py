@@ -39,7 +39,7 @@ _UNKNOWN = (
 
 
 class Ran(NamedTuple):
-    """The result of an installer: its exit code, its progress, and its other output."""
+    """The result of running an installer: its exit code, its progress, and its other output."""
 
     code: int
     shown: list[str]

@@ -39,7 +39,7 @@ while not heard and time.monotonic() < deadline:
 sys.exit(None if heard else "no message arrived within 20 s")
 """
 DOMAIN = 101
-"""The ROS domain of nodes outside a cell. Trials use it only if all others are in use."""
+"""The ROS domain of nodes outside a cell. Trials use this domain only if all other domains are in use."""
 
 
 def why_not_heard(ros: Ros, *, confined: bool) -> str | None:

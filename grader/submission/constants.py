@@ -31,7 +31,8 @@ class Names(dict[str, "ast.expr | None"]):
 
 MAX_DEPTH = 20
 MAX_NODES = 100_000
-"""The maximum number of nodes that are evaluated in one module (0.1 s). The values of further nodes are unknown."""
+"""The maximum number of syntax nodes that are evaluated in one module, which takes about 0.1 s. The values of all
+further nodes are unknown."""
 MAX_TEXT = 2000
 MATH = {"math.pi": math.pi, "pi": math.pi, "np.pi": math.pi, "numpy.pi": math.pi, "math.tau": math.tau}
 

@@ -42,7 +42,7 @@ TIMEOUT_S = 120.0
 MEMORY = 1024 * 1024 * 1024
 """The address space of the child, in addition to that of the grader (bytes)."""
 MOST_ANSWER = 256 * 1024 * 1024
-"""The maximum size of a result (bytes). It consists mostly of the files of a submission."""
+"""The maximum size of a result (bytes). The result consists mostly of the files of a submission."""
 _CHUNK = 1024 * 1024
 _STANDARD = {
     "builtins": ("set", "frozenset", "bytearray", "complex"),
@@ -226,7 +226,7 @@ class _Packer(pickle.Pickler):
     """Pickles enumeration members and our errors as calls to their classes, even if other reducers are registered."""
 
     def reducer_override(self, obj: object) -> Any:  # noqa: ANN401 - as the base class
-        """Return the call that recreates the object."""
+        """Return the function call that recreates the object."""
         if isinstance(obj, Enum):
             return type(obj), (obj.value,)
         return (type(obj), obj.args) if isinstance(obj, GraderError) else NotImplemented

@@ -126,7 +126,7 @@ class _Queue:
             self.ended.append(ended)
 
     def close(self) -> None:
-        """Hand out no more runs."""
+        """After this call, `take` returns no more runs."""
         with self._lock:
             self._closed = True
 

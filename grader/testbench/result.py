@@ -66,7 +66,10 @@ class BenchResult:
 
 @dataclass(frozen=True)
 class Ended:
-    """The end of a run, before its report (JSON) is read. A student's process may have written the report."""
+    """What is known about a run after its end, before its report (JSON) is read.
+
+    A student's process may have written the report.
+    """
 
     node: str
     exit_code: int | None = None

@@ -49,8 +49,8 @@ def sample(cases: Sequence[Case]) -> frozenset[str]:
 def shows(case: Case) -> frozenset[object]:
     """Return what a case adds to the sample.
 
-    The result contains the groups of the case's diagnoses, its exercise with the place where the mistake shows ("files"
-    or "behaviour"), and those of its diagnoses that are in `without_test()`.
+    The result contains the groups of the case's diagnoses, its exercise with the place that shows the mistake ("files"
+    or "behaviour"), and its diagnoses that are in `without_test()`.
     """
     exercise = case.exercise or (OF_BASES if (BASES / case.base).is_dir() else case.base)
     diagnoses = frozenset(case.diagnosis.values())
@@ -70,7 +70,7 @@ def lives_in_wall_time(case: Case) -> bool:
 def without_test() -> frozenset[str]:
     """Return at most MOST_OF_GROUP diagnoses of each group, whose ids no test of the checks expects.
 
-    An id of one word may appear in a test for another reason, so it does not count as expected.
+    An id of one word may appear in a test for another reason, so its appearance does not count.
     """
     source = "".join(path.read_text("utf-8") for path in sorted((BASES.parent / "checks").rglob("*.py")))
     chosen: list[str] = []

@@ -21,7 +21,10 @@ class StandIns:
         return str(self.folder)
 
     def add(self, name: str, then: str = "") -> None:
-        """Add a program. `then` contains lines of shell code that it runs, with the real programs on PATH."""
+        """Add a program.
+
+        When the program runs, it executes the shell code in `then`, with the real programs on PATH.
+        """
         self.folder.mkdir(parents=True, exist_ok=True)
         program = self.folder / name
         note = f'echo "{name} $*" >> "{self.folder}/calls"'

@@ -39,9 +39,10 @@ MOST_CASES = 12
 SAID_BY_RCLPY = "rclpy.init() has not been called"
 """A message of rclpy that a report quotes."""
 LONG = 12
-"""The minimum length of a line (characters). A shorter line of a solution, such as `pass`, reveals nothing."""
+"""The minimum length of a line (characters). A shorter line of a solution, such as `pass`, does not give the solution
+away."""
 NOWHERE = frozenset({"node-name", "no-answers", "no-bag", "no-numbers", "rejected-file"})
-"""These diagnoses may refer to no file."""
+"""A report with one of these diagnoses need not refer to a file."""
 
 
 @pytest.fixture(scope="module")

@@ -23,9 +23,9 @@ READS = {
 }  # fmt: skip
 """Functions that read their argument, with their names in the source."""
 NO_SUBMISSIONS = {"benchmarks", "exercise", "graph", "ros", "ros2", "setup", "turtlesim", "view"}
-"""Rooms that never get a submission."""
+"""Packages of the grader whose code never reads a submission."""
 INSIDE = {"checks", "evidence", "submission"}
-"""Rooms whose code runs in the reading process."""
+"""Packages of the grader whose code runs in the reading process."""
 BEHIND_THE_DOOR = {
     ("budget", "_read"): "relay: a separate process with limits",
     ("called", "read_called"): "calls",
@@ -87,7 +87,7 @@ OURS = {
     ("runner", "_pack"): "a stream that we write",
     ("workspace", "add_missing"): "a starting point",
 }
-"""Functions that read data that no student wrote, and a description of the data."""
+"""Maps each function that reads data which no student wrote to a description of this data."""
 
 
 def reading(tree: ast.Module) -> Iterator[tuple[str, str]]:

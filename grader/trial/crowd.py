@@ -18,7 +18,7 @@ machine.
 """
 SIMULATOR = 0.3
 """The share of a processor that the simulator may use for itself. In measurements, the simulator uses a tenth of a
-processor. The rest counts as work for the node."""
+processor. What the simulator uses beyond this share counts as work for the node."""
 OTHERS = 0.2
 """Other programs use the machine if they take at least this share of one processor."""
 WAITED = 0.05
@@ -131,5 +131,5 @@ def _machine_worked_s() -> float:
 
 
 def _machine_s() -> list[float]:
-    """Return the total times of all processors (s). The times are the columns of /proc/stat; see proc(5)."""
+    """Return the total times of all processors (s). The times are the columns of the file /proc/stat; see proc(5)."""
     return [int(column) * _TICK_S for column in Path("/proc/stat").read_text().split(maxsplit=9)[1:9]]

@@ -30,7 +30,7 @@ class NodeGroup:
             process.await_ready()
 
     def start(self, orders: Sequence[dict[str, object]], tree: bytes) -> None:
-        """Send each launcher its order and the install tree."""
+        """Send each launcher the install tree and the data about the node that it must run."""
         for process, order in zip(self.processes, orders, strict=True):
             process.start(order, tree)
 

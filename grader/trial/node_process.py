@@ -215,7 +215,7 @@ class NodeProcess:
             self._signal(signal.SIGTERM)
 
     def end(self, now_s: float) -> ProcessEnd:
-        """Return how the process ended. Call this method only after `ended` has returned True."""
+        """Return how the process of the node ended. Call this method only after `ended` has returned True."""
         code = self._process.returncode
         stopped = None if self._interrupted is None else time.monotonic() - self._interrupted
         # Like a shell, bwrap reports a signal as 128 + the signal number.

@@ -13,9 +13,10 @@ if TYPE_CHECKING:
 class Call:
     """A service call, with its request and response as plain data, at the time `t_s` of the trial's clock.
 
-    If `by_trial` is False, a node called the simulator, or another node of the trial (then `response` and `answered_s`
-    are None). If `by_trial` is True, the trial called the node. In a call by the trial, `response` and `answered_s` are
-    None until the response arrives, and `missing` says that no node offered the service.
+    If `by_trial` is False, a node made the call: either to the simulator, or to another node of the trial (then
+    `response` and `answered_s` are None). If `by_trial` is True, the trial called the node. In a call by the trial,
+    `response` and `answered_s` are None until the response arrives, and `missing` says that no node offered the
+    service.
     """
 
     t_s: float

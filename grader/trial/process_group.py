@@ -32,7 +32,8 @@ class ProcessGroup:
     def kill(self) -> None:
         """Kill the processes.
 
-        The caller must not have waited for the leader yet, because the leader's id can then be used again.
+        The caller must not have waited for the leader process yet, because its id could otherwise belong to another
+        process.
         """
         with self._changing:
             self._may_be_suspended = False

@@ -69,7 +69,8 @@ class Recorder(Node):
         self._offers: set[Offer] = set()
         self._judged = frozenset(judged)
         self._subscribed: Counter[str] = Counter()
-        """The number of types for each judged topic. The empty string stands for all other topics together."""
+        """The number of recorded types for each judged topic. The entry for the empty string counts the types of all
+        other topics together."""
         self._reported: set[tuple[str, str, str]] = set()
         self._prefixes = prefixes
         self._simulated = simulated

@@ -175,7 +175,7 @@ class Recording:
     beside: tuple[Beside, ...] = ()
     """The other nodes of the submission in the same trial."""
     own_nodes: tuple[str, ...] = ("/turtlesim",)
-    """The grader's nodes, and the additional nodes that the exercise requires. Every other node of the graph counts as
+    """The grader's nodes, and the additional nodes that the exercise requires. Every other node in the graph counts as
     the node of the trial."""
     interventions: tuple[str, ...] = ()
     """The services and actions of the simulator that were called, in order: "reset", "spawn", "teleport_absolute".

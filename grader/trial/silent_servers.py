@@ -1,6 +1,6 @@
 """Record the service calls between the nodes of a trial, with servers that receive each request and never respond.
 
-In DDS, a request reaches every server of the service, and the client takes the response that arrives.
+In DDS, a request reaches every server of the service, and the client takes whichever response arrives.
 """
 
 from __future__ import annotations

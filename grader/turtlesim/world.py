@@ -28,7 +28,10 @@ class World:
         self.canvas.clear()
 
     def new_name(self) -> str:
-        """Return the next free name of the form turtleN. A number is not used again before the next reset."""
+        """Return the next free name of the form turtleN.
+
+        A number in these names is not used again before the next reset.
+        """
         return next(name for number in self._numbers if (name := f"turtle{number}") not in self.turtles)
 
     def spawn(self, name: str, start: Start) -> str:

@@ -48,7 +48,7 @@ class Held:
     until_s: float = 0.0
 
     def press(self, key: str, now: float) -> None:
-        """Handle an arrow key that is pressed or repeated."""
+        """Handle an arrow key that is pressed for the first time or repeated."""
         again = key == self.key and now < self.until_s
         self.key, self.until_s = key, now + (HOLD_S if again else FIRST_HOLD_S)
 

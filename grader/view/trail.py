@@ -26,7 +26,7 @@ UNIT = 10
 FAR = 20 * SIDE_PX * UNIT
 """The limit of coordinates. Points further outside are moved to this limit."""
 MOST_POINTS = 20_000
-"""The maximum number of points in all strokes. If it is exceeded, the strokes are merged into the image."""
+"""The maximum number of points in all strokes. If this number is exceeded, the strokes are merged into the image."""
 _SCALE = 3
 """The number of pixels in the image per pixel of the canvas."""
 _SLACK = 1.0
@@ -38,7 +38,10 @@ Point = tuple[int, int]
 
 @dataclass
 class Stroke:
-    """A line with one pen (red, green, blue, width in px). `skipped` holds the omitted points of the last segment."""
+    """A line with one pen (red, green, blue, width in px).
+
+    `skipped` contains the omitted points of the last segment.
+    """
 
     pen: tuple[int, int, int, int]
     points: list[Point]

@@ -74,7 +74,7 @@ RADIUS_OF_C: tuple[Diagnosis, str] = (
     "radius-without-centre",
     "The third unknown is c = r² - a² - b², not r²: the squares of the centre are missing.",
 )
-"""Mistakes that give a wrong radius, or NaN, with the right centre."""
+"""Mistakes that lead to a wrong radius, or NaN, although the centre is right."""
 _FIRST_TRY = (
     "The equations or the computation of the circle from their solution are wrong. Test the function with four "
     "points of a circle that you know."

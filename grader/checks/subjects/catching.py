@@ -40,7 +40,7 @@ is late."""
 
 @dataclass(frozen=True, kw_only=True)
 class Catches:
-    """The minimum number of targets, and the service that catches one."""
+    """Requires that the node catches at least this number of targets, with the service that catches one target."""
 
     turtles: float = number(1, at_least=1, about="The minimum number of turtles to catch.")
     service: str = string(

@@ -163,7 +163,7 @@ def log_counter(evidence: Evidence, params: Counter) -> Finding:
 
 
 def _thrown_away(evidence: Evidence) -> Cause | None:
-    """Return the cause if a line calculates a value that is not stored, else None."""
+    """Return the cause if a line calculates a value but does not store it, else None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.Expr) and isinstance(node.value, ast.BinOp | ast.Compare):

@@ -33,7 +33,8 @@ class Topic:
 
 
 COMMANDS = Topic(topic="/turtle1/cmd_vel", type="geometry_msgs/msg/Twist")
-"""The commands that the simulator itself received are in Recording.commands."""
+"""The topic for the velocity commands of turtle1. The commands that the simulator received are in
+Recording.commands."""
 
 
 def publishes(evidence: Evidence, params: Topic) -> Finding:

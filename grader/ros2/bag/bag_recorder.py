@@ -1,4 +1,4 @@
-"""The node that records a bag. The node subscribes to topics as they appear, and writes the messages unchanged."""
+"""The node that records a bag. The node subscribes to each topic that appears, and writes the messages unchanged."""
 
 from __future__ import annotations
 

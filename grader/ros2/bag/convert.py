@@ -110,7 +110,10 @@ def _compression(options: dict[str, Any]) -> str:
 
 
 def _chosen(options: dict[str, Any], topic: str) -> bool:
-    """Return whether the options select a topic for a new bag. Without a selection, all topics are selected."""
+    """Return whether a topic belongs in the new bag according to the options.
+
+    Without a selection, all topics are selected.
+    """
     topics, regex = absolute(options.get("topics") or []), options.get("regex") or ""
     if topic in absolute(options.get("exclude_topics") or []) or contains(topic, options.get("exclude_regex") or ""):
         return False

@@ -87,7 +87,7 @@ def _class(node: Node, topic: str, args: argparse.Namespace) -> Any:  # noqa: AN
 def matching(expression: str) -> Callable[[Any], bool]:
     """Return a function that evaluates a Python expression with the message as `m`.
 
-    The function raises Ros2Error if the expression fails for a message.
+    The returned function raises Ros2Error if the expression fails for a message.
 
     Raises:
         Ros2Error: the string is not a Python expression.

@@ -159,7 +159,10 @@ def node(*changes: tuple[str, str]) -> Submission:
 def every(
     period_s: float, linear: float, angular: float, until_s: float = DURATION_S, first_s: float | None = None
 ) -> list[Timed]:
-    """Return the same command, repeated with this period on whole frames. The first command comes after one period."""
+    """Return the same command, repeated with this period on whole frames.
+
+    The first command comes one period after the start.
+    """
     first = period_s if first_s is None else first_s
     count = max(0, int((until_s - 1e-9 - first) / period_s) + 1)
     return [(round((first + k * period_s) / FRAME_S) * FRAME_S, linear, angular) for k in range(count)]

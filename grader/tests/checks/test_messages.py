@@ -1,4 +1,4 @@
-"""Every failure in the list of this module has a message with words that a beginner understands."""
+"""For every failure in the list of this module, the message uses words that a beginner understands."""
 
 from __future__ import annotations
 

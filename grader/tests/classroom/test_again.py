@@ -1,6 +1,6 @@
 """A submission that ends with an `error` is graded again if other submissions could be judged.
 
-A repeated error is suspicious.
+An error that occurs repeatedly is suspicious.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ class Killer:
     def until_struck(self, blows: list[Blow], within_s: float) -> None:
         """Interrupt the run once with each of these methods.
 
-        If a run finishes before it is interrupted, start another run.
+        If a run finishes before it can be interrupted, start another run.
         """
         for blow in blows:
             with subprocess.Popen(
@@ -93,7 +93,7 @@ def has_workers(pid: int) -> bool:
 
 
 def workers_of(pid: int) -> list[int]:
-    """Return the worker processes. The grader may also have other children for a moment."""
+    """Return the worker processes. For a moment, the grader may also have child processes that are not workers."""
     found: list[int] = []
     with suppress(OSError):  # the process has ended
         for task in Path(f"/proc/{pid}/task").iterdir():

@@ -65,7 +65,8 @@ LIMIT_S = 300
 
 @dataclass(frozen=True)
 class Fault:
-    """A kind of system call that fails with an errno, from the `nth` call after a function ("module:name") starts."""
+    """A kind of system call that fails with an errno: from the `nth` call after a function ("module:name") has
+    started."""
 
     call: str
     number: int

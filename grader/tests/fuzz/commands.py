@@ -55,7 +55,7 @@ class Trials:
         pass
 
     def await_ready(self) -> None:
-        """Do nothing: the trial is ready."""
+        """Do nothing, because this trial is always ready."""
 
     def run(self, *_: object) -> Recording:
         """Return the recording."""

@@ -1,6 +1,6 @@
 """A trial in simulated time that stopped by chance is repeated once.
 
-If it stops again, a trial in wall time decides.
+If the repeated trial also stops, a trial in wall time decides.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Graders share the machine.
 
-A grader that needs the whole machine waits for the others, and later graders wait for it.
+A grader that needs the machine to itself waits for the others, and graders that start later wait for this grader.
 """
 
 from __future__ import annotations

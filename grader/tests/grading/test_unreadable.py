@@ -1,4 +1,7 @@
-"""If reading a submission makes the grader fail, the submission fails. Only the machine's own faults are errors."""
+"""If reading a submission makes the grader fail, the submission fails.
+
+Only faults of the machine itself get the status `error`.
+"""
 
 from __future__ import annotations
 

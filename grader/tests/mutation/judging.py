@@ -140,7 +140,7 @@ def touched(materials: Iterable[Material], files: Collection[Path]) -> Lines:
 
 
 def lines_of(measured: Coverage, files: Iterable[Path]) -> Lines:
-    """Return which contexts ran which line, from a coverage measurement."""
+    """Return the names of the tests or cases that ran each line, from a coverage measurement."""
     data = measured.get_data()
     return {
         (file, line): {name for name in names if name}

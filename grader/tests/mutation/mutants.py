@@ -48,7 +48,7 @@ OTHER = cst.SimpleString('"another"')
 KINDS = OUT, ALWAYS, NAME, PLACE, DETAIL = ("taken out", "always", "other name", "no place", "detail")
 """The effect of a change on a diagnosis. A "detail" is a change by one of mutmut's operators."""
 Change = tuple[str, cst.CSTNode, cst.CSTNode]
-"""Its kind, the old code and the new code."""
+"""A change: its kind, the old code and the new code."""
 
 
 @dataclass(frozen=True)

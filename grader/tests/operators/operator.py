@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Package:
-    """A package (paths mapped to contents), and the path of the node, which the operators on source code change."""
+    """A package (contents by path), and the path of the node's file, which the operators for source code change."""
 
     files: Mapping[str, str]
     source: str
 
     @property
     def folder(self) -> str:
-        """The folder of the Python files."""
+        """The folder that contains the Python files."""
         return self.source.rpartition("/")[0]
 
 
@@ -89,7 +89,7 @@ def replace(pattern: str, by: Replacement, *, file: str = "") -> Make:
 
 
 def anywhere(make: Make) -> Make:
-    """Return the same operator, but a report may name any line of the file."""
+    """Return the same operator, except that a report may name any line of the file."""
 
     def made(package: Package, draw: Random) -> Change | None:
         change = make(package, draw)

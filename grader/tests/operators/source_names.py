@@ -72,7 +72,7 @@ def _stored_without_self(package: Package, draw: Random) -> Change | None:
 
 
 def _misspelt_attribute(package: Package, draw: Random) -> Change | None:
-    """Misspell an attribute where it is used. A report may name this line, or the line that sets it."""
+    """Misspell an attribute where it is used. A report may name this line, or the line that assigns the attribute."""
     text = package.files[package.source]
     stores = {m[1]: m for m in re.finditer(r"^\s+self\.(\w+) = ", text, re.MULTILINE)}
     uses = [m for m in re.finditer(r"self\.(\w+)(?! = )", text) if m[1] in stores and len(m[1]) > 3]

@@ -51,7 +51,7 @@ def _main_in_class(package: Package, _: Random) -> Change | None:
 
 
 def _main_renamed(package: Package, draw: Random) -> Change | None:
-    """Rename the function main. A report may name the line of setup.py that refers to main."""
+    """Rename the function main. A report may name the line of setup.py that refers to the function main."""
     change = replace(r"^def main\(", "def run(")(package, draw)
     return change and Change(change.files, "setup.py")
 

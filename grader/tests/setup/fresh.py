@@ -26,7 +26,7 @@ NETWORK = ("PIP_", "UV_", "SSL_CERT_", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY",
 
 @dataclass(frozen=True)
 class Clone:
-    """A clone, and the home of its user."""
+    """A clone of the course, and the home folder of its user."""
 
     folder: Path
     home: Path

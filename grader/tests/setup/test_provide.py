@@ -1,4 +1,4 @@
-"""The installation of system packages, with stand-ins for package managers and sudo."""
+"""The installation of system packages, tested with fake package managers and a fake sudo."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sources that would take too much time or memory are read in a limited time or reported as too large."""
+"""Source code that would take too much time or memory is read within a time limit, or reported as too large."""
 
 from __future__ import annotations
 

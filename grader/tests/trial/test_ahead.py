@@ -90,7 +90,7 @@ def test_what_was_not_run_ahead_is_run_when_it_is_requested(ahead: Ahead) -> Non
 
 
 def start_two(ahead: Ahead) -> tuple[Made, Made]:
-    """Return two trials. The first trial is being started and is not ready yet."""
+    """Return two trials. The start of the first trial has begun but is not finished yet."""
     first, second = Made(lambda: SEEN), Made(lambda: SEEN)
     first.ready.clear()
     ahead.start("", cast("Trial", first))

@@ -25,7 +25,8 @@ MOST_FIELDS = 20
 _QOS = QoSProfile(depth=100, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 
 Sample = tuple[float, float | None]
-"""A time (s, from an arbitrary start) and a value. The value is None if it is infinite or not a number."""
+"""A time (in s from an arbitrary start) and the value at this time. The value is None if it is infinite or not a
+number."""
 
 
 @dataclass

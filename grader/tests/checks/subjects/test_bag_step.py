@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 EXERCISE = find_exercise("11-bags")
 SPECS = {spec.id: spec for spec in EXERCISE.checks}
 X, Y, RADIUS = 5.5, 7.25, 1.75
-"""The circle of the call "whole"."""
+"""The circle from which the points of the call "whole" are drawn."""
 C = RADIUS**2 - X**2 - Y**2
 
 
