@@ -204,7 +204,8 @@ def _wait_for_workers(address: str, workers: int) -> None:
 
 @contextmanager
 def _watched(also: list[int]) -> Iterator[list[float]]:
-    """Sample the total memory (MB) of all descendants of this process, and of the processes in `also` with theirs."""
+    """Sample the total memory (MB) of this process's descendants, of the processes in `also`, and of their
+    descendants."""
     samples: list[float] = []
     stopped = Event()
 

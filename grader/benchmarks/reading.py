@@ -2,9 +2,9 @@
 
     python -m grader.benchmarks.reading [--times N] [--submission FOLDER]
 
-The submission is graded once. Then the files of the submission are read repeatedly, alternately in child processes and
-in the process of the benchmark. The limit applies to CPU time, because CPU time depends less on the load of the
-machine.
+The submission is graded once. After that, the files of the submission are read repeatedly, alternately in child
+processes and in the process of the benchmark. The limit applies to CPU time, because CPU time depends less on the load
+of the machine.
 """
 
 from __future__ import annotations

@@ -42,7 +42,8 @@ class Found:
     student: str
     exercise: str
     path: Path
-    """An absolute path without links. A path with a link is not read: a student has replaced a folder."""
+    """An absolute path without links. If a path contains a link, a student has replaced a folder by this link, so the
+    path is not read."""
     refused: str = ""
     """Why the submission cannot be graded, if this is already known."""
 

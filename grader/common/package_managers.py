@@ -29,7 +29,7 @@ class Manager(NamedTuple):
 
     program: str
     systems: Tuple[str, ...]
-    """The values of ID and ID_LIKE in /etc/os-release on systems that use it."""
+    """The values of ID and ID_LIKE in /etc/os-release on the systems that use this package manager."""
     update: str
     install: str
     quiet: str

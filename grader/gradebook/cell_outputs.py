@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 MOST_OUTPUT = 4_000_000
-"""The maximum number of characters of all outputs together. A notebook that prints more is stopped."""
+"""The maximum number of characters of all outputs together. A notebook that prints more than this is stopped."""
 TOO_MUCH = f"The notebook printed more than {MOST_OUTPUT // 1_000_000} million characters."
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _POSE = struct.Struct("<xBxx5f")
 _TWIST = struct.Struct("<xBxx6d")
 _LITTLE_ENDIAN = 1
-"""The value of the second byte of serialized data."""
+"""The value of the second byte of serialized data, which means that the byte order is little-endian."""
 _SPEED_M_S = 1.0
 
 

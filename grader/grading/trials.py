@@ -83,7 +83,7 @@ class Trials:
                 self._ahead.run(view.trial.id, self._predicted.package, view.trial.executable, self._predicted.tree)
 
     def run_ahead(self, views: Sequence[Evidence], tree: bytes) -> None:
-        """Start the nodes of the trials that were started in simulated time.
+        """Start the nodes of those trials whose first clock is simulated time.
 
         `run` waits for the recordings of these trials.
 

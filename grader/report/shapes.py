@@ -46,7 +46,7 @@ class Line:
 
     @property
     def look(self) -> Look:
-        """The look of the line."""
+        """The colour, width and dashes of the line."""
         look = LOOKS[self.role]
         return look if self.color is None else replace(look, color=self.color)
 

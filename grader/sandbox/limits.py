@@ -19,7 +19,7 @@ NO_CORE_DUMP = 1
 """The limit on core dumps (bytes). With the limit 0, the kernel would still pass core dumps to another program:
 core(5)."""
 MOST_OTHERS = 4096
-"""The number of processes and threads that a user may have in addition to a grading without a cell."""
+"""If submissions run without a cell, the user may have this number of other processes and threads."""
 
 
 @dataclass(frozen=True)

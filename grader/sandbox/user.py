@@ -31,7 +31,8 @@ FEW_USERS = range(65_520, 65_534)
 """A range for containers without the other range. systemd and Debian's policy do not assign these ids either."""
 MAP = Path("/proc/self/uid_map")
 PLACES = ("/run", "/var/run")
-"""The possible folders of the lock file. The first writable one is used, or else the folder for temporary files."""
+"""The possible folders of the lock file. The first folder that is writable is used, or else the folder for temporary
+files."""
 TRIES = 10_000
 
 

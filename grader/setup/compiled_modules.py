@@ -11,7 +11,10 @@ HEADER = 16
 
 
 def remove_incomplete(folder: Path) -> None:
-    """Remove the incomplete modules in this folder and its subfolders. Python then compiles them again."""
+    """Remove the incomplete modules in this folder and its subfolders.
+
+    After that, Python compiles these modules again.
+    """
     for path in folder.rglob("__pycache__/*.pyc"):
         if not is_complete(path):
             path.unlink()

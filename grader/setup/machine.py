@@ -147,7 +147,7 @@ def closed_folder(path: str) -> Optional[Path]:
 
 
 def probe(executable: str) -> Optional[Python]:
-    """Return the properties of an interpreter, or None if it does not run, like a shim for a missing Python.
+    """Return the properties of an interpreter, or None if it does not run (for example, a shim for a missing Python).
 
     Raises:
         OSError: the machine cannot start another process.

@@ -152,7 +152,7 @@ def _for_a_file(name: str) -> str:
 
 
 def _nearest_parent(name: str) -> str:
-    """Return the part of the path that exists. The user probably mistyped the part after it."""
+    """Return the part of the path that exists. The user probably mistyped the rest of the path."""
     above = Path(name).absolute().parent
     if above.is_dir():
         return ""

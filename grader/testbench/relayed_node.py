@@ -1,4 +1,6 @@
-"""The node that the student's tests run on. This node decides nothing: it asks the grader how to react to each event.
+"""The node that the student's tests run on.
+
+This node makes no decisions: it asks the grader how to react to each event.
 
 This file replaces the module of the node in the cell. The file is the same in every run, so only the behaviour
 distinguishes a correct node from a broken node. The class has the attributes and methods of the node that students were

@@ -38,13 +38,14 @@ class Case:
 
     name: str
     why: str
-    """The difference from a usual submission, for the reader of the tests."""
+    """How the submission differs from a usual one, for readers of the tests."""
     result: str
     """One of the keys of EXIT_CODES."""
     folder: Path = CASES
     """The folder of the case. `folder` is not a key of expected.toml."""
     base: str = "03-circle-publisher"
-    """`files` is copied over this: the solution of a step, or a package in bases/. Empty for a case without a base."""
+    """The base is the solution of a step or a package in bases/, and `files` is copied over it. Empty for a case
+    without a base."""
     exercise: str = ""
     """The exercise that grades the case. If this is empty and `base` is the solution of a step, that step's exercise
     grades the case."""
@@ -59,8 +60,8 @@ class Case:
     clock: str = ""
     """The clock that `--clock auto` must choose; empty for any clock."""
     wall_varies: str = ""
-    """The reason why two runs in wall time can have different results. If set, the clocks are not compared. Usually
-    empty."""
+    """The reason why two runs in wall time can have different results. If there is such a reason, the results with the
+    two clocks are not compared. Usually empty."""
     points: float | None = None
     failed: tuple[str, ...] = ()
     skipped: tuple[str, ...] = ()

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 EXERCISE = "03-circle-publisher"
 GRADER = Path(sys.executable).with_name("grader")
 AT_ONCE = max(1, (os.cpu_count() or 1) // int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1")))
-"""The number of cases that are graded in parallel. Together with the other test processes, they use every processor."""
+"""The number of cases that are graded in parallel. Together with the other test processes, these cases use every
+processor."""
 HANG_S = 300.0
 """Longer than any time limit of the grader: a command that takes longer hangs."""
 

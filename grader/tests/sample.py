@@ -47,7 +47,7 @@ def sample(cases: Sequence[Case]) -> frozenset[str]:
 
 
 def shows(case: Case) -> frozenset[object]:
-    """Return what a case adds to the sample.
+    """Return the features of a case that the sample must show.
 
     The result contains the groups of the case's diagnoses, its exercise with the place that shows the mistake ("files"
     or "behaviour"), and its diagnoses that are in `without_test()`.

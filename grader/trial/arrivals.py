@@ -1,6 +1,7 @@
 """Take what has arrived directly from a subscription or a service, without an executor.
 
-An executor checks every entity and every event each time it runs. In a frame, that takes longer than anything else.
+An executor checks every entity and every event each time it runs. In each frame, this check takes longer than anything
+else.
 """
 
 from __future__ import annotations

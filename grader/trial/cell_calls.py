@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 CPU_S = 5
-"""The maximum CPU time of one call (s). Unlike wall time, it does not depend on the load of the machine."""
+"""The maximum CPU time of one call (s). Unlike wall time, CPU time does not depend on the load of the machine."""
 CALL_S = 20.0
 """The maximum wall time of one call (s). After a call that exceeds one of these limits, no further call is made."""
 MOST_TEXT = 20_000

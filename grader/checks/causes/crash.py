@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 START = "Traceback (most recent call last):"
 IGNORED = "Exception ignored in"
-"""Python prints this before the traceback of an exception that it ignores, such as one in a destructor."""
+"""Python prints this line before the traceback of an exception that it ignores, such as an exception in a
+destructor."""
 PACKAGES = ("site-packages", "dist-packages")
 """Folders of installed modules. A module next to setup.py is installed directly into one of these folders."""
 FRAME = re.compile(r'\s*File "(?P<file>[^"]*)", line (?P<line>\d{1,7})(?:, in (?P<function>.*))?')

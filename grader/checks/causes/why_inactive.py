@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 
 LIFECYCLE = "LifecycleNode"
 TRANSITIONS = ("on_activate", "on_configure")
-"""The methods of a lifecycle node that another program causes to run, the more important one first."""
+"""Methods of a lifecycle node that run when another program requests a transition, with the more important method
+first."""
 
 
 def never_activated(evidence: Evidence) -> Cause | None:

@@ -151,7 +151,7 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
 
 
 def _added(evidence: Evidence) -> Where | None:
-    """Return the line that adds to an attribute which the node logs, or None."""
+    """Return the line that increases an attribute which the node logs, or None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.AugAssign) and isinstance(node.op, ast.Add):

@@ -26,7 +26,7 @@ class NoCalls:
 
 
 def no_calls(evidence: Evidence, params: NoCalls) -> Finding:
-    """The node's file uses none of the functions, under any name."""
+    """The node's file does not use any of the functions, not even under another name."""
     uses = uses_of(evidence.code.modules, evidence.node_file, params.names)
     if uses:
         first = uses[0]

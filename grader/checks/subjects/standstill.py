@@ -1,4 +1,4 @@
-"""The end of a drive: the turtle stands still because of a command, not because the commands ended."""
+"""Check how a drive ends: the turtle stands still because of a command, not because the commands ended."""
 
 from __future__ import annotations
 

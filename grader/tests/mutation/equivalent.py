@@ -22,7 +22,11 @@ FILE = Path(__file__).with_name("equivalent.toml")
 
 @dataclass(frozen=True)
 class Known:
-    """A known mutant. `code` is a part of the line, `change` a part of the printed change, and `why` the reason."""
+    """A known mutant.
+
+    `code` is a part of the line, `change` is a part of the printed change, and `why` is the reason why the mutant has
+    no effect.
+    """
 
     file: str
     code: str

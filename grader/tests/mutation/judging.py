@@ -178,7 +178,7 @@ def requested(mutant: Mutant, lines: Lines, alike: int) -> list[str]:
 
 
 def install(mutant: Mutant) -> None:
-    """Import the changed file instead of the grader's own."""
+    """Import the mutant's file instead of the original file."""
     name = ".".join(mutant.file.relative_to(ROOT).with_suffix("").parts)
     spec = importlib.util.spec_from_loader(name, loader=None, origin=str(mutant.file))
     assert spec is not None

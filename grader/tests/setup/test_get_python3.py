@@ -1,4 +1,7 @@
-"""`make` installs python3 if it is missing. The package manager is a stand-in that installs another stand-in."""
+"""`make` installs python3 if it is missing.
+
+The package manager is a fake program, which installs another fake program.
+"""
 
 from __future__ import annotations
 

@@ -128,7 +128,7 @@ def test_a_stall_is_what_the_machine_owes(counts: Counts, monkeypatch: pytest.Mo
 
 
 def looked(counts: Counts, monkeypatch: pytest.MonkeyPatch) -> Stalls:
-    """Return a Stalls object that will find these counts at its next look."""
+    """Return a Stalls object that will find these counts when it next measures."""
     node, simulator, stolen_s = counts
     times = iter([(0.0, 0.0), (0.0, 0.0), node, simulator])
     stolen = iter([0.0, 0.0, stolen_s])

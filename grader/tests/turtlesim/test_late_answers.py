@@ -1,4 +1,4 @@
-"""A call to a simulator that answers late takes effect when it is answered. The calls stay in order."""
+"""If the simulator answers late, a call takes effect only when it is answered. The calls stay in order."""
 
 from __future__ import annotations
 

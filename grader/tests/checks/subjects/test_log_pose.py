@@ -29,7 +29,7 @@ DRIVE = recording(WAY)
 TIMES = np.arange(1.0, 10.0)
 
 Said = tuple["Floats", "Floats", "Floats"]
-"""One line for each x, y, distance."""
+"""A log with one line for each x, y and distance."""
 
 
 def truth(lag_s: float = 0.0) -> Said:
