@@ -204,8 +204,7 @@ def _wait_for_workers(address: str, workers: int) -> None:
 
 @contextmanager
 def _watched(also: list[int]) -> Iterator[list[float]]:
-    """Sample the total memory (MB) of this process's descendants, of the processes in `also`, and of their
-    descendants."""
+    """Sample the total memory (MB) of this process's descendants, the processes in `also`, and their descendants."""
     samples: list[float] = []
     stopped = Event()
 

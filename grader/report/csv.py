@@ -56,7 +56,7 @@ BEFORE = frozenset({"", '"', "'", "`"})
 
 
 def to_csv(rows: Iterable[tuple[str, Report, str, str, str]]) -> str:
-    """Return the table for rows of (student, report, grader, name of the JSON file, reason to look at the submission).
+    """Return the table for rows of (student, report, grader, name of the JSON file, reason to check the submission).
 
     The table begins with a byte order mark, so that Excel reads it as UTF-8.
     """

@@ -111,7 +111,7 @@ class FailedCheck:
 
 @dataclass(frozen=True)
 class ClassReports:
-    """The reports below a folder, and the files that look like reports but cannot be read, with the reason."""
+    """The reports below a folder, and the files that are probably reports but cannot be read, each with the reason."""
 
     entries: tuple[Entry, ...]
     unreadable: tuple[tuple[str, str], ...]

@@ -59,7 +59,7 @@ class _Canvas:
         self._draw.line([self._pixel(point) for point in points], fill=look.color, width=width, joint="curve")
 
     def _dashed(self, line: Line, look: Look) -> None:
-        """Draw each straight segment as dashes of about the length given by the look, with a dash at both ends."""
+        """Draw each straight segment as dashes of about the length that `look` specifies, with a dash at both ends."""
         for (x0, y0), (x1, y1) in pairwise(line.points):
             pieces = min(max(1, round(math.hypot(x1 - x0, y1 - y0) / (look.dash_m / DASH))), 400)
             whole = pieces - 1 + DASH

@@ -1,4 +1,4 @@
-"""Shapes on the turtle's canvas, in metres, and the look of each role."""
+"""Shapes on the turtle's canvas, in metres, and how a shape is drawn in each role."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ DEEP: Rgb = (16, 20, 84)
 
 @dataclass(frozen=True)
 class Look:
-    """The look of a role: its colour, the width of its lines, and the length of its dashes (m; 0 for a solid line)."""
+    """How a role is drawn: its colour, the width of its lines, and the length of its dashes (m; 0 for a solid line)."""
 
     color: Rgb
     width_m: float

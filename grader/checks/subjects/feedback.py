@@ -34,8 +34,7 @@ lines."""
 
 @dataclass(frozen=True, kw_only=True)
 class LogFeedback:
-    """While a goal is active, the node logs one line per `period_s`, with a remaining angle that is at most `lag_s`
-    old."""
+    """While a goal is active, the node logs one line per `period_s`, with a remaining angle at most `lag_s` old."""
 
     format: str = string("a log line with remaining in it", about="The format of a line with the number `remaining`.")
     period_s: float = number(0.5, above=0, about="The time between two lines.")
