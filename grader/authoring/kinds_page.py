@@ -39,7 +39,10 @@ UNITS = {
 }
 """Maps the suffix of a parameter's name to the parameter's unit. Longer suffixes come first."""
 STAGES = {
-    "source": ("Judged from the files", "These checks read the submission's files. They do not build or run it."),
+    "source": (
+        "Judged from the files",
+        "These checks read the submission's files. These checks do not build or run the submission.",
+    ),
     "build": ("Judged from the build", "These checks read what `colcon build` printed and installed."),
     "trial": ("Judged from the trial", "These checks read the recording of a trial: messages, trajectory, graph, log."),
 }

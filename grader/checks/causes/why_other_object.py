@@ -20,9 +20,7 @@ def message_for_class(scene: CrashScene) -> Cause | None:
         given = call.argument(0, "msg_type")
         if isinstance(given, ast.Call):
             name = ast.unparse(given.func)
-            text = (
-                f"create_publisher needs the class {shorten(name)} itself. With () after its name, it gets an object."
-            )
+            text = f"create_publisher needs the class {shorten(name)} itself. A class name with () creates an object."
             fix = at(call.where, f"{ast.unparse(given)},", f"{name},")
             return Cause("object-for-class", text, call.where).fixed_by(fix)
     return None

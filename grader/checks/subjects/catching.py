@@ -210,7 +210,7 @@ NEAREST_FIRST = Kind(
     "The nearest one is caught first",
     NoParams,
     nearest_first,
-    about="After each catch, the next turtle is the one that was nearest to turtle1.",
+    about="After each catch, turtle1 next catches the turtle that is nearest.",
 )
 WITHIN_REACH = Kind(
     "within_reach",
@@ -218,5 +218,5 @@ WITHIN_REACH = Kind(
     "The node catches only near targets",
     WithinReach,
     within_reach,
-    about="The node calls the service that removes a turtle when turtle1 is near enough, and only then.",
+    about="When turtle1 is near enough to a target, and only then, the node calls the service that removes the target.",
 )

@@ -146,5 +146,5 @@ CIRCLE = Kind(
     "The bag shows a circle",
     CircleInBag,
     circle_in_bag,
-    about="The poses in the bag lie on one whole circle with the radius.",
+    about="The poses in the bag lie on one whole circle with the given radius.",
 )

@@ -294,5 +294,5 @@ REMOVES = Kind(
     "The node removes caught turtles",
     Removes,
     removes,
-    about="The node removes each turtle whose name a `[[trial.call]]` has in its field `name`, and no other.",
+    about="The node removes each turtle whose name a `[[trial.call]]` has in its field `name`, and no other turtle.",
 )

@@ -193,7 +193,7 @@ PUBLISHES = Kind(
     "Messages arrive on the topic",
     Topic,
     publishes,
-    about="Messages of the type arrive on the topic.",
+    about="Messages of the given type arrive on the given topic.",
 )
 ONLY_TYPE = Kind(
     "topic_type",
@@ -201,7 +201,7 @@ ONLY_TYPE = Kind(
     "The topic has one message type",
     Topic,
     only_type,
-    about="The student's node publishes only this type on the topic.",
+    about="The student's node publishes only the given type on the topic.",
 )
 SUBSCRIBES = Kind(
     "subscribes",
@@ -209,5 +209,5 @@ SUBSCRIBES = Kind(
     "The node subscribes to the topic",
     Topic,
     subscribes,
-    about="The student's node has a subscription of this type on the topic.",
+    about="The student's node has a subscription of the given type on the topic.",
 )
