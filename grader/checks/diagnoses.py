@@ -206,6 +206,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "swallows-failure": "an except catches the failure of an assert",
         "assert-in-loop": "the asserts are in a loop over a list that may be empty",
         "looks-at-source": "the tests read the source of the node",
+        "uses-own-names": "the tests use methods or attributes of the node that are not promised",
         "starts-a-process": "the tests start the node as another process",
         "sleeps-by-luck": "the tests sleep for a fixed time instead of waiting for a message",
         "by-chance": "the tests use random numbers",

@@ -190,6 +190,7 @@ Diagnosis = Literal[
     "swallows-failure",
     "assert-in-loop",
     "looks-at-source",
+    "uses-own-names",
     "starts-a-process",
     "sleeps-by-luck",
     "by-chance",

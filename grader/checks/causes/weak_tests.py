@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
     from grader.submission.pytest_files import TestCode, TestFunction
 
+CLOCKS = frozenset({"time", "monotonic", "perf_counter", "monotonic_ns", "time_ns", "perf_counter_ns"})
+"""Functions of the module time that return the wall time."""
 RAISING = frozenset({"raises", "fail", "warns"})
 """Pytest functions that make a test fail."""
 CATCHES_ALL = frozenset({"AssertionError", "Exception", "BaseException"})
@@ -87,6 +89,25 @@ def in_a_loop(code: TestCode) -> Cause | None:
             if not isinstance(node.iter, ast.Call | ast.List | ast.Tuple) and {id(each) for each in asserts} <= inside:
                 text = "If no message arrives, the list is empty and the assert in this loop never runs."
                 return Cause("assert-in-loop", text, Where(test.module.file, node.lineno))
+    return None
+
+
+def timed_loop(code: TestCode) -> Cause | None:
+    """Return the cause if a loop always lasts for a fixed wall time, like a sleep. A deadline of a wait is right."""
+    for module in code.modules:
+        for node in module.nodes:
+            if not isinstance(node, ast.While) or not isinstance(node.test, ast.Compare):
+                continue
+            parts = [node.test.left, *node.test.comparators]
+            wall = any(
+                isinstance(each, ast.Call) and _last(each.func) in CLOCKS for part in parts for each in ast.walk(part)
+            )
+            if wall and not any(isinstance(each, ast.Break | ast.Return | ast.Raise) for each in _below(node.body)):
+                text = (
+                    "On a slow computer, less happens in this time. Advance the node's clock, or end the loop when the "
+                    "message has arrived, and use the time only as a deadline."
+                )
+                return Cause("sleeps-by-luck", text, Where(module.file, node.lineno))
     return None
 
 

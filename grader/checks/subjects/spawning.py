@@ -16,7 +16,7 @@ from grader.checks.causes.why_unasked import waits_in_callback, why_unasked
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.services import calls_of, no_response
-from grader.checks.tolerance import Band
+from grader.checks.tolerance import Band, unless_starved
 from grader.common.words import a_list, count, shorten
 from grader.evidence import activity
 from grader.evidence.targets import announcements, is_there
@@ -173,7 +173,8 @@ def announces(evidence: Evidence, params: Announces) -> Finding:
         if crash is not None:
             return crash_finding(evidence, crash, end_observed(evidence), expected)
         cause = Cause("timer-period", "Publish in each call of the timer.", evidence.place("create_timer"))
-        return failed(observed, expected, waits_in_callback(evidence) or cause, near_edge=most.near(longest_s))
+        finding = failed(observed, expected, waits_in_callback(evidence) or cause, near_edge=most.near(longest_s))
+        return unless_starved(finding, evidence.recording, off=longest_s - 1.4 * params.period_s, per_s=1.0)
     often = OFTEN * (times_s[-1] - times_s[0]) / params.period_s
     if len(heard) > max(often, OFTEN):
         observed = f"{len(heard)} messages arrived in {times_s[-1] - times_s[0]:.1f} s."

@@ -13,6 +13,7 @@ from grader.checks.kind import Kind, NoParams, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.tests_written import code_of
 from grader.common.words import count, shorten
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -108,7 +109,8 @@ def _why_accepted(evidence: Evidence, params: Catches, code: TestCode) -> Cause:
     cause = swallowed(code)
     if cause is None and _is_silent(evidence, params.broken):
         cause = in_a_loop(code)
-    where = code.tests[0].where if code.tests else None
+    # No line is wrong: a test is missing.
+    where = Where(code.tests[0].module.file) if code.tests else None
     return cause or Cause("accepts-broken", params.cause, where)
 
 

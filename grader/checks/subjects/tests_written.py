@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.weak_tests import always_true, why_without_assert, without_assert
+from grader.checks.causes.weak_tests import always_true, timed_loop, why_without_assert, without_assert
 from grader.checks.kind import Kind, NoParams, strings
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, shorten
@@ -114,7 +114,7 @@ class Steady:
 
 
 def steady(evidence: Evidence, params: Steady) -> Finding:
-    """The tests neither sleep for a fixed time nor use random numbers."""
+    """The tests neither sleep nor loop for a fixed time, and do not use random numbers."""
     code = code_of(evidence)
     expected = "The tests behave the same in every run, even on a slow computer."
     use = _first_use(code, frozenset(params.names))
@@ -122,6 +122,9 @@ def steady(evidence: Evidence, params: Steady) -> Finding:
         cause = "On a slow computer, the sleep may be too short. Spin until the message arrives, or set the clock."
         observed = f"The tests call {shorten(use.written, 60)}."
         return failed(observed, expected, Cause("sleeps-by-luck", cause, use.where))
+    loop = timed_loop(code)
+    if loop is not None:
+        return failed("The tests repeat a loop for a fixed time.", expected, loop)
     use = _first_use(code, frozenset(params.random))
     if use is not None:
         cause = "A test that fails only sometimes cannot be repeated. Choose the values yourself."
