@@ -85,7 +85,7 @@ class Kind(Generic[P]):
         return None if self.requested is None or isinstance(params, Finding) else self.requested(evidence, params)
 
     def radius(self, evidence: Evidence, values: Mapping[str, Param]) -> float | None:
-        """Return the radius (m) of the circle that a random start position must leave room for, or None."""
+        """Return the radius (m) of a circle that must fit on either side of a random start position, or None."""
         params = self._params(evidence, values)
         return None if self.radius_m is None or isinstance(params, Finding) else self.radius_m(params)
 

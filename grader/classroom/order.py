@@ -37,7 +37,8 @@ class Order:
     explain: bool = True
     """Whether the grader tests likely causes by fixing them in a copy of the submission."""
     in_cell: bool = True
-    """Whether submissions run in a sandbox. It is False only for trusted submissions on a machine without one."""
+    """Whether submissions run in a sandbox. This is False only for trusted submissions on a machine without a
+    sandbox."""
     trusted: bool = False
 
     @cached_property

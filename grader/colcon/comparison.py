@@ -1,4 +1,4 @@
-"""Compare the install tree of a build with the predicted one."""
+"""Compare the install tree of a build with the predicted install tree."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ if TYPE_CHECKING:
 _MOST_MEMBERS = 2000
 _FILE, _FOLDER = (b"0", b"\0"), b"5"
 _OF_COLCON = re.compile(r"COLCON_IGNORE|\.colcon_install_layout|(local_)?setup\.\w+|_local_setup_util_\w+\.py")
-"""The files of the workspace, outside the package. The environment of a node is set without them."""
+"""The files that colcon adds to the workspace outside the package. The grader sets the environment of a node without
+these files."""
 _OF_PACKAGE = r"share/{name}/package\.\w+|share/{name}/hook/\w+\.\w+|share/colcon-core/packages/{name}"
 _OF_METADATA = r"PKG-INFO|SOURCES\.txt|dependency_links\.txt|requires\.txt|top_level\.txt|zip-safe|not-zip-safe"
 
 
 def installs(tree: bytes, predicted: Predicted) -> bool:
-    """Return whether the tree has exactly the predicted files, except those that colcon and setuptools add for others.
+    """Return whether the tree has exactly the predicted files, apart from those that colcon and setuptools always add.
 
-    Contents, permissions and folders are compared. Call this through `grader.submission.reader.read`.
+    The comparison includes contents, permissions and folders. Call this through `grader.submission.reader.read`.
     """
     members = read_all(tree, _MOST_MEMBERS)
     if members is None:
@@ -46,7 +47,7 @@ def installs(tree: bytes, predicted: Predicted) -> bool:
 
 
 def _added(predicted: Predicted) -> re.Pattern[str]:
-    """Return the pattern of the files that colcon and setuptools add."""
+    """Return a pattern for the files that colcon and setuptools add."""
     name = re.escape(predicted.package)
     package = _OF_PACKAGE.format(name=name)
     return re.compile(rf"{_OF_COLCON.pattern}|{name}/({package}|{re.escape(predicted.metadata)}/({_OF_METADATA}))")

@@ -1,7 +1,8 @@
 """Predict the install tree of a usual package from its source, without running anything.
 
-A node can start from this tree while colcon builds. What it does counts only if colcon installs the same files
-(grader.colcon.comparison). For a package that is unusual in any way, nothing is predicted.
+A node can start from the predicted tree while colcon is still building. The behaviour of this node counts only if
+colcon installs the same files (grader.colcon.comparison). For a package that is unusual in any way, nothing is
+predicted.
 """
 
 from __future__ import annotations
@@ -30,10 +31,10 @@ if TYPE_CHECKING:
 
 PYTHON = f"{sys.version_info.major}.{sys.version_info.minor}"
 _OTHER_BUILDS = frozenset({"pyproject.toml", "CMakeLists.txt", "COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE"})
-"""Files that make colcon or setuptools install something else, or nothing."""
+"""Files that make colcon or setuptools install other files, or no files."""
 _TEMPLATE = re.compile(r'r"""\n([ \t]*# EASY-INSTALL-ENTRY-SCRIPT: %\(spec\)r.*?)"""', re.DOTALL)
 _SHEBANG = re.compile(r"/[\w./-]{1,100}")
-"""The paths of an interpreter that setuptools writes into the first line of a script without quotes."""
+"""Paths of an interpreter that setuptools writes without quotes into the first line of a script."""
 _IMPORTED = frozenset(
     {
         *("rclpy", "action_msgs", "builtin_interfaces", "example_interfaces", "geometry_msgs", "nav_msgs"),
@@ -43,7 +44,8 @@ _IMPORTED = frozenset(
         *("traceback", "typing"),
     }
 )
-"""The packages that nodes usually import. With these, a node does not look at the folder in which it is installed."""
+"""The packages that nodes usually import. If a node imports only these packages, it does not read the folder in which
+it is installed."""
 _READING = frozenset(
     {"open", "exec", "eval", "compile", "__import__", "__file__", "__path__", "__spec__", "__loader__"}
 )
@@ -60,7 +62,7 @@ class Predicted:
 
     @property
     def tree(self) -> bytes:
-        """The install tree as a tar stream, like the one of a build."""
+        """The install tree as a tar stream, in the same form as the install tree of a build."""
         stream = io.BytesIO()
         with tarfile.open(fileobj=stream, mode="w", format=tarfile.GNU_FORMAT) as tar:
             for path, (content, mode) in self.files.items():
@@ -121,7 +123,7 @@ def _is_module(path: str, packages: tuple[str, ...]) -> bool:
 
 
 def _may_look_around(target: str | None, files: Mapping[str, bytes]) -> bool:
-    """Return whether a node may read other files than modules, or may notice that they are missing."""
+    """Return whether a node may read files that are not modules, or may notice that such files are missing."""
     file = module_file(target.partition(":")[0], files) if target else None
     if file is None:
         return True

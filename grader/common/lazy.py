@@ -22,7 +22,10 @@ IMPORTING = threading.RLock()
 
 
 class _Lazy:
-    """A stand-in that imports a module on first use. Any thread can use this object."""
+    """An object that takes the place of a module and imports the module on first use.
+
+    Any thread can use this object.
+    """
 
     def __init__(self, name: str) -> None:
         self._name = name

@@ -1,7 +1,7 @@
 """A folder with a fixed name that only this user can write to, for files that several processes of the user share.
 
 Other users can also create files in the folder for temporary files. If the grader opened a file with a fixed name
-there, another user could have created it before, for example as a link to a file of this user.
+there, another user could already have created this file, for example as a link to a file of the first user.
 """
 
 from __future__ import annotations

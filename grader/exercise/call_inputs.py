@@ -44,7 +44,7 @@ class Arc:
     def deviations(self) -> tuple[float, float, float]:
         """Return the standard deviations (m) of centre x, centre y and radius of a circle that is fitted to the points.
 
-        These deviations follow from the noise through the Cramér-Rao bound, as in Chernov, "Circular and Linear
+        The deviations follow from the noise through the Cramér-Rao bound, as in Chernov, "Circular and Linear
         Regression" (2010), section 7.2.
         """
         angle = self.angles()

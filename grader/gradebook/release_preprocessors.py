@@ -1,6 +1,7 @@
 """Additional steps of `nbgrader generate_assignment`: starting points instead of "YOUR CODE HERE", and stripped files.
 
-Both steps raise an error if something is wrong, so that nbgrader removes its output and no solution is released.
+If something is wrong, each of these steps raises an error, so that nbgrader removes its output and no solution is
+released.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from grader.common.words import a_list, count
 
 
 def difference(theirs: str, ours: str, path: str) -> str:
-    """Return a sentence about the differences between the learner's text and that of the solution."""
+    """Return a sentence about the differences between the learner's text and the solution's text."""
     if not theirs:
         return "You do not have this file."
     mine, solution = (_parts(text) if path.endswith(".py") else None for text in (theirs, ours))

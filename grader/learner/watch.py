@@ -78,7 +78,7 @@ class Events:
     def watch(self, folder: Path) -> None:
         """Watch only this folder from now on.
 
-        The first event reports a save. It is sent as soon as the watcher notices new saves.
+        The first event reports a save. The event is sent as soon as the watcher notices new saves.
         """
         self._stop.set()
         self._stop = Event()

@@ -121,7 +121,7 @@ def _read_order(cell: LinkedCell, stop: Callable[[], None]) -> None:
 
 
 class _Output:
-    """Prints the output of the node, with the paths of the learner's files instead of those of the copies."""
+    """Prints the output of the node, after replacing the paths of the copies with the paths of the learner's files."""
 
     def __init__(self, cell: LinkedCell, program: Program) -> None:
         assert cell.process.stdout is not None

@@ -95,7 +95,7 @@ def _look(outcome: Outcome) -> str:
 
 
 def _check(outcome: Outcome, console: Console, shown: str) -> None:
-    """Print one check. If the message is the same as that of the previous check (`shown`), it is not repeated."""
+    """Print one check. If the message of the previous check (`shown`) was the same, the message is not repeated."""
     look = _look(outcome)
     signs = SIGNS if console.encoding.lower().startswith("utf") else ASCII_SIGNS
     head = Text(f"{signs[look]} ", style=STYLES[look])

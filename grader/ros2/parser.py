@@ -40,8 +40,9 @@ class Parser(argparse.ArgumentParser):
 def make_parser(words: Sequence[str]) -> Parser:
     """Return the parser for a command line. `words` are the words after `ros2`.
 
-    The parser knows all groups of `ros2`. It knows the verbs and arguments only of the group and verb in `words`. The
-    parsed arguments have the attribute `run`, a function that takes the arguments and returns the exit code.
+    The parser knows all groups of `ros2`. For the group and the verb in `words`, the parser also knows the verbs and
+    the arguments. The parsed arguments have the attribute `run`, a function that takes the arguments and returns the
+    exit code.
     """
     chosen = [word for word in words if not word.startswith("-")]
     group, verb = [*chosen[:2], None, None][:2]

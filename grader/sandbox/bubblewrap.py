@@ -37,7 +37,8 @@ if TYPE_CHECKING:
 WORKSPACE = Path("/ws")
 """The workspace inside a cell, on a separate tmpfs."""
 HOME = Path("/tmp/home")
-"""HOME inside a room or cell. This folder is empty at first, and is deleted together with the cell."""
+"""The HOME of processes inside a room or a cell. This folder is empty at first, and is deleted together with the
+cell."""
 
 ROOM_DISK = 256 * MIB
 

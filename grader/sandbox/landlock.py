@@ -1,6 +1,7 @@
 """Landlock: a process denies itself all files except those that it names (landlock(7), Linux 5.13 and later).
 
-Newer kernels can deny more. This is one of two defences; reading_calls.py is the other.
+The newer the kernel, the more can be denied. Landlock is one of two defences of this process; the other is the filter
+in reading_calls.py.
 """
 
 from __future__ import annotations
@@ -21,11 +22,13 @@ _VERSION = 1
 _PATH_BENEATH = 1
 _READ_FILE, _READ_FOLDER = 1 << 2, 1 << 3
 _FILE_RIGHTS = {1: 13, 2: 14, 3: 15, 5: 16}
-"""Version -> the number of rights for files that it knows, among them opening, executing, writing and ioctl."""
+"""Maps a version of Landlock to the number of file rights that it knows, such as opening, executing, writing and
+ioctl."""
 _NET_RIGHTS = {4: 2}
 """The rights to bind and to connect a TCP socket."""
 _SCOPES = {6: 2}
-"""Abstract Unix sockets and signals of processes outside."""
+"""The right to connect to abstract Unix sockets of other processes, and the right to send signals to other
+processes."""
 _SET_NO_NEW_PRIVILEGES = 38
 
 
@@ -39,9 +42,9 @@ class _Below(ctypes.Structure):
 
 
 def allow_only_reading(paths: Iterable[Path]) -> bool:
-    """Deny this thread everything that Landlock knows, except reading these files and folders, for ever.
+    """Permanently deny this thread everything that Landlock can deny, except for reading these files and folders.
 
-    Paths that do not exist are ignored. Return False if the kernel does not support it.
+    Paths that do not exist are ignored. Return False if the kernel does not support this.
     """
     c = ctypes.CDLL(None)
     version = c.syscall(_CREATE, None, ctypes.c_size_t(0), _VERSION)

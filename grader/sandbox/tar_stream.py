@@ -52,14 +52,14 @@ def read_tar(stream: bytes, most: int) -> dict[PurePosixPath, Member]:
 
 
 def read_all(stream: bytes, most: int) -> list[tuple[PurePosixPath, Member]] | None:
-    """Return all members of the stream with their names, or None if it is damaged or has more than `most`."""
+    """Return all members of the stream with their names, or None if it is damaged or has more than `most` members."""
     found = list(islice(_members(stream), most + 1))
     end = _end(found[-1][1]) if found else 0
     return found if len(found) <= most and not stream[end:].strip(b"\0") else None
 
 
 def _members(stream: bytes) -> Iterator[tuple[PurePosixPath, Member]]:
-    """Yield the members before the end of the stream or before the first damaged one."""
+    """Yield the members up to the end of the stream or up to the first damaged member."""
     at, long_name = 0, None
     while at + BLOCK <= len(stream):
         header = stream[at : at + BLOCK]

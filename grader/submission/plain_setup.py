@@ -1,6 +1,7 @@
 """PlainSetup: a setup.py of the usual form, of which everything that affects the installed files is constant.
 
-Most packages have such a setup.py. It is read with `ast` and never run. For every other setup.py, nothing is returned.
+Most packages have such a setup.py. Such a setup.py is read with `ast` and never run. For any other setup.py, the result
+is None.
 """
 
 from __future__ import annotations
@@ -122,7 +123,7 @@ def _packages(node: ast.expr, module: Module, paths: Collection[str]) -> tuple[s
 
 
 def _around(name: str) -> list[str]:
-    """Return the names of the packages that contain this one."""
+    """Return the names of the packages that contain the package `name`."""
     parts = name.split(".")
     return [".".join(parts[:depth]) for depth in range(1, len(parts))]
 

@@ -1,4 +1,4 @@
-"""The files that the reading process may open besides those of a submission: Python's, the grader's, the lessons."""
+"""The files that the reading process may open in addition to a submission's: Python's, the grader's, the lessons."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ if TYPE_CHECKING:
 
 _SYSTEM = ("/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/etc/localtime", "/dev/null", "/dev/urandom")
 _MODULES = ("site-packages", "dist-packages")
-"""The folders of a search path that contain only modules. Others may be any folder: the current one, or the home."""
+"""The folders of a search path that contain only modules. All other entries may be any folder, such as the current
+folder or the home folder."""
 
 
 @cache
 def program_files() -> tuple[Path, ...]:
-    """Return the files and folders of which every reading may need a part, for example a module that it imports."""
+    """Return the files and folders from which any reading process may need something, such as a module to import."""
     package = Path(__file__).resolve().parents[1]
     lessons = (package.parent / "course", package.parent / "exercises")
     searched = [Path(entry) for entry in sys.path if os.path.isabs(entry)]  # noqa: PTH117
@@ -28,7 +29,7 @@ def program_files() -> tuple[Path, ...]:
 
 
 def paths_in(values: Iterable[object]) -> Iterator[Path]:
-    """Yield the paths among these arguments of a function, and in tuples and lists among them."""
+    """Yield the paths among these arguments of a function, including those inside tuples and lists."""
     for value in values:
         if isinstance(value, Path):
             yield value

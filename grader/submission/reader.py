@@ -63,8 +63,8 @@ class _Child:
 def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> T:
     """Call the function in a child process and return its result, which may contain our dataclasses and built-in types.
 
-    If the kernel has Landlock, the function can open only the files and folders among its arguments, which must be
-    instances of Path, and `program_files`.
+    If the kernel has Landlock, the function can open only `program_files` and the files and folders that are arguments
+    of the function (as instances of Path).
 
     Raises:
         TooLargeError: the function took too much time or memory.
@@ -131,7 +131,8 @@ def _run(sends: int, readable: tuple[Path, ...], function: Callable[[], object])
 def _close_all_but(sends: int) -> None:
     """Close the parent's files: the child needs none of them, and an open copy would keep a pipe open.
 
-    The terminal is closed too. In a terminal, a child could type commands for the user.
+    The terminal is closed as well. If the child had access to the terminal, it could type commands in place of the
+    user.
     """
     empty = os.open(os.devnull, os.O_RDWR)
     for number in range(2 if os.environ.get("GRADER_DEBUG") else 3):

@@ -175,7 +175,7 @@ def _empty_pipe(pipe: int) -> None:
 
 
 def _end_all(group: int | None) -> None:
-    """Kill all other processes of the cell, or, outside a cell, those of this process group."""
+    """Kill all other processes of the cell. Outside a cell, kill all other processes of this process group."""
     until = time.monotonic() + _GONE_S
     try:
         while time.monotonic() < until:

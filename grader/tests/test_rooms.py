@@ -1,4 +1,7 @@
-"""The order of the rooms: imports go in one direction and never in a circle. Lazy and type-only imports count."""
+"""The import order of the grader's packages: imports go in one direction and never in a circle.
+
+Lazy and type-only imports count.
+"""
 
 from __future__ import annotations
 

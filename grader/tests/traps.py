@@ -86,8 +86,7 @@ def careless() -> dict[str, str]:
 
 
 def _modules() -> set[str]:
-    """Return the names of all modules that the course's programs may import: Python's, the course's, and those of
-    installed packages."""
+    """Return the names of all modules that the course's programs may import, including installed packages."""
     installed = {name.partition("/")[0].partition(".")[0] for name in metadata.packages_distributions()}
     known = {*sys.stdlib_module_names, *installed, "sitecustomize", "usercustomize", "trap", "turtlesim"}
     return {name for name in known if name.isidentifier()} - {"grader"}

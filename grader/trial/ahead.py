@@ -107,7 +107,7 @@ class Ahead:
     def run(self, name: str, package: str, executable: str, tree: bytes) -> None:
         """Start the node in a trial that is waiting for it. After that, `trial(name).run` returns the recording.
 
-        A node that was started before goes on.
+        A node that has already been started continues.
         """
         if name not in self._under_way:
             self._under_way[name] = self._pool.submit(self._started[name].run, package, executable, tree)

@@ -28,7 +28,7 @@ _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
 
 def is_crowded(waited_s: float, others_s: float, *, of_s: float) -> bool:
-    """Return whether other programs crowd the machine.
+    """Return whether other programs use so much of the machine that the trial is disturbed.
 
     In a period of `of_s` (s), the other programs worked for `others_s` (s), and the simulator and the node waited for
     `waited_s` (s).
@@ -98,7 +98,7 @@ class Others:
         self._before = _machine_worked_s() - time.process_time()
 
     def worked_s(self, *, but_s: float) -> float:
-        """Return the CPU time of all processes except this one, less the given CPU time `but_s` (s)."""
+        """Return the CPU time of all processes except this process, minus the given CPU time `but_s` (s)."""
         return _machine_worked_s() - time.process_time() - self._before - but_s
 
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Pose
 
 QUIET_S = 0.02
-"""The time without discovery traffic after which discovery counts as finished (s). This is less than half the time
+"""The time without discovery traffic after which discovery counts as finished (s). The value is less than half the time
 between two announcements (fastdds.xml). If this time were longer, the announcements of the simulator and the node might
 leave no gap of this length for many seconds."""
 WAKE_S = 1.0

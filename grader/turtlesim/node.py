@@ -117,7 +117,10 @@ class TurtlesimNode(Node):
     # --- turtles ----------------------------------------------------------------------------------------------
 
     def _show(self, name: str) -> None:
-        """Create the topics, services and action of a turtle, or reuse those of a killed turtle with the same name."""
+        """Create the topics, services and action of a turtle.
+
+        If a turtle of the same name was killed, use its topics, services and action again.
+        """
         for waiting in self._leaving:
             if waiting[1].name == name:
                 self._leaving.remove(waiting)

@@ -100,7 +100,7 @@ def _file(kind: str) -> Path:
 
 
 def remembered(kind: str) -> Address | None:
-    """Return the last address of this kind of view, or None. It is possible that the view is no longer running."""
+    """Return the last address of this kind of view, or None. Perhaps the view is no longer running."""
     file = _file(kind)
     try:
         stat = file.stat()

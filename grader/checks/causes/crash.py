@@ -28,7 +28,7 @@ ERROR = re.compile(r"(?P<type>[A-Za-z_][\w.]*)(?:: (?P<message>.*))?")
 GUESS = re.compile(r" \(/[^)]*\)$|\.? Did you mean: .*| The following argument types are supported:.*")
 """Hints that differ between Python versions. These hints are removed, because a diagnosis has its own suggestion."""
 STOPS = frozenset({"KeyboardInterrupt", "ExternalShutdownException"})
-"""The exceptions that Ctrl-C raises in a node written like the one in the tutorial."""
+"""The exceptions that Ctrl-C raises in a node that is written as in the tutorial."""
 
 RCLPY_ERRORS = frozenset({"InvalidNodeNameException", "InvalidTopicNameException", "NotInitializedException"})
 

@@ -1,4 +1,4 @@
-"""Why an object is not the one that is needed: a message for its class, a subscription for a publisher, another one."""
+"""Why an object is the wrong one: a message instead of its class, a subscription instead of a publisher, and so on."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ SMALL_RAD = 0.3
 
 @dataclass(frozen=True, kw_only=True)
 class Eight:
-    """Both lobes have this radius and turn by 360 degrees; the first lobe is to the left or to the right."""
+    """The two lobes have this radius and turn by 360 degrees; the first lobe is to the left or to the right."""
 
     radius_m: float = number(above=0, at_most=2.5, about="The radius of both lobes.")
     radius_tolerance_m: float = number(0.1, above=0, about="The maximum error of a radius.")

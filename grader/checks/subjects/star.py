@@ -28,7 +28,7 @@ BY_GOALS = "rotate_absolute"
 
 @dataclass(frozen=True, kw_only=True)
 class Star:
-    """Requires sides of this length, each turned `corner_deg` to the left of the one before, and a closed star."""
+    """Requires a closed star with sides of this length, each `corner_deg` to the left of the previous side."""
 
     side_m: float = number(above=0, at_most=5, about="The length of a side.")
     heading_deg: float = number(about="The heading of the first side, in degrees: 0 is to the right, 90 is up.")

@@ -144,8 +144,8 @@ class Recorder:
     def _drain(self) -> None:
         """Write the messages that arrived before recording ended but have not been handled.
 
-        These messages are read directly from the subscriptions, since an executor handles ready callbacks in any order.
-        The depth of the queue limits the number of waiting messages.
+        Messages that have already arrived are read directly from the subscriptions, since an executor handles callbacks
+        in any order. The depth of the queue limits the number of waiting messages.
         """
         for subscription in self._node.subscriptions:
             for _ in range(bag_qos.DEPTH):

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _REPORTED_EVERY_S = 1.0
 _ACKNOWLEDGED_S = 1.0
-"""The maximum time to wait for acknowledgements (s). It is short, because Ctrl-C has no effect during the wait."""
+"""The maximum time to wait for acknowledgements (s). The wait is short, because Ctrl-C has no effect during it."""
 _POLL_S = 0.01
 
 

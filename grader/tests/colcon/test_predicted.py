@@ -31,7 +31,7 @@ NODES = ("draw_circle", "test_node")
 
 @pytest.fixture(scope="module")
 def package() -> Submission:
-    """Return a package with all that a usual one may have: a subpackage, data files, and files that stay outside."""
+    """Return a package with all that is usual: a subpackage, data files, and files that are not installed."""
     given = open_submission(STEP)
     setup_py = given.files["setup.py"].decode()
     setup_py = setup_py.replace('["package.xml"]', '["package.xml", "config/a.yaml", "config/run.sh"]')
@@ -84,7 +84,7 @@ def test_colcon_installs_the_predicted_files(tree: bytes, predicted: Predicted) 
 
 
 def test_a_comparison_does_not_need_the_predicted_tree_itself_to_be_complete(predicted: Predicted) -> None:
-    """The files of colcon and the folders may be missing, but then it is not an install tree of colcon."""
+    """A tree without the files of colcon and without the folders is not an install tree of colcon."""
     assert not installs(predicted.tree, predicted)
 
 

@@ -1,4 +1,7 @@
-"""Test which movements count as interventions. This depends on the movement and not on the service that was called."""
+"""Test which movements count as interventions.
+
+Whether a movement counts depends on the movement and not on the service that was called.
+"""
 
 from __future__ import annotations
 

@@ -65,8 +65,8 @@ LIMIT_S = 300
 
 @dataclass(frozen=True)
 class Fault:
-    """A kind of system call that fails with an errno: from the `nth` call after a function ("module:name") has
-    started."""
+    """A kind of system call that fails with an errno, from the `nth` call after the start of a function
+    ("module:name")."""
 
     call: str
     number: int

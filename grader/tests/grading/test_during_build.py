@@ -1,4 +1,7 @@
-"""Nodes run during the build, from the predicted install tree. The report is that of the tree that colcon installs."""
+"""Nodes run during the build, from the predicted install tree.
+
+The report must be about the tree that colcon installs.
+"""
 
 from __future__ import annotations
 
@@ -87,9 +90,11 @@ class _Made:
 
 @dataclass
 class Build:
-    """A replacement for colcon. It installs the predicted files with `more` at the end of the node's file.
+    """A replacement for colcon.
 
-    `trees` has the install tree that it returned, and `ran` says whether a node ran before.
+    This replacement installs the predicted files with `more` at the end of the node's file.
+
+    `trees` contains the install tree that the replacement returned, and `ran` says whether a node ran before.
     """
 
     trials: Trials
@@ -183,7 +188,10 @@ def test_nothing_is_predicted_without_ros(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def both_ways(exercise: str, given: Submission) -> list[Any]:
-    """Return what counts of the reports with and without a run during the build. Both use the same build."""
+    """Return the important parts of two reports: with a run during the build, and without such a run.
+
+    For the two reports, the same build is used.
+    """
     if not bubblewrap.usable():
         pytest.skip("without a sandbox, no node runs during the build")
     built: list[Built] = []

@@ -132,8 +132,7 @@ def _changes(node: cst.CSTNode) -> Iterator[Change]:
 
 
 def _places(call: cst.Call, index: int | None) -> Iterator[cst.BaseExpression]:
-    """Return the arguments of a call that state a place in the source: those at this index or with the keyword
-    `where`."""
+    """Return those arguments of a call that state a place in the source, by this index or by the keyword `where`."""
     for number, argument in enumerate(call.args):
         if number == index if argument.keyword is None else argument.keyword.value == "where":
             yield argument.value

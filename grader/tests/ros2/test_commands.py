@@ -52,7 +52,7 @@ def package(prefix: Path, name: str, **executables: str) -> None:
 
 @pytest.fixture
 def tools(still: World, tmp_path: Path) -> World:
-    """Return the same world with an additional package."""
+    """Return the same test environment with an additional package."""
     said = '#!/bin/sh\nprintf "%s|" "$@"\necho\nexit 7\n'
     waits = "#!/bin/sh\necho waits\nexec sleep 600\n"
     package(tmp_path / "tools", "tools", say=said, wait=waits, broken="#!/no/such\n")

@@ -155,7 +155,10 @@ def environment(home: Path, domain: int | None = None) -> dict[str, str]:
 
 
 def world(home: Path) -> Iterator[World]:
-    """Yield a world for a fixture. The processes of the world end when the tests that use the world have ended."""
+    """Yield a folder with an environment and processes, as a value for a fixture.
+
+    All processes end when the tests that use the yielded object have ended.
+    """
     home.mkdir(parents=True, exist_ok=True)
     made = World(home, environment(home))
     try:

@@ -24,7 +24,7 @@ JAZZY = machine.SourcedRos("/opt/ros/jazzy", (3, 12), turtlesim=True)
 
 
 USERS = {**os.environ, **({} if SOURCED_ENV else {"ROS_DISTRO": ""})}
-"""Ignore a sourced ROS 2 other than that of the tests."""
+"""Ignore any sourced ROS 2 that is not the ROS 2 of the tests."""
 
 
 def states(lines: list[Line]) -> dict[str, str]:
