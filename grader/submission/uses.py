@@ -13,7 +13,7 @@ import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from grader.submission.constants import dotted
+from grader.submission.constants import dotted, evaluate
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -168,7 +168,7 @@ def _use(node: ast.AST, file: _File, names: Collection[str]) -> Iterable[Use]:
     written: str | None = None
     if isinstance(node, ast.Call):
         written = (dotted(node.func) or "").rpartition(".")[2] or getattr(node.func, "attr", "")
-        name = written if written in names else _by_string(node, names) if written in BY_STRING else None
+        name = written if written in names else _by_string(node, file, names) if written in BY_STRING else None
     elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
         name, written = file.functions.get(node.id), node.id
     elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load) and node.attr in names:
@@ -176,8 +176,11 @@ def _use(node: ast.AST, file: _File, names: Collection[str]) -> Iterable[Use]:
             name = written = node.attr
     elif isinstance(node, ast.Subscript) and _is_of_a_module(node.value):
         # time.__dict__["sleep"], vars(time)["sleep"]
-        key = node.slice.value if isinstance(node.slice, ast.Constant) else None
+        key = evaluate(node.slice, file.module.names)
         name = written = key if isinstance(key, str) and key in names else None
+    elif isinstance(node, ast.MatchClass):
+        # match time: case object(sleep=nap)
+        name = written = next((each for each in node.kwd_attrs if each in names), None)
     if name is not None:
         yield Use(name, written or name, Where(file.module.file, getattr(node, "lineno", None)))
 
@@ -187,11 +190,12 @@ def _is_of_a_module(node: ast.expr) -> bool:
     return isinstance(node, ast.Call) or getattr(node, "attr", "") == "__dict__"
 
 
-def _by_string(call: ast.Call, names: Collection[str]) -> str | None:
+def _by_string(call: ast.Call, file: _File, names: Collection[str]) -> str | None:
     """Return the function that is named in a string argument, or used by source code in a string."""
     for argument in (*call.args, *(keyword.value for keyword in call.keywords)):
-        if isinstance(argument, ast.Constant) and isinstance(argument.value, str):
-            words: list[str] = re.findall(r"\w+", argument.value[:10_000])
+        text = evaluate(argument, file.module.names)
+        if isinstance(text, str):
+            words: list[str] = re.findall(r"\w+", text[:10_000])
             found = next((word for word in words if word in names), None)
             if found is not None:
                 return found
