@@ -15,7 +15,8 @@ Each statement is counted twice: according to the diagnoses that the operators e
 diagnoses (the difference between the two packages, the source and the recording; grader/tests/operators/facts.py). The
 benchmark also lists each wrong package whose report missed the cause, with the difference from the correct package.
 `--keep` stores recordings, and `--again` judges stored recordings again without running anything. If a run with
-`--keep` is stopped, the next run continues where it stopped.
+`--keep` is stopped, the next run continues where it stopped. At the end, the benchmark checks a few wrong packages
+without and with `--explain`, and prints the ratio of the CPU times.
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.benchmarks.measure import cost
 from grader.checks.edit import difference
 from grader.checks.exercises import find_exercise
 from grader.checks.judge import judge
@@ -41,6 +43,7 @@ from grader.grading.options import Options
 from grader.sandbox import bubblewrap
 from grader.submission.package import open_submission
 from grader.tests.grading_here import Builds
+from grader.tests.gradings import GRADER
 from grader.tests.operators.facts import Facts
 from grader.tests.operators.made import OPERATORS, Made, bases, make
 
@@ -135,16 +138,21 @@ def is_false(outcome: Outcome, made: Made) -> bool:
     return finding.diagnosis not in says | OBSERVATIONS
 
 
-def judged(made: Made, folder: Path, builds: Builds, keep: Path | None) -> Judged:
-    """Judge a wrong package in simulated time."""
-    package = folder / made.name / "my_robot_controller"
+def written(made: Made, folder: Path) -> Path:
+    """Write a wrong package into the folder. Return the path of the submission."""
     for path, text in made.files.items():
-        target = package / path
+        target = folder / made.name / "my_robot_controller" / path
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_text(text, "utf-8")
+    return folder / made.name
+
+
+def judged(made: Made, folder: Path, builds: Builds, keep: Path | None) -> Judged:
+    """Judge a wrong package in simulated time."""
+    submission = open_submission(written(made, folder))
     begun = time.monotonic()
     options = Options(bubblewrap.usable(), "simulated", trials_at_once=1)
-    graded = grade(find_exercise(made.exercise), open_submission(folder / made.name), options, build=builds)
+    graded = grade(find_exercise(made.exercise), submission, options, build=builds)
     seconds = time.monotonic() - begun
     if keep is not None:
         mistakes = [(operator.name, change) for operator, change in made.mistakes]
@@ -168,6 +176,17 @@ def again(kept: Path) -> Judged:
     made = dataclasses.replace(made, mistakes=tuple((known[name], change) for name, change in mistakes))
     begun = time.monotonic()
     return Judged(made, evidence, judge(evidence), time.monotonic() - begun)
+
+
+def cost_of_explain(mades: Iterable[Made], folder: Path) -> float:
+    """Return the CPU time of checking these packages with their causes tested, as a multiple of that without."""
+    with_s = without_s = 0.0
+    for made in mades:
+        check = [str(GRADER), "check", str(written(made, folder)), "--exercise", made.exercise, "--clock", "simulated"]
+        # A check of a wrong package exits with 1.
+        without_s += cost(["sh", "-c", '"$@" || true', "sh", *check]).cpu_s
+        with_s += cost(["sh", "-c", '"$@" || true', "sh", *check, "--explain"]).cpu_s
+    return with_s / without_s
 
 
 def tell(all_: Iterable[Judged], *, everything: bool = False) -> None:
@@ -218,6 +237,7 @@ def main() -> None:
     parser.add_argument(
         "--again", type=Path, help="judge the recordings in this folder again, without running packages"
     )
+    parser.add_argument("--explained", type=int, default=8, help="number of packages for the cost of testing causes")
     parser.add_argument("--workers", type=int, default=2, help="number of packages judged in parallel")
     wanted = parser.parse_args()
     operators = [operator for operator in OPERATORS if not wanted.only or operator.name in wanted.only]
@@ -233,6 +253,14 @@ def main() -> None:
             builds = Builds()
             found = list(pool.map(lambda made: once(made, Path(name) / "made", builds, wanted.keep), mades))
         tell(found, everything=wanted.all)
+        proved = [each.made for each in found if any(outcome.finding.fix for outcome in each.failed)][
+            : wanted.explained
+        ]
+        if proved:
+            ratio = cost_of_explain(proved, Path(name) / "explained")
+            print(
+                f"CPU time of a check with its causes tested: {ratio:.2f} times that without ({len(proved)} packages)"
+            )
         print(f"{len(right)} right packages, seed {wanted.seed}: {time.monotonic() - begun:.0f} s")
 
 

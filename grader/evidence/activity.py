@@ -15,6 +15,9 @@ OF_LIFECYCLE = "lifecycle_msgs/msg/TransitionEvent"
 """The type of the topic on which each lifecycle node publishes."""
 SPINS = re.compile(r'executors\.py", line \d+, in (?:await_or_execute|handler|_execute_\w+)\b')
 """A traceback entry for the code in rclpy's executor that calls callbacks."""
+TRACEBACK = "Traceback (most recent call last)"
+IN_CONSTRUCTOR = ", in __init__"
+"""The end of a traceback entry for the code of a constructor."""
 START_S = 0.2
 """The length of the initial period (s), in which the node's publisher may not have been discovered yet."""
 
@@ -29,12 +32,21 @@ def end_s(recording: Recording) -> float:
 def ended_at_start(recording: Recording) -> bool:
     """Return whether the node exited on its own before it could do anything.
 
-    A node that raised an exception inside rclpy's spin did run, no matter how soon it exited. The result depends
-    neither on the clock nor on the time of the first observation. A node that exits in the initial period (START_S)
-    without an exception inside spin counts as a node that did not run.
+    A node that raised an exception inside rclpy's spin did run, no matter how soon it exited. A node that raised an
+    exception in a constructor and sent no command did not run, no matter how late it exited: on a busy machine, the
+    start takes longer than the initial period (START_S). These rules depend neither on the clock nor on the time of the
+    first observation. Any other node that exits in the initial period counts as a node that did not run.
     """
     end = recording.end
-    return end.by == "itself" and end.t_s <= START_S and not spun(recording)
+    if end.by != "itself" or spun(recording):
+        return False
+    return end.t_s <= START_S or (_failed_in_constructor(recording) and not recording.commands)
+
+
+def _failed_in_constructor(recording: Recording) -> bool:
+    """Return whether the last traceback in standard error leads through an __init__."""
+    _, found, last = recording.stderr.text.rpartition(TRACEBACK)
+    return bool(found) and IN_CONSTRUCTOR in last
 
 
 def spun(recording: Recording) -> bool:
