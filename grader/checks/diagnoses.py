@@ -282,6 +282,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "no-timer": "the node does not use a timer",
     },
 }
-"""Maps each subject to its ids, and each id to its meaning, in the order in which a submission is graded."""
+"""Maps each subject to its diagnosis ids, and each id to its meaning. Subjects are in the order in which a submission
+is graded."""
 
 DIAGNOSES: dict[Diagnosis, str] = {id_: meaning for group in GROUPS.values() for id_, meaning in group.items()}

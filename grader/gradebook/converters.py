@@ -58,7 +58,7 @@ class _Copying(BaseConverter):  # type: ignore[misc, unused-ignore]
 
 
 class BoundedAutograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore]
-    """Autograde, with `_Copying` as the base class that copies."""
+    """nbgrader's Autograde, in which the base class `_Copying` copies the files."""
 
     def init_destination(self, assignment_id: str, student_id: str) -> bool:
         """Initialize the destination in the same way as in Autograde.

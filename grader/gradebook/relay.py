@@ -56,7 +56,7 @@ class Order:
     connection_file: str
 
     def write(self, folder: Path) -> None:
-        """Write the order to the relay's folder."""
+        """Write this command to order.json in the relay's folder."""
         (folder / ORDER_FILE).write_text(json.dumps(asdict(self), default=str), encoding="utf-8")
 
     @classmethod
@@ -191,7 +191,7 @@ def run(order: Order, info: Mapping[str, Any]) -> str:
 
 
 def main() -> None:
-    """Run the relay with the order in the folder."""
+    """Run the relay as specified in the folder's order.json."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     folder = Path(sys.argv[1])
     order = Order.read(folder)

@@ -107,7 +107,10 @@ def explained(
         return grade(exercise, submission, again, build=build, trial=in_simulated_time).report.outcomes
 
     def in_simulated_time(plan: Plan, *rest: Any, **more: Any) -> Trial:  # noqa: ANN401 - the arguments of Trial
-        """Create a trial in simulated time. If the fixed node seems to follow wall time, the try is inconclusive."""
+        """Create a trial in simulated time.
+
+        If the corrected node seems to follow wall time, the try is inconclusive.
+        """
         if plan.clock == "wall":
             raise MachineError("A try is made in simulated time only.")  # noqa: EM101
         return trial(dataclasses.replace(plan, stop_at_doubt=True), *rest, **more)

@@ -27,7 +27,10 @@ def shown(found: Iterable[tuple[str, list[str]]], *, all_of_them: bool) -> list[
 
 
 def nodes(node: Node, *, all_of_them: bool = False) -> list[str]:
-    """Return the full names of all nodes, sorted. A name that several nodes have appears several times."""
+    """Return the full names of all nodes, sorted.
+
+    If several nodes have the same name, the list contains this name several times.
+    """
     found = [f"{namespace.rstrip('/')}/{name}" for name, namespace in node.get_node_names_and_namespaces()]
     return sorted(name for name in found if all_of_them or not hidden(name))
 

@@ -34,7 +34,7 @@ def meant(path: Path | None, exercise: str | None, folder: Path | None = None) -
 
 
 def guessed(path: Path | None, exercise: str | None, folder: Path | None = None) -> tuple[Exercise | None, Path]:
-    """Return the exercise, or None if the arguments do not determine it, and the folder with the work on it.
+    """Return the exercise (None if the arguments do not determine it) and the folder with the learner's work.
 
     `path` is the path that was typed: a package, a step ("03", "3"), the workspace (for its current step), or None.
     `exercise` is the value of --exercise. `folder` is the workspace; None means the learner's default workspace.

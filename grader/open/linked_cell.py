@@ -74,7 +74,7 @@ class LinkedCell:
             os.killpg(self.process.pid, signal.SIGKILL)
 
     def await_ready(self) -> None:
-        """Wait until the launcher can receive its order.
+        """Wait until the launcher is ready to receive the data about the node that it must run.
 
         Raises:
             MachineError: the launcher has exited.

@@ -67,7 +67,7 @@ def run(program: Program) -> int:
 
 
 def _start(cell: LinkedCell, program: Program, built: Built, ros: Ros, domain: int) -> None:
-    """Send the order and the install tree to trial/launcher.py."""
+    """Send the install tree, and the data about the node to run, to trial/launcher.py."""
     prefix = bubblewrap.WORKSPACE / "install" / program.package
     env = environment(ros, domain, [prefix])
     order = {

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 Piece = tuple[str, str]
-"""A pair (class, text). The class is empty, or it is one that has a colour in the page's style sheet."""
+"""A pair (class, text). The CSS class is an empty string or has a colour in the page's style sheet."""
 
 
 def coloured(text: str, language: str = "python") -> list[list[Piece]]:

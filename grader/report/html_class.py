@@ -47,7 +47,7 @@ class Entry:
     name: str
     link: str
     attention: str = ""
-    """Why an instructor should look at the submission."""
+    """The reason why an instructor should check the submission."""
 
     @property
     def share(self) -> float:

@@ -130,7 +130,7 @@ def _in_one_line(difference: str) -> str:
 
 
 def _why_this_clock(evidence: Evidence) -> str:
-    """Return the reason for the clock of the first trial, and of each trial that was judged on another clock."""
+    """Return the reason for the clock of the first trial, and for the clock of each trial with another clock."""
     first = evidence.run.recording
     if first is None and evidence.run.called is not None:
         return "No node was run. Your code was called, without a simulator."

@@ -133,7 +133,7 @@ def _goals(recording: Recording) -> list[str]:
 def _drawn(evidence: Evidence, points: list[Point]) -> list[Line]:
     """Return the trajectory as one line per pen.
 
-    Parts that were driven with the pen up look like another turtle's path.
+    Parts that were driven with the pen up are drawn in the same way as another turtle's path.
     """
     trajectory, spans = evidence.trajectory, pen_spans(evidence.recording)
     if len(spans) == 1 or not trajectory.finite:

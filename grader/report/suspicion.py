@@ -1,4 +1,4 @@
-"""Find submissions that an instructor should look at, because the grader could not judge or read them.
+"""Find submissions that an instructor should check, because the grader could not judge or read them.
 
 Machine faults affect submissions at random. If the grader repeatedly fails to judge a submission but can judge all
 other submissions, the submission may have been designed to break the grader.
@@ -24,7 +24,7 @@ UNREADABLE = "unreadable"
 
 
 def suspicions(graded: Sequence[tuple[Report, int]]) -> list[str]:
-    """Return for each submission the reason to look at it, which is usually an empty string.
+    """Return, for each submission, the reason why an instructor should check it; this is usually an empty string.
 
     `graded` contains the report of each submission with the number of consecutive errors.
     """

@@ -48,7 +48,7 @@ def provide(needs: Sequence[package_managers.Need], env: Mapping[str, str], say:
 
 
 def _groups(needs: Sequence[package_managers.Need]) -> List[List[package_managers.Need]]:
-    """Return groups of needs: all required needs together, and each optional need separately."""
+    """Return the needed packages in groups: all required packages together, and each optional package separately."""
     musts = [need for need in needs if not need.lost]
     return [*([musts] if musts else []), *([need] for need in needs if need.lost)]
 

@@ -38,5 +38,8 @@ of_our_turtlesim = pytest.mark.skipif(
 
 
 def python_path(folder: Path) -> str:
-    """Return a PYTHONPATH that starts with `folder`. After `folder`, it contains the modules of a sourced ROS 2."""
+    """Return a PYTHONPATH that starts with `folder`.
+
+    After `folder`, this path contains the modules of a sourced ROS 2.
+    """
     return os.pathsep.join([str(folder), *filter(None, [SOURCED_ENV.get("PYTHONPATH")])])

@@ -27,7 +27,7 @@ OF_BASES = "03-circle-publisher"
 MOST_OF_GROUP = 1
 """The number of diagnoses of a group that the sample includes because no test of the checks expects them."""
 WALL = re.compile(r"\btime\b|spin_once|sleep|thread|asyncio|datetime|subprocess")
-"""Wall time probably judges source code with one of these words."""
+"""If source code contains one of these words, it probably needs a trial in wall time."""
 WALL_COST = 5
 """A case that needs wall time is chosen only if it shows more than this many times as many diagnoses as any other
 case."""
@@ -60,7 +60,7 @@ def shows(case: Case) -> frozenset[object]:
 
 
 def lives_in_wall_time(case: Case) -> bool:
-    """Return whether wall time probably judges the case."""
+    """Return whether the case probably needs a trial in wall time."""
     source = "".join(edit["new"] for edit in case.edit)
     source += "".join(path.read_text("utf-8", "replace") for path in (case.folder / "files").rglob("*.py"))
     return case.clock == "wall" or WALL.search(source) is not None

@@ -154,7 +154,7 @@ class NodeProcess:
             os.set_blocking(stream.fd, False)
 
     def start(self, order: dict[str, object], tree: bytes) -> None:
-        """Send the order and the install tree to the launcher."""
+        """Send the launcher the install tree and the data about the node that it must run."""
         assert self._process.stdin is not None
         # Do not start this earlier, because a launcher may wait for minutes, and watching it takes 1 % of a core.
         self._guard = Guard(self._process.pid, self._limits, self._over)

@@ -249,7 +249,7 @@ def to_json(recording: Recording, *, messages: bool = True) -> dict[str, Any]:
 
 
 def from_json(data: dict[str, Any], payloads: Iterable[bytes] | None = None) -> Recording:
-    """Return the recording in the result of `to_json`. `payloads` are the message contents if they were left out."""
+    """Return the recording in the result of `to_json`. If `data` lacks the message contents, `payloads` has them."""
     contents = iter(payloads) if payloads is not None else (base64.b64decode(row[2]) for row in data["messages"])
     frames = data["frames"]
     wall = np.array(frames["wall"], dtype=np.bool_)

@@ -1,4 +1,4 @@
-"""Simulation: the ROS side of a trial, with the simulator, the recorder and the node's process, for any clock."""
+"""Simulation: the ROS 2 part of a trial (the simulator, the recorder and the node's process) with any clock."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ CONDUCTORS_ROOMS = ("common", "ros", "sandbox", "trial", "turtlesim")
 MOST_MEMORY = 3 * 1024 * MIB
 """The maximum address space of the conductor (bytes)."""
 MOST_ANSWER = 256 * MIB
-"""The maximum size of one answer from the conductor (bytes). A recording's messages take up most of this size."""
+"""The maximum size of one answer from the conductor (bytes). Most of an answer consists of a recording's messages."""
 
 
 @dataclass(frozen=True)
@@ -184,7 +184,7 @@ class Trial:
         return recording
 
     def _order(self, package: str, executable: str, arguments: list[str], folder: str) -> dict[str, Any]:
-        """Return the order for the launcher of one node. Each launcher unpacks the install tree in its own folder."""
+        """Return what the launcher of one node must run. Each launcher unpacks the install tree in its own folder."""
         install = self._workspace / folder
         prefix = install / package
         env = installation.environment(self._ros, home=self._home, overlays=[prefix], domain=self._domain)

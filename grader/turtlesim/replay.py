@@ -51,7 +51,7 @@ def replay(inputs: Path, poses: Path) -> Difference:
 
 
 def rotations(inputs: Path, frames: int) -> Iterator[Rotation]:
-    """Replay the given number of frames, and yield the rotation after each frame with a rotation."""
+    """Replay the given number of frames, and yield the rotation after each frame in which the turtle follows a goal."""
     for _, rotation in itertools.islice(_frames(inputs), frames):
         if rotation is not None:
             yield rotation

@@ -1,4 +1,4 @@
-"""Causes of exceptions from the misuse of interfaces: action and service types, their messages, and futures."""
+"""Causes of exceptions when a node uses interfaces wrongly: action and service types, their messages, and futures."""
 
 from __future__ import annotations
 

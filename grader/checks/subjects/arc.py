@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     Steps = npt.NDArray[np.bool_]
 
 SHORT_M = 0.05
-"""A shorter piece than this is not an arc."""
+"""A piece of the trajectory that is shorter than this is not an arc."""
 FEW = 5
 MOST_ROOM_M = 2.5
 """The radius of a circle that is certain to fit on either side of a random start (m)."""

@@ -33,7 +33,11 @@ _REQUEST_S = 2.0
 
 
 def main() -> int:
-    """Run the daemon. Return 0, or 1 if the socket has no folder. Return early if another daemon is running."""
+    """Run the daemon.
+
+    Return the exit code: 0, or 1 if no private folder for the socket can be created. Return early if another daemon is
+    running.
+    """
     for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
         signal.signal(number, _end)
     folder = socket_path.folder()

@@ -62,7 +62,7 @@ def reported(source: str, error: str, files: dict[str, str] | None = None) -> Re
 
 
 def fixed(source: str, error: str) -> str | None:
-    """Return the source after the fix of the reported cause, or None if there is no fix."""
+    """Return the source code with the reported cause fixed, or None if there is no fix for it."""
     changed = applied({NODE_FILE: source.encode()}, _finding(source, error, None).fix)
     return None if changed is None or changed[NODE_FILE] == source.encode() else changed[NODE_FILE].decode()
 

@@ -1,4 +1,4 @@
-"""Everything that belongs to a kind of check is defined with the kind."""
+"""Everything about a kind of check is defined in one place."""
 
 from __future__ import annotations
 

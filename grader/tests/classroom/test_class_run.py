@@ -45,7 +45,7 @@ class Deadly(Task):
 
 @dataclasses.dataclass(frozen=True)
 class DeadlyOrder(Order):
-    """An order in which the submission `deadly` kills every worker that receives it."""
+    """A run in which the submission `deadly` kills every worker that receives it."""
 
     deadly: str = "deadly"
 

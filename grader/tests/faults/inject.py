@@ -65,8 +65,7 @@ LIMIT_S = 300
 
 @dataclass(frozen=True)
 class Fault:
-    """A kind of system call that fails with an errno, from the `nth` call after the start of a function
-    ("module:name")."""
+    """A kind of system call that fails with an errno, from the `nth` call after "module:name" has started."""
 
     call: str
     number: int

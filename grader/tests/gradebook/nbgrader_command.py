@@ -43,7 +43,7 @@ def _server() -> subprocess.Popen[str]:
 
 
 def main() -> None:
-    """Run each order in a fork, and print its exit code."""
+    """Run each command from standard input in a fork, and print the exit code of the command."""
     from nbgrader.apps import nbgraderapp  # noqa: F401 - its import is what takes long
 
     for line in sys.stdin:

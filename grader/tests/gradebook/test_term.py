@@ -1,4 +1,7 @@
-"""A term with the real nbgrader and its database. The exported CSV contains exactly the scores of the students."""
+"""A whole school term, with the real nbgrader and its database.
+
+The exported CSV contains exactly the scores of the students.
+"""
 
 from __future__ import annotations
 

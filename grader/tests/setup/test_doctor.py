@@ -33,7 +33,7 @@ def states(lines: list[Line]) -> dict[str, str]:
 
 @pytest.fixture
 def wheels() -> Ros:
-    """Make the ROS 2 of the tests look like the wheels."""
+    """Make the grader believe that the ROS 2 of the tests was installed from the wheels."""
     return replace(find_ros(), kind="wheels")
 
 

@@ -178,7 +178,7 @@ def test_select_leaves_out_and_picks() -> None:
 
 
 def split(needs: dict[str, str]) -> dict[str, list[str]]:
-    """Return the packages of each part after `split`. Each letter is a package that the part needs."""
+    """Return the packages that `split` puts into each part. Each letter is a package that the part needs."""
     entries = [lock.Entry(name, "1", f"{name}==1\n") for name in "abcdefg"]
     text = lock.split(entries, needs)
     return {part: [entry.name for entry in found] for part, found in lock.parse(text).items()}

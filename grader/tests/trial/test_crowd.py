@@ -147,7 +147,7 @@ def test_what_the_simulator_works_beyond_its_own_share_is_the_nodes(monkeypatch:
 class Busy:
     """An object that replaces both a node and a trial in tests.
 
-    The processes have always worked for these times (s).
+    For each request, the object returns these times for which the processes have worked (s).
     """
 
     def __init__(
