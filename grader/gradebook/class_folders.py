@@ -113,7 +113,7 @@ def open_class(folder: Path | None) -> ClassFolders:
     found = next((each for each in tried if (each / CONFIG).is_file()), None)
     if found is None:
         message = (
-            f"{folder or Path.cwd()} has no {CONFIG}. Go to the course's folder, or name it with --course. "
+            f"{folder or Path.cwd()} has no {CONFIG}. Go to the course's folder, or name that folder with --course. "
             "`grader class new DIR` creates a class."
         )
         raise UsageError(message)

@@ -21,7 +21,7 @@ def add_to(app: typer.Typer) -> None:
 
 def open_page(
     workspace: Workspace = None,
-    port: Annotated[Optional[int], typer.Option(help="Port of the page. Default: the same as the last time.")] = None,  # noqa: UP045
+    port: Annotated[Optional[int], typer.Option(help="Port of the page. Default: the same port as last time.")] = None,  # noqa: UP045
     show: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in your browser.")] = True,
 ) -> None:
     """Learn on a page in the browser: the lesson, the verdict after each save, and a live turtle. Ctrl-C ends it."""

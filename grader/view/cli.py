@@ -34,7 +34,7 @@ def sim(
             "--view", help="Show the turtles on a page on this machine, or in this terminal with `--view terminal`."
         ),
     ] = False,
-    port: Annotated[Optional[int], typer.Option(help="Port of the page. Default: the same as the last time.")] = None,  # noqa: UP045
+    port: Annotated[Optional[int], typer.Option(help="Port of the page. Default: the same port as last time.")] = None,  # noqa: UP045
 ) -> None:
     """Run turtlesim as a node, in wall time, until Ctrl-C. It has no window; use --view to see the turtles."""
     from grader.common.interpreter import interpreter

@@ -76,7 +76,8 @@ RADIUS_OF_C: tuple[Diagnosis, str] = (
 )
 """Mistakes that lead to a wrong radius, or NaN, although the centre is right."""
 _FIRST_TRY = (
-    "The equations or the computation of the circle from their solution are wrong. Test the function with four "
+    "The equations are wrong, or the computation of the circle from the solution of the equations. Test the function "
+    "with four "
     "points of a circle that you know."
 )
 
