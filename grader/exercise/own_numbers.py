@@ -13,6 +13,8 @@ import unicodedata
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.common.words import UNSAFE_CATEGORIES
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -22,6 +24,13 @@ else:
     import tomli as tomllib
 
 Value = str | float | int
+
+
+_INVISIBLE = frozenset(
+    {0x034F, 0x115F, 0x1160, 0x17B4, 0x17B5, 0x2800} | {*range(0x180B, 0x1810), *range(0xFE00, 0xFE10)}
+)
+"""Letters and marks that are drawn as nothing: Default_Ignorable_Code_Point in Unicode's DerivedCoreProperties.txt,
+without the characters in UNSAFE_CATEGORIES, and the empty Braille pattern."""
 
 
 @dataclass(frozen=True)
@@ -49,13 +58,17 @@ class OwnNumbers:
 
 
 def normal_id(student: str) -> str:
-    """Return the normal form of an id, which ignores case, character width and extra spaces.
+    """Return the normal form of an id, which ignores case, character width, extra spaces and invisible characters.
 
     The normal form is used for comparing ids and for choosing the numbers. Without the normal form, students could
     spell their ids in different ways until they get the same numbers as a friend.
     """
     folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", student).casefold())
-    return " ".join(folded.split())
+    return " ".join("".join(char for char in folded if char.isspace() or _is_visible(char)).split())
+
+
+def _is_visible(char: str) -> bool:
+    return ord(char) not in _INVISIBLE and unicodedata.category(char) not in UNSAFE_CATEGORIES
 
 
 def draw_numbers(spec: NumbersSpec, student: str) -> OwnNumbers:

@@ -44,6 +44,9 @@ SPELLINGS = [
     " Ada  Lovelace\t",
     "\N{FULLWIDTH LATIN CAPITAL LETTER A}da\N{IDEOGRAPHIC SPACE}Lovelace",
     "Ada\u00a0Lovelace",
+    "A\N{ZERO WIDTH SPACE}da \N{RIGHT-TO-LEFT OVERRIDE}Lovelace",
+    "Ada Lovelace\N{HANGUL FILLER}\N{BRAILLE PATTERN BLANK}",
+    "Ada\N{VARIATION SELECTOR-16} Lovelace\x01",
 ]
 
 
