@@ -67,6 +67,30 @@ def test_a_node_hears_ctrl_c_though_its_grader_does_not(in_ros: InRos, tmp_path:
     assert printed(done) == b"True set()\n", done.stderr
 
 
+ENDS = """#!/usr/bin/env python3
+import atexit, ctypes, sys
+import rclpy
+libc = ctypes.CDLL(None)
+libc.on_exit(libc.abort, None)  # the cleanup of a library
+atexit.register(print, "cleaned up")
+rclpy.init()
+{end}
+libc.printf(b"from C\\n")
+sys.exit(3)
+"""
+
+
+def test_a_node_that_has_shut_down_exits_without_the_cleanup_of_its_libraries(in_ros: InRos, tmp_path: Path) -> None:
+    done = launch(in_ros, tmp_path, ENDS.format(end="rclpy.shutdown()"), [])
+    assert done.returncode == 3, done.stderr
+    assert sorted(printed(done).splitlines()) == [b"cleaned up", b"from C"]
+
+
+def test_any_other_node_exits_as_always(in_ros: InRos, tmp_path: Path) -> None:
+    done = launch(in_ros, tmp_path, ENDS.format(end=""), [])
+    assert done.returncode == -signal.SIGABRT, done.stderr
+
+
 @pytest.mark.parametrize("args", ["None", "sys.argv", "[]", "('node', '--ros-args', '-r', 'a:=b', '--')"])
 def test_simulated_time_is_requested_without_an_argument_that_the_program_sees(
     in_ros: InRos, tmp_path: Path, args: str
