@@ -56,7 +56,8 @@ def grade_class(request: Request, say: Callable[[str], None], tell: Callable[[st
 
     Raises:
         UsageError: the command is wrong.
-        MachineError: the machine cannot grade or write any more. Written results are kept, and the next run continues.
+        MachineError: the machine cannot grade or write any more. Results that were already written are kept, and the
+        next run continues from there.
     """
     _engine_is_known(request)
     return grade_found(request, find_submissions(request.submissions, request.exercise, request.out), say, tell)

@@ -159,7 +159,7 @@ def _next_run(requests: socket.socket) -> Run:
 
 
 def become(run: Run) -> NoReturn:
-    """Become the interpreter of this run."""
+    """Make this process the interpreter of this run."""
     os.chdir(run.cwd)
     own = set(_entries(os.environ))
     os.environ.clear()

@@ -67,8 +67,8 @@ def grade(
 
     `tell` is called with a short message about each step. `early` is called with the outcomes that are certain to fail,
     before anything is built. A machine fault is reported as outcomes with the status `error`, and never as an
-    exception. `build` and `trial` can be replaced. For example, `grader watch` passes builds and trials that it started
-    in advance.
+    exception. A caller can replace `build` and `trial`. For example, `grader watch` passes builds and trials that it
+    started in advance.
     """
     turns = Turns(turns_folder())
     rebuild = Rebuild(build)

@@ -196,8 +196,8 @@ def _graph(node: Node) -> object:
 def _complete(node: Node, waited_s: float, named_s: float | None = None) -> bool:
     """Return whether all participants on this machine have been discovered, including the names of their nodes.
 
-    Participants on other machines cannot be counted. The time to wait for such participants is `named_s`, if the user
-    set this time.
+    Participants on other machines cannot be counted. If the user set `named_s`, the function waits this long for
+    participants on other machines.
     """
     expected = _participants(node.context.get_domain_id())
     endpoints: list[Any] = []

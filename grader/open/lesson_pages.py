@@ -47,7 +47,7 @@ class LessonPages:
         return pictures(among).get(path)
 
     def _lessons(self) -> list[Lesson]:
-        """Return the lessons, which are read again if a file has changed."""
+        """Return the lessons. If a file has changed, the lessons are read again."""
         files = [file.parent / LESSON for file in catalogue().values()]
         stamp = [(file, file.stat().st_mtime_ns) for file in files if file.is_file()]
         if stamp != self._read[0]:

@@ -81,7 +81,7 @@ def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] 
 
 
 def exit_code(lines: Iterable[Line]) -> int:
-    """Return 3 if a line is broken, and 0 otherwise."""
+    """Return 3 if a line has the state `broken`, and 0 otherwise."""
     return BROKEN_EXIT_CODE if any(line.state == "broken" for line in lines) else 0
 
 

@@ -71,7 +71,7 @@ class Attack:
 
     @property
     def is_of_the_host(self) -> bool:
-        """Return whether the sandbox must prevent the trace."""
+        """Return whether the sandbox must prevent the trace of this attack."""
         return bool(self.says or self.file or self.process or self.socket or self.kills or self.secret)
 
 

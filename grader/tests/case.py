@@ -28,7 +28,7 @@ else:
 ROOT = Path(__file__).parent.parent.parent
 CASES = Path(__file__).parent / "cases"
 BASES = Path(__file__).parent / "bases"
-"""Packages as learners write them. Several cases change them in a few places."""
+"""Packages as learners write them. Several cases change these packages in a few places."""
 EXIT_CODES = {"passed": 0, "failed": 1, "usage": 2, "error": 3}
 
 

@@ -53,7 +53,7 @@ class TickPatience:
     """The time limit for the node and the simulator to respond to each other at one instant of simulated time.
 
     Reading the CPU time of the node costs as much as checking its threads. Therefore, the CPU time is not read at
-    first, and most instants end before it is needed.
+    first, and in most cases it is never needed.
     """
 
     def __init__(self, node: Threads | GroupThreads, now_s: float) -> None:

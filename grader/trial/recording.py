@@ -179,7 +179,7 @@ class Recording:
     the node of the trial."""
     interventions: tuple[str, ...] = ()
     """The services and actions of the simulator that were called, in order: "reset", "spawn", "teleport_absolute".
-    After a maximum number of calls, a further name is recorded only once."""
+    After a maximum number of calls, each further name is recorded only once."""
     interventions_dropped: int = 0
     """The number of calls that were not kept because there were too many."""
     calls: tuple[Call, ...] = ()

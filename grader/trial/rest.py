@@ -2,8 +2,8 @@
 
 Simulated time advances only while the node is idle: every thread sleeps, and no thread has run between two
 observations. If a thread ran between two observations, a counter in its file /proc/.../schedstat has changed. A thread
-that was woken but has not run yet is in state R. If the kernel keeps these counters, two equal observations are enough,
-and the first of them need not include the states of the threads. If the kernel does not keep these counters, more
+that was woken but has not run yet is in state R. If the kernel keeps these counters, two equal observations are enough.
+The first observation need not include the states of the threads. If the kernel does not keep these counters, more
 observations are needed.
 """
 

@@ -37,8 +37,8 @@ leave no gap of this length for many seconds."""
 WAKE_S = 1.0
 """The maximum time to wait until the node notices /clock (s). A node that uses create_rate never wakes up at time 0."""
 MOST_CPU = 2.0
-"""In wall time, too, a node is too slow if its CPU time exceeds this multiple of the trial's duration. Wall time
-decides."""
+"""If the CPU time of a node exceeds this multiple of the trial's duration, the node is too slow in wall time, too. Wall
+time decides."""
 GRAPH_EVERY = 31
 """The number of frames between two checks of the graph and of the DDS events: half a second."""
 OWN_EVERY = 5

@@ -35,7 +35,7 @@ class Controls(Protocol):
     """The receiver of the user's input on a page."""
 
     def receive(self, page: object, said: dict[str, Any]) -> bool:
-        """Handle a message from this page. Return whether the user now holds keys."""
+        """Handle a message from this page. Return whether the user is now holding down any keys."""
 
     def let_go(self, page: object) -> None:
         """Handle the release of all keys on this page."""

@@ -122,7 +122,7 @@ OTHERS = {
     "Timer": ("cancel", "reset"),
     "RcutilsLogger": ("debug", "info", "warning", "warn", "error", "fatal"),
 }
-"""Maps each other type of object to its methods."""
+"""Maps each other class of objects, such as a logger, to the methods of this class."""
 
 SERVICES = (
     "/spawn",

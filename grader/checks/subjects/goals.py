@@ -126,7 +126,7 @@ def _no_result(evidence: Evidence) -> Cause:
 
 
 def _other_turn(before: Goal, goal: Goal, turn_deg: float) -> str:
-    """Return a sentence that explains why the heading of a goal is wrong after the heading of the previous goal."""
+    """Return a sentence that explains why the heading of a goal is wrong, given the heading of the previous goal."""
     theta = float(goal.request["theta"])
     if abs(normalize(theta - math.radians(turn_deg))) <= SAME_RAD:
         return "A goal is an absolute heading, not a turn: 0 is to the right, whatever the heading was before."

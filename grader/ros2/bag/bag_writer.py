@@ -66,8 +66,8 @@ class BagWriter:
     def add_topic(self, topic: str, kind: str, offered: Sequence[Qos] = (), definition: str | None = None) -> None:
         """Add a topic, so that its messages can be written.
 
-        `definition` is the definition of the type in another bag, used if the type is not installed. The definition may
-        be an empty string.
+        `definition` is the definition of the type from another bag. It is used if the type is not installed. The
+        definition may be an empty string.
 
         Raises:
             Ros2Error: the type of the topic is not installed, and `definition` is None.

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
 _REPORTED_EVERY_S = 1.0
 _ACKNOWLEDGED_S = 1.0
-"""The maximum time to wait for acknowledgements (s). The wait is short, because Ctrl-C has no effect during it."""
+"""The maximum time to wait for acknowledgements (s). The wait is short, because Ctrl-C has no effect while the program
+waits."""
 _POLL_S = 0.01
 
 

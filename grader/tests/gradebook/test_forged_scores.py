@@ -111,7 +111,7 @@ def points_of(term: Term, assignment: str = STEP) -> dict[str, float]:
 
 
 def sync_with_an_error_for(student: str, term: Term, monkeypatch: pytest.MonkeyPatch) -> Synced:
-    """Sync while the machine fails for this student's submission."""
+    """Run sync on a machine that fails while it grades this student's submission."""
 
     def failing(request: Request, found: tuple[Found, ...], say: Any, tell: Any) -> list[Result]:  # noqa: ANN401
         graded = grade_found(request, tuple(each for each in found if each.student != student), say, tell)

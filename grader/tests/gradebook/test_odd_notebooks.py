@@ -49,7 +49,7 @@ def with_cell(folder: Path, source: str) -> None:
 
 
 def make(root: Path) -> Folders:
-    """Create the odd notebooks and an honest one."""
+    """Create the unusual notebooks and an honest notebook."""
     folders = Folders(root)
     (root / "submitted").mkdir()
     for student in (*ODD, "zoe"):

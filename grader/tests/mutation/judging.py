@@ -45,7 +45,10 @@ matter."""
 
 @dataclass(frozen=True)
 class Material:
-    """A case and its evidence. `observed` is an Evidence object of the first import of the checks."""
+    """A case and its evidence.
+
+    `observed` is an Evidence object whose class belongs to the first import of the checks.
+    """
 
     name: str
     case: Case

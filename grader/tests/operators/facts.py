@@ -125,7 +125,7 @@ class Facts:
 
     @cached_property
     def source(self) -> str:
-        """Return the Python files of the wrong node without comments."""
+        """Return the Python files of the wrong package's node without comments."""
         used = {module.file for module in self.evidence.code.modules}
         files = (text for path, text in self.wrong.items() if path in used)
         return "\n".join(re.sub(r"(?m)#.*$", "", text) for text in files)

@@ -155,7 +155,7 @@ SLEEP = """state => {
 
 
 COUNT = "() => { window.told = 0; const parse = JSON.parse; JSON.parse = text => { told++; return parse(text); } }"
-"""Count the messages to the page from now on in `told`."""
+"""From now on, count the messages to the page in `told`."""
 
 
 @pytest.mark.exhaustive
