@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 BAG = "The folder of the bag in the package."
 STILL_M = 0.05
 """A turtle that never leaves a square with this side has not moved."""
+MOVES_M = 1e-4
+"""The minimum distance between two poses of a turtle that moves."""
 ROUND_M = 0.05
 """The maximum deviation of the poses from the circle (root mean square)."""
 
@@ -92,16 +95,18 @@ def topic_in_bag(evidence: Evidence, params: TopicInBag) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class CircleInBag(InBag):
-    """A circle that the turtle drives during the recording."""
+    """A circle that the turtle drives during the recording, at any speed if `speed_m_s` is 0."""
 
     topic: str = string("a topic", start="/", default="/turtle1/pose", about="The topic with the poses.")
     radius_m: float = number(above=0, about="The radius of the circle.")
     tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error of the radius.")
+    speed_m_s: float = number(0.0, at_least=0, about="The speed of the turtle; 0 if any speed is right.")
+    speed_tolerance_percent: float = number(8.0, above=0, at_most=100, about="The maximum error of the speed.")
     turns: float = number(1.0, above=0, about="The minimum number of turns in the bag.")
 
 
 def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:
-    """The poses in the bag show a whole circle with the required radius."""
+    """The poses in the bag show a whole circle with the required radius and speed."""
     poses, where = evidence.bag(params.bag).poses.get(params.topic, Poses()), Where(params.bag)
     expected = f"The poses show at least {params.turns:g} turn on a circle with a radius of {params.radius_m:g} m."
     x, y = np.array(poses.x), np.array(poses.y)
@@ -120,7 +125,24 @@ def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:
     if not driven >= params.turns - 0.01:
         cause = "The recording began too late, or ended too early."
         return failed(f"The bag shows {driven:.2f} turns.", expected, Cause("too-short", cause, where))
+    speed = _speed(poses)
+    if params.speed_m_s and not Band.around(
+        params.speed_m_s, params.speed_m_s * params.speed_tolerance_percent / 100.0
+    ).holds(speed):
+        cause = "The speed is linear.x of the commands. Compare with your numbers."
+        expected = f"{expected[:-1]}, at {params.speed_m_s:g} m/s."
+        return failed(f"The turtle drives at {speed:.2f} m/s in the bag.", expected, Cause("wrong-speed", cause, where))
     return passed(f"The bag shows {driven:.1f} turns on a circle with a radius of {circle.radius:.2f} m.")
+
+
+def _speed(poses: Poses) -> float:
+    """Return the mean speed from the first movement to the last (m/s)."""
+    steps = np.hypot(np.diff(poses.x), np.diff(poses.y))
+    moving = np.nonzero(steps > MOVES_M)[0]
+    if not len(moving):
+        return 0.0
+    took_s = poses.t_s[moving[-1] + 1] - poses.t_s[moving[0]]
+    return float(np.sum(steps)) / took_s if took_s > 0 else math.inf
 
 
 READABLE = Kind(

@@ -188,6 +188,7 @@ def test_an_answer_is_a_number_with_its_unit(check: str, answer: str, diagnosis:
         ("bag-circle", made_bag.poses(drive_s=0.0), "bag-still"),
         ("bag-circle", made_bag.poses(drive_s=5.0), "too-short"),
         ("bag-circle", made_bag.poses(1.5, drive_s=13.0), "wrong-radius"),
+        ("bag-circle", made_bag.poses(speed=1.0), "wrong-speed"),
         ("bag-circle", [*made_bag.poses(), *made_bag.poses(2.2, drive_s=20.0)], "not-round"),
         ("bag-topic", made_bag.commands(), "bag-topic"),
         ("bag", [], "bag-empty"),
