@@ -24,7 +24,8 @@ def bad_entry_point(point: EntryPoint) -> Finding:
         why = Cause("entry-point-comma", "A comma is missing between two strings, so Python joins them into one.")
     elif "/" in point.text:
         why = Cause(
-            "entry-point-slash", "The entry point has a file path. A module name has a dot between folder and file."
+            "entry-point-slash",
+            "The entry point contains a file path. A module name has a dot between folder and file.",
         )
         why = why.fixed_by(at(where, "/", "."))
     elif "(" in point.text:

@@ -41,7 +41,7 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
     (
         r"was never closed",
         "bracket-open",
-        "This bracket is never closed. Python often reports an open bracket at a later line.",
+        "This bracket is never closed. Python often reports a missing bracket at a later line.",
     ),
     (
         r"unmatched|does not match opening",
@@ -88,7 +88,7 @@ OTHER_LANGUAGES = (
     (r"\s*//.*", "In Python, a comment begins with #."),
     (
         r".*=\s*new\s+\w+.*",
-        "Python has no keyword new. To create an object, write the name of the class and parentheses.",
+        "Python has no keyword new. To create an object, write the class name, followed by ().",
     ),
     (r"\s*else\s*:.*", "An else needs an if, for, while or try before it, with the same indentation."),
 )
@@ -122,7 +122,7 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
         return Cause("syntax-error", foreign)
     empty = NO_BODY.search(unreadable.message)
     if empty is not None and (OUTSIDE.match(line) or (unreadable.line or 0) > int(empty["line"]) + 1):
-        text = f"Nothing is indented under line {empty['line']}, so it has no body. Write at least pass."
+        text = f"Nothing is indented below line {empty['line']}, so this line has no body. Write at least pass."
         return Cause("indentation", text, Where(file, int(empty["line"])))
     other = NOT_CLOSED.search(unreadable.message)
     if other is not None:

@@ -61,8 +61,8 @@ def why_fit(fit: Fit) -> Cause:
     if any(fit.is_like(other) for other in permutations(fit.truth)):
         return Cause(
             "result-order",
-            "The three numbers are right, but their order is wrong. Return first x and y of the centre, then the "
-            "radius.",
+            "The three numbers are right, but their order is wrong. Return the x and y of the centre first, then "
+            "the radius.",
         )
     if fit.is_like((0.5, 0.5)):
         return Cause("wrong-fit", "You get this result if the right side of the equations is x + y instead of x² + y².")

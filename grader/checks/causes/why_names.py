@@ -161,7 +161,7 @@ def _stores(scene: CrashScene, name: str) -> Iterator[tuple[int, Function | None
 
 def _alike(scene: CrashScene, name: str) -> Cause | None:
     if name == "this":
-        text = "Other languages have the name this. In a Python method, the object is called self."
+        text = "In other languages, the object is called this. In a Python method, the object is called self."
         return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, "this", "self"))
     if name in CONSTANTS:
         text = f"Python spells it {CONSTANTS[name]}. Upper and lower case matter."

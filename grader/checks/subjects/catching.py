@@ -184,7 +184,7 @@ def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
             return failed(observed, expected, Cause("from-afar", "", where), near_edge=_near(away_m, params))
     if often:
         observed = f"The node called {params.service} for {often[0]} repeatedly."
-        text = "Until the response arrives, keep in an attribute that the node has called the service."
+        text = "Until the response arrives, store in an attribute that the node has called the service."
         return failed(observed, f"{expected} One call is enough.", Cause("catch-again", text, where))
     if not calls:
         return failed(f"The node never called {params.service}.", expected, why_unasked(evidence, params.service))

@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
 
 TEXT = (
-    "The methods of the node may get other names, and the tests would then fail on a right node. Send a pose on its "
+    "If somebody renames a method of the node, the tests fail, although the node is correct. Send a pose on its "
     "topic, advance the clock, and look at the messages that arrive."
 )
 
 
 def promises(evidence: Evidence, _: NoParams) -> Finding:
     """The tests do not use the methods and attributes that the class of the node defines."""
-    expected = "The tests use the node as another node does: its topics, and its clock."
+    expected = "The tests use only the topics and the clock of the node, like another node."
     spec = next((trial.tests for trial in evidence.exercise.trials if trial.tests is not None), None)
     if spec is None:
         return passed(expected)
@@ -41,7 +41,7 @@ def promises(evidence: Evidence, _: NoParams) -> Finding:
             if isinstance(use, ast.Attribute) and use.attr in own and _last(use.value) in nodes:
                 written = shorten(ast.unparse(use), 60)
                 cause = Cause("uses-own-names", TEXT, Where(module.file, use.lineno))
-                return failed(f"The tests use {written}, which is not a promise of the node.", expected, cause)
+                return failed(f"The tests use {written}, which the node does not promise.", expected, cause)
     return passed(expected)
 
 

@@ -89,7 +89,7 @@ def outside(evidence: Evidence, _: NoParams) -> Finding:
 
 
 SPIN = "Import the class, create the node in the test, and spin it. Then the test controls the time."
-LOOKS = "The same node can be written differently. A test of the source would then fail, although the node is right."
+LOOKS = "The same node can be written differently. A test of the source would then fail, although the node is correct."
 
 
 def _imported(node: ast.AST, modules: frozenset[str]) -> str:
