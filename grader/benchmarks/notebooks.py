@@ -8,8 +8,9 @@ In one run on the same machine, this benchmark measures:
 - the same for a notebook with empty cells, which is nbgrader's own cost (imports, a kernel, the database);
 - one `grader check` of the package.
 
-The first of these measurements should take at most 1.5 times as long as the other two together. Then a class is
-measured: nbgrader autogrades the submissions one by one, and `grader gradebook sync` grades several in parallel.
+Autograding the solved notebook should take at most 1.5 times as long as the other two measurements together. Then a
+class is measured: nbgrader autogrades the submissions one by one, and `grader gradebook sync` grades several in
+parallel.
 """
 
 from __future__ import annotations

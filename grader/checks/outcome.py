@@ -30,8 +30,8 @@ class Finding:
     """The result of a check. `observed`, `expected` and `cause` are text for a beginner; `diagnosis` is a stable id.
 
     `near_edge` is True if the distance between the measured value and the edge of the tolerance is at most a fifth of
-    the tolerance, or if the node did not stop in simulated time. If this is True, the check is judged again in wall
-    time.
+    the tolerance, or if the node did not stop in simulated time. If `near_edge` is True, the check is judged again in
+    wall time.
     """
 
     status: Status

@@ -32,8 +32,8 @@ KEPT = ".kept"
 """The folder for files that were changed elsewhere before a cell replaced them. This folder is hidden, so its files are
 not graded."""
 SOLUTIONS = "solutions"
-"""The folder with the notebooks that contain the solutions. It has the same name in this course and in a class of
-nbgrader."""
+"""The folder with the notebooks that contain the solutions. This folder has the same name in the course and in a class
+of nbgrader."""
 _FIRST_LINE = re.compile(rf"\s*%%({'|'.join(MAGICS)})\b[ \t]*(.*?)\s*")
 
 

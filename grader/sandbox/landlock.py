@@ -1,7 +1,7 @@
 """Landlock: a process denies itself all files except those that it names (landlock(7), Linux 5.13 and later).
 
-The newer the kernel, the more can be denied. Landlock is one of two defences of this process; the other is the filter
-in reading_calls.py.
+Newer kernels can deny more kinds of access. Landlock is one of two defences of this process; the other is the filter in
+reading_calls.py.
 """
 
 from __future__ import annotations

@@ -32,7 +32,7 @@ SAMPLE = sample(ALL)
 CASES = tuple(replace(case, sample=case.name in SAMPLE) for case in ALL)
 JUDGED = [case for case in CASES if case.result != "usage"]
 MOST_SAMPLE = 40
-"""The maximum number of cases in the sample. More would take too long for `make test`."""
+"""The maximum number of cases in the sample. With more cases, `make test` would take too long."""
 MOST_WORDS = 60
 MOST_CASES = 12
 """The maximum number of cases for one diagnosis. Some rules can be broken in many ways."""

@@ -49,7 +49,7 @@ On a crowded machine, CPU time alone does not show this, because the simulator a
 For comparison, a node that makes three requests per pose makes 190 per second.
 """
 MESSAGES_HZ = 1000
-"""The corresponding limit for messages from nodes other than the simulator (Hz)."""
+"""The same kind of limit, but for messages from nodes other than the simulator (Hz)."""
 STARTED = 0.4
 STARTED_LEAST = 1.2
 """The node also caused all stalls if the processes that it started could use the machine alone: together, they were
