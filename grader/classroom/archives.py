@@ -80,7 +80,8 @@ def _open(archive: Path) -> IO[bytes]:
 
 
 def _run(archive: IO[bytes], folder: str) -> subprocess.CompletedProcess[bytes] | None:
-    """Run the script in a separate process, so that an archive that takes too much time or memory stops only this."""
+    """Run the script in a separate process, so an archive that takes too much time or memory stops only that
+    process."""
     start = interpreter("-S", str(_SCRIPT), "/dev/stdin", folder)
     try:
         return subprocess.run(

@@ -34,8 +34,7 @@ if TYPE_CHECKING:
 class Fault:
     """The reason why `stage` and all later stages could not be completed: a fault of the machine, and its remedy.
 
-    If `unreadable` is set, the machine is not at fault. In that case, the reason is that something produced by the
-    submission could not be read.
+    If `unreadable` is set, the machine is not at fault: something that the submission produced could not be read.
     """
 
     stage: Stage

@@ -36,7 +36,9 @@ def participant_ports(domain: int, number: int) -> tuple[int, int]:
 
 @dataclass(frozen=True)
 class Ports:
-    """`own` contains the sockets outside the cell for data to its nodes. `others` contains the ports of other nodes.
+    """`own` contains the sockets outside the cell that receive data for the nodes in the cell.
+
+    `others` contains the ports of other nodes.
 
     Inside the cell, the ports `others` are in use. Therefore, the nodes get the same port numbers inside the cell as
     `own` has outside. `discovery` contains the ports of `own` for discovery data.

@@ -26,7 +26,7 @@ def fill(template: str, values: Mapping[str, object], *folders: Path) -> str:
 
 @cache
 def compiled(template: str, *folders: Path) -> Template:
-    """Return the compiled template. Compile it before forking a child process, because compiling is slow.
+    """Return the compiled template. Call this before forking a child process, because compiling is slow.
 
     Templates are looked up in `folders`, and then in the assets of the reports.
     """

@@ -110,8 +110,8 @@ class _Queue:
     def take(self) -> tuple[str, Behaviour] | None:
         """Return the next run, or None.
 
-        If the tests rejected the correct node, they earn no points for rejecting broken nodes. If this happens, the
-        remaining runs use the correct node.
+        If the tests rejected the correct node, they earn no points for rejecting broken nodes. After the tests have
+        rejected the correct node, all remaining runs use the correct node.
         """
         with self._lock:
             if self._closed or sum(each.over for each in self.ended) >= MOST_HANGS:

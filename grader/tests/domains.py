@@ -16,8 +16,8 @@ FIRST, LAST = 2, 101
 """The domains that tests use. Domain 1 belongs to root, and root may be using this machine at the same time. Domains
 above 101 use ports that Linux may assign to any program."""
 MOST = 8
-"""The number of domains that a process keeps in addition to its default domain. After that, a process uses the domain
-again that it has not used for the longest time."""
+"""The number of domains that a process keeps in addition to its default domain. When a process needs more domains than
+this, it uses its least recently used domain again."""
 _held: dict[int, IO[str]] = {}
 _own: list[int] = []
 

@@ -91,7 +91,8 @@ class Rotation:
     start: float
     remaining: float = 0.0
     delta: float = 0.0
-    """The turn (rad) from the current direction back to the start. The `delta` in turtlesim's result has this sign."""
+    """The turn (rad) from the current direction back to the start. The `delta` in turtlesim's result has the same
+    sign."""
     cancel: bool = False
     """Whether a client has requested the cancellation of the goal. The next frame handles the request."""
     end: Literal["succeeded", "canceled", "aborted"] | None = None

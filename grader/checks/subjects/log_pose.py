@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Floats, Recording
 
 EARLY_S = 0.02
-"""The lead is slightly more than one frame, because the frame and the log line get their timestamps at different
+"""This time (s) is slightly more than one frame, because the frame and the log line get their timestamps at different
 moments."""
 FEWEST = 3
 LENGTHS = ("hypot", "sqrt", "dist")

@@ -39,8 +39,8 @@ SHARED = "grader.checks.outcome"
 modules."""
 SURVIVED, KILLED = 0, 1
 LIMIT_S = 60
-"""The limit on CPU time. A mutant that exceeds it never ends, and counts as noticed. Other load on the machine does not
-matter."""
+"""The limit on CPU time. A mutant that exceeds this limit never ends, and counts as noticed. Other load on the machine
+does not matter."""
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,7 @@ def test_create_a_package_and_again(src: Path) -> None:
 def tree(folder: Path) -> set[str]:
     """Return the kind, mode and name of each file, and whether it is empty.
 
-    Sizes are compared only with 0, because our files have other texts than the real ones.
+    Sizes are compared only with 0, because the texts of our files differ from the texts of the real files.
     """
     lines = set()
     for path in [folder, *folder.rglob("*")]:

@@ -90,7 +90,7 @@ def test_without_groups_the_command_runs_unchanged(monkeypatch: pytest.MonkeyPat
 
 
 def version_2(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Create the tree of a user's terminal, in which the upper slice delegates the controllers."""
+    """Create the control group tree of a user's terminal, in which the upper slice delegates the controllers."""
     slice_ = folder / "user.slice/user-1000.slice/user@1000.service/app.slice"
     scope = slice_ / "terminal.scope"
     scope.mkdir(parents=True)

@@ -21,7 +21,8 @@ ROOT = Path(__file__).parents[3]
 SET_UP_S = 900
 """The time limit of a command (s). With full caches, every command takes less than a minute."""
 NETWORK = ("PIP_", "UV_", "SSL_CERT_", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY", "NO_PROXY")
-"""The variables that this machine needs to download packages. A fresh clone gets no other part of the environment."""
+"""The variables that this machine needs to download packages. A fresh clone gets no other variables of the
+environment."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Each part of the lock file is complete for every Python: uv needs no other packages for the part.
 
-Each set-up consists of such parts, so every set-up is complete. The test needs the network if packages are missing in
-uv's cache.
+Each set-up consists of parts that are complete, so every set-up is complete. The test needs the network if packages are
+missing in uv's cache.
 """
 
 from __future__ import annotations
