@@ -80,8 +80,7 @@ def _open(archive: Path) -> IO[bytes]:
 
 
 def _run(archive: IO[bytes], folder: str) -> subprocess.CompletedProcess[bytes] | None:
-    """Run the script in a separate process, so an archive that takes too much time or memory stops only that
-    process."""
+    """Run the script in a separate process, which alone is stopped if an archive takes too much time or memory."""
     start = interpreter("-S", str(_SCRIPT), "/dev/stdin", folder)
     try:
         return subprocess.run(

@@ -69,7 +69,9 @@ class _Screen:
         """Whether a key has printed text since the last report. Such text must stay on the screen."""
 
     def show(self, events: Events, notice: str) -> steps.Begun | None:
-        """Show reports until the learner quits or starts another step. Return the other step, or None to quit.
+        """Show reports until the learner quits or starts another step.
+
+        Return the step that the learner has started in the meantime, or None to quit.
 
         The first report clears the screen. `notice` is printed below the submission's report.
         """

@@ -31,7 +31,7 @@ def begin() -> list[Line]:
 
 
 def refusing(numbers: Iterable[int], error: int) -> list[Line]:
-    """Return the lines that make these calls fail with this error number."""
+    """Return the filter lines that make these system calls fail with this error number."""
     return [line for number in numbers for line in ((EQUAL, 0, 1, number), (RETURN, 0, 0, ERRNO | error))]
 
 

@@ -47,7 +47,7 @@ ROOM_DISK = 256 * MIB
 class View:
     """The paths on the disk that are visible in a room or cell, unchanged.
 
-    Folders in `hidden` appear there as empty folders.
+    Inside the room or cell, the folders in `hidden` appear as empty folders.
     """
 
     read_only: tuple[Path, ...]

@@ -17,7 +17,7 @@ class StandIns:
 
     @property
     def path(self) -> str:
-        """Return a PATH with only the stand-ins and the programs that their scripts need."""
+        """Return a PATH with only the fake programs and the real programs that their scripts need."""
         return str(self.folder)
 
     def add(self, name: str, then: str = "") -> None:

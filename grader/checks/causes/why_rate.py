@@ -140,7 +140,7 @@ def _made_in_callback(evidence: Evidence, maker: str) -> tuple[str, Where] | Non
 
 
 PLACES = {"create_timer": 1, "add_done_callback": 0, "add_on_set_parameters_callback": 0}
-"""Maps a function to the index of its callback argument. In functions that are not listed, the index is 2."""
+"""Maps a function to the index of its callback argument. For functions that are not listed here, the index is 2."""
 
 
 def callbacks_of(evidence: Evidence, *makers: str) -> Iterator[tuple[Module, str]]:

@@ -36,7 +36,7 @@ STRAIGHT_RADIUS_M = 50.0
 LIVES_S = 1.0
 """The time for which one command moves a turtle (s)."""
 AT_ONCE_S = 0.05
-"""A command that another one follows within this time (s) has no effect."""
+"""If a second command follows within this time (s), the first command has no effect."""
 LATE_S = 3.0
 """If the first command arrives later than this (s), the delay explains a circle that is too short."""
 POLYGON_SHARE = 0.6
