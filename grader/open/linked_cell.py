@@ -25,7 +25,7 @@ from grader.sandbox.limits import NODE_LIMITS
 from grader.sandbox.system_calls import call_filter
 from grader.sandbox.usage import Guard, family
 from grader.sandbox.user import cell_user
-from grader.trial.node_process import READY
+from grader.trial.node_process import LaunchError, await_launcher
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -80,14 +80,12 @@ class LinkedCell:
             MachineError: the launcher has exited.
         """
         assert self.process.stdout is not None
-        received = b""
-        while not received.endswith(READY):
-            byte = os.read(self.process.stdout.fileno(), 1)
-            if not byte:
-                lines = received.decode("utf-8", "replace").strip().splitlines() or ["no message"]
-                message = f"The sandbox did not start: {lines[-1]}. `grader doctor` shows what is missing."
-                raise MachineError(message)
-            received += byte
+        try:
+            await_launcher(self.process.stdout)
+        except LaunchError as error:
+            lines = str(error).splitlines() or ["no message"]
+            message = f"The sandbox did not start: {lines[-1]}. `grader doctor` shows what is missing."
+            raise MachineError(message) from error
         # Only bubblewrap has forked so far, and each of its processes has one child.
         self.first = list(family(self.process.pid))[-1]
 

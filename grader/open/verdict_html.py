@@ -7,9 +7,11 @@ from urllib.parse import quote
 
 from grader.errors import UnreadableError
 from grader.report.escaped_template import compiled, fill
+from grader.report.expectations import must_drive
 from grader.report.html import shown_checks, without_content
 from grader.report.html_page import script_json
 from grader.report.html_run import runs_of
+from grader.report.scene import scene_of
 from grader.submission.reader import read
 
 if TYPE_CHECKING:
@@ -43,8 +45,8 @@ def _html(evidence: Evidence, report: Report, folder: Path) -> str:
         return f"vscode://file{quote(str(file))}" + (f":{where.line}" if where.line else "")
 
     checks = shown_checks(evidence, report)
-    # Without a package, the simulator ran only to check answers, and nothing moved its turtle.
-    runs = runs_of(evidence.views()) if evidence.exercise.package else []
+    # Without a package, the simulator ran only to check answers.
+    runs = runs_of([view for view in evidence.views() if _is_worth_showing(view)]) if evidence.exercise.package else []
     fault = evidence.fault.message if evidence.fault and not evidence.fault.unreadable else ""
     values = {
         "to_fix": [each for each in checks if each.kind in ("failed", "error", "advice")],
@@ -54,3 +56,8 @@ def _html(evidence: Evidence, report: Report, folder: Path) -> str:
         "data": script_json([run.data for run in runs]),
     }
     return fill(TEMPLATE, values)
+
+
+def _is_worth_showing(view: Evidence) -> bool:
+    """Return whether the turtle had to be driven or has moved. A turtle that rightly stands still only confuses."""
+    return must_drive(view) or (view.run.recording is not None and not scene_of(view).notice)

@@ -11,7 +11,7 @@ import time
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
 from grader.sandbox.system_calls import call_filter
 from grader.sandbox.usage import Guard
@@ -39,6 +39,22 @@ later, SIGKILL."""
 
 class LaunchError(Exception):
     """The launcher itself failed. The machine is at fault, since none of the student's code had run."""
+
+
+def await_launcher(stdout: IO[bytes], stderr: IO[bytes] | None = None) -> None:
+    """Wait until a launcher is ready for its order.
+
+    Raises:
+        LaunchError: the launcher exited. The message is its output.
+    """
+    received = b""
+    while not received.endswith(READY):
+        # Read single bytes, because the following output is that of the node.
+        byte = os.read(stdout.fileno(), 1)
+        if not byte:
+            output = received + (stderr.read() if stderr is not None else b"")
+            raise LaunchError(output.decode("utf-8", "replace").strip())
+        received += byte
 
 
 def enlarge(pipe: int) -> int:
@@ -142,13 +158,7 @@ class NodeProcess:
             LaunchError: the launcher exited.
         """
         assert self._process.stdout is not None
-        assert self._process.stderr is not None
-        received = b""
-        while not received.endswith(READY):
-            byte = os.read(self._process.stdout.fileno(), 1)
-            if not byte:
-                raise LaunchError((received + self._process.stderr.read()).decode("utf-8", "replace").strip())
-            received += byte
+        await_launcher(self._process.stdout, self._process.stderr)
         self.pid = self._find_pid()
         for stream in self._streams:
             os.set_blocking(stream.fd, False)

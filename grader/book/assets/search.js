@@ -21,12 +21,13 @@ export function find(index, query) {
   return found.slice(0, MOST).map((each) => each.entry);
 }
 
-// Return the text around the first word.
+// Return the text around the first word. It begins and ends with whole words.
 export function excerpt(text, query) {
   const at = Math.max(...words(query).map((word) => text.toLowerCase().indexOf(word)), 0);
-  const from = Math.max(at - AROUND, 0);
-  const part = text.slice(from, at + 2 * AROUND).trim();
-  return `${from > 0 ? "… " : ""}${part}${at + 2 * AROUND < text.length ? " …" : ""}`;
+  const from = at > AROUND ? text.indexOf(" ", at - AROUND) + 1 : 0;
+  const space = text.indexOf(" ", at + 2 * AROUND);
+  const to = space < 0 ? text.length : space;
+  return `${from > 0 ? "… " : ""}${text.slice(from, to).trim()}${to < text.length ? " …" : ""}`;
 }
 
 function result(entry, query, root) {
@@ -72,11 +73,26 @@ export function addSearch(box, root) {
   }
 
   input.addEventListener("input", show);
+  // The arrow keys move through the results, and Enter follows the first one.
+  function move(by) {
+    const places = [input, ...found.querySelectorAll("a")];
+    places[places.indexOf(document.activeElement) + by]?.focus();
+  }
+
+  const keys = {
+    Escape() {
+      input.value = "";
+      found.replaceChildren();
+      input.focus();
+    },
+    ArrowDown: () => move(1),
+    ArrowUp: () => move(-1),
+    Enter: () => (document.activeElement === input ? found.querySelector("a") : document.activeElement)?.click(),
+  };
   box.addEventListener("keydown", (event) => {
-    if (event.key !== "Escape") return;
-    input.value = "";
-    found.replaceChildren();
-    input.focus();
+    if (!Object.hasOwn(keys, event.key)) return;
+    event.preventDefault();
+    keys[event.key]();
   });
   // A link to a section of the same page does not load a page, so close the list.
   found.addEventListener("click", (event) => {

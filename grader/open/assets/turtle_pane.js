@@ -36,7 +36,7 @@ export class TurtlePane {
     this.running = programs;
     showText(find("sim-switch"), programs.turtlesim ? "Stop turtlesim" : "Start turtlesim");
     showText(find("node-switch"), programs.node ? "Stop it" : "Run it");
-    find("node-switch").disabled = executables.length === 0;
+    find("node-buttons").hidden = executables.length === 0 && !programs.node;
     this.choose(executables);
     find("node-part").hidden = programs.lines.length === 0;
     this.lines(programs.lines.join("\n"));
@@ -92,5 +92,6 @@ export class TurtlePane {
     place.textContent = "Asking …";
     const { problem, command, output, stopped } = await act("ask", { text });
     place.textContent = problem ?? `$ ${command}\n${output}${stopped ? "\n(The command was stopped, because it did not end.)" : ""}`;
+    place.scrollIntoView({ block: "nearest" });
   }
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from typing import TYPE_CHECKING
 
@@ -127,6 +128,21 @@ def test_the_search_leads_to_a_section(page: Page, url: str) -> None:
     page.get_by_text("No section contains all of these words.").wait_for()
     page.keyboard.press("Escape")
     assert page.get_by_label("Search").input_value() == ""
+
+
+def test_the_search_by_keyboard(page: Page, book: Path, url: str) -> None:
+    page.goto(url + "index.html")
+    search = page.get_by_label("Search")
+    search.press_sequentially("queue size create_publisher")
+    results = page.locator("#search-found")
+    results.get_by_role("link").first.wait_for()
+    # An excerpt begins and ends with whole words.
+    excerpt = results.locator(".excerpt").first.inner_text().strip("… ")
+    texts = [f" {' '.join(entry['text'].split())} " for entry in json.loads((book / "search.json").read_text("utf-8"))]
+    assert any(f" {' '.join(excerpt.split())} " in text for text in texts), excerpt
+    for key in ("ArrowDown", "ArrowUp", "Enter"):
+        page.keyboard.press(key)
+    page.wait_for_url(f"{url}{CIRCLE}#the-parts-you-need")
 
 
 def test_copy_takes_what_is_typed(browser: Browser, url: str) -> None:
