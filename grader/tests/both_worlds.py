@@ -22,6 +22,7 @@ PATH = os.pathsep.join([*([str(HERE.prefix / "bin")] if SOURCED_ENV else []), "/
 """The PATH of a terminal in which only the tests' ROS 2 is sourced."""
 REAL_ROS2 = bool(SOURCED_ENV) and Path(HERE.prefix, "bin/ros2").is_file()
 REAL_TURTLESIM = installation.has_turtlesim(HERE)
+REAL_RQT_GRAPH = bool(SOURCED_ENV) and Path(HERE.prefix, "bin/rqt_graph").is_file()
 OUR_TURTLESIM = "grader sim" if REAL_TURTLESIM else "ros2 run turtlesim turtlesim_node"
 """The command line of the course's turtlesim. turtlesim_node of ROS 2 opens a window and does not have the options of
 `grader sim`."""
@@ -34,6 +35,9 @@ of_our_ros2 = pytest.mark.skipif(
 )
 of_our_turtlesim = pytest.mark.skipif(
     REAL_TURTLESIM, reason="this test needs the course's own turtlesim, but the real one is installed"
+)
+of_our_rqt_graph = pytest.mark.skipif(
+    REAL_RQT_GRAPH, reason="without an option of the course's own rqt_graph, the real one opens its window"
 )
 
 

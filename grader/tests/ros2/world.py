@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -135,6 +136,14 @@ class World:
             self.run("ros2 daemon stop")
 
 
+_FUNCTIONS = (
+    {"BASH_FUNC_rqt_graph%%": f'() {{ {shlex.quote(str(Path(sys.prefix, "bin/rqt_graph")))} "$@"; }}'}
+    if SOURCED_ENV
+    else {}
+)
+"""The shell functions that `source <(grader env)` defines if a ROS 2 is sourced (grader/ros/shell.py)."""
+
+
 def environment(home: Path, domain: int | None = None) -> dict[str, str]:
     """Return the environment after `source <(grader env)`, with a separate domain."""
     ros = underlay.with_turtlesim(installation.find_ros())
@@ -142,6 +151,7 @@ def environment(home: Path, domain: int | None = None) -> dict[str, str]:
     ours = str(Path(sys.executable).parent)
     user = {
         **SOURCED_ENV,
+        **_FUNCTIONS,
         "HOME": str(home),
         # Tests that need the daemon start it.
         "GRADER_ROS2_DAEMON": "0",

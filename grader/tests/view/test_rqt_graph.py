@@ -15,7 +15,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
-from grader.tests.both_worlds import SOURCED_ENV
+from grader.tests.both_worlds import SOURCED_ENV, of_our_rqt_graph
 from grader.tests.ros2.world import SOLUTION, World, world
 from grader.tests.waiting import until
 
@@ -58,11 +58,13 @@ def test_pictures_are_written(tutorial: World) -> None:
     assert Image.open(io.BytesIO((tutorial.home / "graph.png").read_bytes())).width > 500
 
 
+@of_our_rqt_graph
 def test_in_a_plain_terminal_it_is_text(tutorial: World) -> None:
     done = tutorial.run("rqt_graph")
     assert (done.code, done.stdout) == (0, (GOLDEN / "tutorial.unicode.txt").read_text())
 
 
+@of_our_rqt_graph
 def test_a_terminal_without_unicode_gets_ascii(tutorial: World) -> None:
     done = tutorial.run("rqt_graph", PYTHONIOENCODING="ascii")
     assert (done.code, done.stdout) == (0, (GOLDEN / "tutorial.ascii.txt").read_text())
@@ -78,6 +80,7 @@ def test_all_shows_debug_topics_and_the_inside_of_actions_but_not_itself(tutoria
     assert "rqt_graph" not in shown
 
 
+@of_our_rqt_graph
 def test_without_grader_env_it_finds_ros_by_itself(tutorial: World) -> None:
     kept = {"PATH", "HOME", "LANG", "ROS_DOMAIN_ID", *SOURCED_ENV}
     bare = World(tutorial.home, {name: value for name, value in tutorial.env.items() if name in kept})
@@ -97,6 +100,7 @@ def before_a_screen(tutorial: World, tmp_path: Path) -> Iterator[World]:
     made.end()
 
 
+@of_our_rqt_graph
 def test_where_there_is_a_browser_the_graph_is_shown_live_until_ctrl_c(before_a_screen: World, tmp_path: Path) -> None:
     graph = before_a_screen.start("rqt_graph", "http://127.0.0.1:")
     until(lambda: (tmp_path / "opened").exists() and bool((tmp_path / "opened").read_text()))
@@ -121,6 +125,7 @@ def test_where_there_is_a_browser_the_graph_is_shown_live_until_ctrl_c(before_a_
     assert not any("Traceback" in line for line in graph.lines)
 
 
+@of_our_rqt_graph
 def test_where_the_browser_cannot_be_started_it_is_text(before_a_screen: World) -> None:
     done = before_a_screen.run("rqt_graph", BROKEN="3")
     assert done.code == 0
@@ -166,8 +171,8 @@ def test_a_file_that_cannot_be_written_is_reported(tutorial: World) -> None:
 
 
 def test_a_broken_pipe_and_an_unknown_option_end_without_a_traceback(tutorial: World) -> None:
-    assert "Traceback" not in tutorial.run("rqt_graph | true").stderr
-    done = tutorial.run("rqt_graph --everything")
+    assert "Traceback" not in tutorial.run("rqt_graph --text | true").stderr
+    done = tutorial.run("rqt_graph --text --everything")
     assert done.code == 2
     assert "Traceback" not in done.stderr
 
@@ -183,7 +188,7 @@ def real_one(prefix: Path) -> None:
 
 def test_a_sourced_rqt_graph_is_used(alone: World, tmp_path: Path) -> None:
     real_one(tmp_path)
-    done = alone.run("rqt_graph --force-discover", AMENT_PREFIX_PATH=f"{alone.env['AMENT_PREFIX_PATH']}:{tmp_path}")
+    done = alone.run("rqt_graph --force-discover", AMENT_PREFIX_PATH=f"{tmp_path}:{alone.env['AMENT_PREFIX_PATH']}")
     assert done.stdout == "the real one: --force-discover\n"
 
 
@@ -192,7 +197,7 @@ def test_a_sourced_rqt_graph_does_not_get_options_that_it_does_not_know(
     alone: World, tmp_path: Path, option: str
 ) -> None:
     real_one(tmp_path)
-    done = alone.run(f"rqt_graph {option}", AMENT_PREFIX_PATH=f"{alone.env['AMENT_PREFIX_PATH']}:{tmp_path}")
+    done = alone.run(f"rqt_graph {option}", AMENT_PREFIX_PATH=f"{tmp_path}:{alone.env['AMENT_PREFIX_PATH']}")
     assert (done.code, done.stdout) == (1, "")
     assert "No node is running" in done.stderr
 
