@@ -119,7 +119,7 @@ PAUSE = Kind(
     "The turtle stands still and continues",
     Pause,
     pause,
-    about="The turtle stands still between two times, such as those of two calls of the trial, and continues "
-    "afterwards.",
+    about="The turtle stands still from one time to another, for example from the trial's first call to its second "
+    "call, and then drives on.",
     drives=True,
 )
