@@ -94,6 +94,7 @@ KINDS: Mapping[str, Kind[Any]] = {
         feedback.LOG_FEEDBACK,
         cancel.CANCELS_GOAL,
         cancel.NO_GOAL_AFTER,
+        cancel.SAYS_WHETHER_ACTIVE,
         star.STAR,
         spawning.SPAWNS,
         spawning.PLACES_DIFFER,

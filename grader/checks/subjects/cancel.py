@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
     from grader.trial.observed import Call, Goal
 
+SAME_TIME_S = 0.1
+"""A goal that begins or ends within this time of a call may be active or not when the call arrives (s)."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class CancelsGoal:
@@ -28,6 +31,13 @@ class CancelsGoal:
     service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
     type: str = string("a service type, as in std_srvs/srv/Trigger", about="Its type.")
     within_s: float = number(0.5, above=0, about="The maximum time until the goal is cancelled.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SaysWhetherActive:
+    """The service by which the trial requests that the node cancel its goal. Its response has the field `success`."""
+
+    service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,6 +108,32 @@ def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
     return passed("No goal arrived after the call.")
 
 
+def says_whether_active(evidence: Evidence, params: SaysWhetherActive) -> Finding:
+    """In each response, `success` is true if the turtle followed a goal when the call arrived, and false if not."""
+    expected = f"In the response of {params.service}, success is true if a goal was active, and false if not."
+    goals = goals_of(evidence)
+    for call in calls_of(evidence):
+        if not call.by_trial or call.service != params.service or call.response is None:
+            continue
+        active = _is_active(goals, call.t_s)
+        said = call.response.get("success")
+        if active is not None and said is not active:
+            state = "a goal" if active else "no goal"
+            observed = f"The turtle followed {state} at {call.t_s:.1f} s, but success was {str(said).lower()}."
+            text = "Set success in the callback of the service, before the goal is cancelled: was there a goal?"
+            return failed(observed, expected, Cause("wrong-response", text, evidence.place("create_service")))
+    return passed("success says whether a goal was active.")
+
+
+def _is_active(goals: list[Goal], t_s: float) -> bool | None:
+    """Return whether the turtle follows a goal at this time (s), or None if a goal begins or ends by itself then."""
+    for goal in goals:
+        ended_s = goal.ended_s if goal.status == "succeeded" else None
+        if any(each_s is not None and abs(each_s - t_s) < SAME_TIME_S for each_s in (goal.t_s, ended_s)):
+            return None
+    return any(goal.t_s < t_s and (goal.ended_s is None or goal.ended_s > t_s) for goal in goals)
+
+
 def _stopped(goals: list[Goal], calls: list[Call]) -> tuple[Call, Goal] | None:
     """Return the first call that arrived while the turtle followed a goal, with that goal; else None."""
     for call in calls:
@@ -122,4 +158,13 @@ NO_GOAL_AFTER = Kind(
     NoGoalAfter,
     no_goal_after,
     about="After a `[[trial.call]]` of the service, the node sends no more goals to `/turtle1/rotate_absolute`.",
+)
+SAYS_WHETHER_ACTIVE = Kind(
+    "says_whether_active",
+    "trial",
+    "The response says whether there was a goal",
+    SaysWhetherActive,
+    says_whether_active,
+    about="In the responses to each `[[trial.call]]` of the service, `success` says whether a goal of "
+    "`/turtle1/rotate_absolute` was active.",
 )

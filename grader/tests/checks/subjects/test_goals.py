@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from grader.checks.outcome import Status
-from grader.checks.subjects.cancel import CANCELS_GOAL, NO_GOAL_AFTER
+from grader.checks.subjects.cancel import CANCELS_GOAL, NO_GOAL_AFTER, SAYS_WHETHER_ACTIVE
 from grader.checks.subjects.feedback import LOG_FEEDBACK
 from grader.checks.subjects.goals import AWAITS_RESULT, ROTATE, SENDS_GOALS, TYPE
 from grader.checks.subjects.star import STAR
@@ -126,6 +126,28 @@ def test_no_goal_follows_a_cancelled_one() -> None:
     assert found(NO_GOAL_AFTER, given(cancelled, calls=calls), service="/stop").status is Status.PASSED
     again = given(cancelled, goal(3.1, 0.0, 5.0), calls=calls)
     assert found(NO_GOAL_AFTER, again, service="/stop").diagnosis == "goal-after-cancel"
+
+
+@pytest.mark.parametrize(
+    ("success", "diagnosis"),
+    [
+        ((True, False), None),
+        ((False, False), "wrong-response"),
+        ((True, True), "wrong-response"),
+    ],
+)
+def test_the_response_says_whether_there_was_a_goal(success: tuple[bool, bool], diagnosis: str | None) -> None:
+    cancelled = goal(1.0, 80.0, 3.02, "canceled", cancel_asked_s=3.0)
+    calls = tuple(replace(stop(t_s), response={"success": said}) for t_s, said in zip((3.0, 3.4), success, strict=True))
+    assert found(SAYS_WHETHER_ACTIVE, given(cancelled, calls=calls), service="/stop").diagnosis == diagnosis
+
+
+@pytest.mark.parametrize("ended_s", [2.95, 3.05])
+def test_a_goal_that_ends_at_the_time_of_the_call_may_count_or_not(ended_s: float) -> None:
+    for said in (True, False):
+        call = replace(stop(3.0), response={"success": said})
+        reached = given(goal(1.0, 80.0, ended_s), calls=(call,))
+        assert found(SAYS_WHETHER_ACTIVE, reached, service="/stop").status is Status.PASSED
 
 
 def turning(from_s: float, until_s: float) -> Frames:
