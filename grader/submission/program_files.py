@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-_SYSTEM = ("/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/etc/localtime", "/dev/null", "/dev/urandom")
+_SYSTEM = ("/usr", "/lib", "/lib64", "/opt/ros", "/etc/ld.so.cache", "/etc/localtime", "/dev/null", "/dev/urandom")
 _MODULES = ("site-packages", "dist-packages")
 """The folders of a search path that contain only modules. All other entries may be any folder, such as the current
 folder or the home folder."""
