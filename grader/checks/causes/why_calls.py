@@ -132,7 +132,7 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
             "string-and-number", "A string and a number cannot be added. Use an f-string to put a number into a string."
         )
     if "'NoneType' object does not support the context manager" in text:
-        return _with_init(scene) or _after_shutdown(scene)
+        return _with_init(scene) or _after_shutdown(scene) or _never_init(scene)
     if "rclpy_resolve_name(): incompatible" in text:
         return Cause("crash", "A topic name must be a string in quotation marks, or a variable with a string in it.")
     if "'Parameter'" in text:
@@ -151,6 +151,12 @@ def _with_init(scene: CrashScene) -> Cause | None:
             text = "Only newer distributions allow rclpy.init in a with statement. In Jazzy, rclpy.init returns None."
             return Cause("crash", text, scene.at(call))
     return None
+
+
+def _never_init(scene: CrashScene) -> Cause | None:
+    if scene.evidence.code.calls("init"):
+        return None
+    return Cause("no-init", "rclpy.init is never called.")
 
 
 def _after_shutdown(scene: CrashScene) -> Cause | None:

@@ -72,6 +72,8 @@ def _of_self(scene: CrashScene, name: str) -> Cause | None:
     if own is None:
         return None
     known = {*(each.name for each in methods(own)), *(each for each, _ in attributes_set(own))}
+    if _of_string(scene, name) is not None and not _holds_string(own, name):
+        return None
     if name in known or (name in ros_names.NODE and _is_called(scene, name)):
         text = f"{name} belongs to the object. Inside a method, write self.{name}."
         return Cause("missing-self", text).fixed_by(at(scene.crash.where, name, f"self.{name}"))
@@ -87,6 +89,19 @@ def _of_string(scene: CrashScene, name: str) -> Cause | None:
                 text = f"Here {function} expects a string, which needs quotation marks."
                 return Cause("name-undefined", text).fixed_by(at(scene.at(given), name, f'"{name}"'))
     return None
+
+
+def _holds_string(own: ast.ClassDef, name: str) -> bool:
+    """Return whether __init__ may assign a string to the attribute: a constant string, or an unknown value."""
+    values = [
+        node.value
+        for method in methods(own)
+        for node in ast.walk(method)
+        if method.name == "__init__"
+        and isinstance(node, ast.Assign)
+        and f"self.{name}" in [ast.unparse(each) for each in node.targets]
+    ]
+    return any(not isinstance(each, ast.Constant) or isinstance(each.value, str) for each in values)
 
 
 def _is_called(scene: CrashScene, name: str) -> bool:

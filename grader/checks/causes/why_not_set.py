@@ -1,4 +1,4 @@
-"""Why an attribute is not set: a comparison is written where an assignment belongs."""
+"""Why an attribute or a field is not set: a comparison is written where an assignment belongs."""
 
 from __future__ import annotations
 
@@ -8,9 +8,27 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.edit import at
 from grader.submission.constants import dotted
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
+    from grader.evidence.evidence import Evidence
+
+
+EQUALS = "== compares two values. = gives a value to a name."
+
+
+def compared_field(evidence: Evidence, field: str) -> Cause | None:
+    """Return the cause if a line only compares this field of a message, such as "linear.x", with ==, else None."""
+    for module in evidence.code.modules:
+        for node in module.nodes:
+            said = node.value if isinstance(node, ast.Expr) else None
+            if not isinstance(said, ast.Compare) or not isinstance(said.ops[0], ast.Eq):
+                continue
+            if (dotted(said.left) or "").endswith(f".{field}"):
+                place = Where(module.file, said.lineno)
+                return Cause("equals", EQUALS, place).fixed_by(at(place, f"{field} ==", f"{field} ="))
+    return None
 
 
 def compared(scene: CrashScene, name: str) -> Cause | None:
@@ -19,5 +37,5 @@ def compared(scene: CrashScene, name: str) -> Cause | None:
         said = node.value if isinstance(node, ast.Expr) else None
         if isinstance(said, ast.Compare) and isinstance(said.ops[0], ast.Eq) and dotted(said.left) == f"self.{name}":
             fix = at(scene.crash.where, f"self.{name} ==", f"self.{name} =")
-            return Cause("equals", "== compares two values. = gives a value to a name.").fixed_by(fix)
+            return Cause("equals", EQUALS).fixed_by(fix)
     return None

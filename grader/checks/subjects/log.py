@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed, ended_early
+from grader.checks.causes.timers import timer_fault
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_silent import why_nothing, why_qos
 from grader.checks.edit import at
@@ -68,7 +69,7 @@ def _silent(evidence: Evidence, expected: str) -> Finding:
     code = evidence.code
     if not any(code.calls(level) for level in LEVELS):
         cause = "get_logger().info(...) is never called."
-        return failed(observed, expected, Cause("no-log", cause, code.start))
+        return failed(observed, expected, timer_fault(evidence) or Cause("no-log", cause, code.start))
     why = why_nothing(evidence, LEVELS)
     if why is not None:
         return failed(observed, expected, why)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.ros_names import PACKAGE
+from grader.checks.causes.ros_names import MODULE_OF, PACKAGE
 from grader.checks.kind import Kind, NoParams, choice, strings
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, nearest, shorten
@@ -25,6 +25,8 @@ FILE = "package.xml"
 BUILD_TYPE = "ament_python"
 EXPECTED_BUILD_TYPE = f"A Python package has the build type {BUILD_TYPE}."
 CATKIN = "catkin"
+KNOWN = frozenset({module.partition(".")[0] for module in MODULE_OF.values()} | {"rclpy", "sensor_msgs", "nav_msgs"})
+"""ROS 2 packages whose names are often misspelt."""
 XML = re.compile(
     r"mismatched tag|not well-formed|no element found|junk after|unclosed|duplicate attribute|invalid XML|syntax error"
     r"|invalid token|undefined entity"
@@ -122,12 +124,15 @@ def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
 
 
 def _imported(evidence: Evidence) -> dict[str, Where]:
-    """Return the ROS 2 packages that the nodes of the exercise import, with the line of the first import."""
+    """Return the ROS 2 packages that the nodes of the exercise import, with the line of the first import.
+
+    A name that is almost that of a known package is a typing error: no such package can be declared.
+    """
     found: dict[str, Where] = {}
     for trial in evidence.exercise.trials:
         view = evidence.from_trial(trial.id)
         for package, where in imported_packages(view.code, evidence.submission.files).items():
-            if PACKAGE.fullmatch(package):
+            if PACKAGE.fullmatch(package) and (package in KNOWN or nearest(package, KNOWN) is None):
                 found.setdefault(package, where)
     return found
 

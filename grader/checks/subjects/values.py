@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.why_not_set import compared_field
 from grader.checks.edit import Edit, at
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, failed, passed
@@ -78,7 +79,9 @@ def values(evidence: Evidence, params: Values) -> Finding:
     why, field = _why(first, params.wanted, off)
     if why.diagnosis == "wrong-value" and bad < total:
         why = Cause("values-change", "The other commands were right. Something changes the values while the node runs.")
-    if bad == total and alike:
+    if why.diagnosis in ("wrong-value", "empty-twist") and bad == total:
+        why = next(filter(None, (compared_field(evidence, FIELDS[index]) for index in off)), why)
+    if bad == total and alike and why.diagnosis != "equals":
         why = why.fixed_by(_right_values(evidence, params.wanted, off))
     return failed(observed, expected, why.at(_line(evidence, field)), near_edge=near)
 
