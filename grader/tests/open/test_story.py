@@ -133,3 +133,15 @@ def test_every_pane_is_reached_by_keyboard(begun: Course, browser: Browser) -> N
     page.keyboard.press("Enter")
     page.locator("#hints li").first.wait_for()
     page.close()
+
+
+@pytest.mark.parametrize("width", [800, 1400])
+def test_the_whole_lesson_is_printed_whatever_pane_is_shown(begun: Course, browser: Browser, width: int) -> None:
+    page = begun.opened(browser, f"{CIRCLE}/index.html", width)
+    page.get_by_role("button", name="Turtle", exact=True).click()
+    page.emulate_media(media="print")
+    assert page.get_by_role("heading", name="To think about").is_visible()
+    assert not page.locator("#turtle-pane").is_visible()
+    # The page ends after the lesson, not at the bottom of the window.
+    assert page.evaluate("document.documentElement.scrollHeight") > 4000
+    page.close()
