@@ -78,7 +78,10 @@ def unpack(archive: Path, folder: Path) -> None:
 
 
 def _zip(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
-    """Yield the name, mode and content of each file. The content of a folder is None. Links and devices are skipped."""
+    """Yield the name, mode and content of each file.
+
+    For a folder, the content is None. Links and devices are skipped.
+    """
     with zipfile.ZipFile(file) as packed:
         for info in packed.infolist():
             mode = info.external_attr >> 16

@@ -80,7 +80,7 @@ def shown(found: tuple[Named, ...], *, all_of_them: bool) -> list[Named]:
 
 
 def types_of(found: tuple[Named, ...], name: str) -> tuple[str, ...]:
-    """Return the types of a name, or an empty tuple if there is no such name."""
+    """Return the types that belong to this name, or an empty tuple if the name does not exist."""
     return next((types for known, types in found if known == name), ())
 
 

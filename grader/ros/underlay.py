@@ -78,7 +78,10 @@ def ensure(ros: installation.Ros, tell: Callable[[str], None] = _report_nothing)
 
 
 def _name(ros: installation.Ros, compiler: Path | None) -> str:
-    """Return a name for the build that depends on all its inputs. No process is started to find the name."""
+    """Return a name for the build.
+
+    The name depends on all inputs of the build. No process is started to find the name.
+    """
     return f"turtlesim-{_key_of_sources(ros)}-{_key_of_compiler(compiler)}"
 
 

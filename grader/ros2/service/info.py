@@ -21,7 +21,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the type and the counts.
+    """Print the type of the service, and the numbers of its clients and servers.
 
     Raises:
         Ros2Error: the service does not exist.

@@ -1,4 +1,4 @@
-"""Hypothesis without deadlines, so that no test fails because the machine is busy."""
+"""Settings of Hypothesis without deadlines, so that no test fails because the machine is busy."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ class _Depth:
 
 
 def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> T:
-    """Read like `reader.read`, but in this process."""
+    """Do the same as `reader.read`, but in this process."""
     if _Depth.inside:
         return function(*arguments, **keywords)
     _Depth.inside = True

@@ -58,7 +58,7 @@ class Material:
 
 @dataclass(frozen=True)
 class Job:
-    """A mutant, and the cases or tests that might notice it, called witnesses.
+    """A mutant and its witnesses: the cases or tests that might notice the mutant.
 
     A witness is a function that is called with the mutant installed.
     """

@@ -170,7 +170,7 @@ def _statement(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) ->
 
 
 def _idle(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> bool:
-    """Return whether the node is only a declaration or only creates text."""
+    """Return whether a node of the syntax tree is only a declaration or only creates text."""
     if _is_docstring(node, parents) or _chooses_text(node):
         return True
     before, here = node, parents.get(node)

@@ -1,4 +1,4 @@
-"""The scripts of the commands, before they import a module of the grader."""
+"""Tests of what the scripts of the commands do before they import a module of the grader."""
 
 from __future__ import annotations
 
