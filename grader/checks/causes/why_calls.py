@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.crash_scene import attributes_set, methods
+from grader.checks.causes.why_not_set import comma_for_dot
 from grader.checks.causes.why_other_object import message_for_class
 from grader.checks.causes.why_parameters import too_few, too_many
 from grader.checks.edit import at
@@ -118,6 +119,8 @@ def why_type(scene: CrashScene) -> Cause | None:
 def _by_message(scene: CrashScene, text: str) -> Cause | None:
     if "isinstance() arg 2 must be a type" in text:
         return message_for_class(scene)
+    if "cannot unpack non-iterable" in text:
+        return comma_for_dot(scene)
     if "'property' object is not iterable" in text:
         spun = next(iter(scene.calls_on_line("spin")), None)
         name = ast.unparse(spun.args[0]) if spun is not None and spun.args else "It"
