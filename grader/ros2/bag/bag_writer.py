@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sqlite3
 import time
 from typing import TYPE_CHECKING, Literal
 
@@ -32,7 +33,6 @@ _KEEP_S = 1.0
 """The interval at which messages are flushed to the file (s). A killed recorder loses at most these messages."""
 _NO_HASH = f"RIHS01_{64 * '0'}"
 """The hash of a type that is not installed, since the hash cannot be computed from the type's name."""
-_ENDINGS = {"mcap": ".mcap", "sqlite3": ".db3"}
 
 
 class BagWriter:
@@ -49,7 +49,6 @@ class BagWriter:
 
     def __init__(self, folder: Path, storage: str, compression: str = "none") -> None:
         self.folder = folder.absolute()
-        self._storage = storage
         self._types = jazzy_types()
         self._connections: dict[tuple[str, str], Connection] = {}
         self._kept_at = time.monotonic()
@@ -58,10 +57,26 @@ class BagWriter:
             self._writer = RosbagsWriter(self.folder, version=_VERSION, storage_plugin=plugin)
             self._writer.set_compression(CompressionMode[compression.upper()], CompressionFormat.ZSTD)
             self._writer.open()
+            self._number_file()
         except Exception as error:
             reason = getattr(error, "strerror", None) or str(error)
             message = f"[ERROR] [ros2bag]: Could not create bag folder '{folder}'.\n{reason}"
             raise Ros2Error(message) from error
+
+    def _number_file(self) -> None:
+        """Rename the new file as in rosbag2, bag/bag_0.mcap: its reindex finds only files with a number."""
+        storage = self._writer.storage
+        assert isinstance(storage, McapWriter | Sqlite3Writer)
+        numbered = storage.path.with_stem(f"{storage.path.stem}_0")
+        if isinstance(storage, Sqlite3Writer):
+            # SQLite derives the name of its journal from the name under which the file was opened.
+            storage.conn.close()
+            storage.path.rename(numbered)
+            storage.conn = sqlite3.connect(numbered)
+            storage.cursor = storage.conn.cursor()
+        else:
+            storage.path.rename(numbered)
+        storage.path = numbered
 
     def add_topic(self, topic: str, kind: str, offered: Sequence[Qos] = (), definition: str | None = None) -> None:
         """Add a topic, so that its messages can be written.
@@ -120,7 +135,7 @@ class BagWriter:
     ) -> None:
         try:
             self._writer.close()
-            _as_rosbag2_names_it(self.folder, _ENDINGS[self._storage])
+            _add_distribution(self.folder / "metadata.yaml")
         except OSError as failure:
             text = f"[ERROR] [ros2bag]: {self.folder}: {failure.strerror}."
             text += (
@@ -129,20 +144,10 @@ class BagWriter:
             raise Ros2Error(text) from failure
 
 
-def _as_rosbag2_names_it(folder: Path, ending: str) -> None:
-    """Rename the file and the distribution as in rosbag2: bag/bag_0.mcap, jazzy.
-
-    The file metadata.yaml is replaced last. If the metadata is missing, `ros2 bag reindex` restores it.
-    """
-    metadata = folder / "metadata.yaml"
+def _add_distribution(metadata: Path) -> None:
+    """Add the name of the ROS 2 distribution. If metadata.yaml is missing, `ros2 bag reindex` restores it."""
     data = yaml.safe_load(metadata.read_text("utf-8"))
-    (file,) = (path for path in folder.iterdir() if ending in path.suffixes)
-    renamed = file.with_name(file.name.replace(ending, f"_0{ending}", 1))
-    information = data[INFORMATION]
-    information["relative_file_paths"] = [renamed.name]
-    information["files"][0]["path"] = renamed.name
-    information["ros_distro"] = os.environ.get("ROS_DISTRO", "jazzy")
+    data[INFORMATION]["ros_distro"] = os.environ.get("ROS_DISTRO", "jazzy")
     new = metadata.with_suffix(".yaml.tmp")
     new.write_text(yaml.safe_dump(data, sort_keys=False), "utf-8")
-    file.rename(renamed)
     new.replace(metadata)

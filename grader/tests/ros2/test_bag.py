@@ -118,6 +118,8 @@ def test_a_killed_recording_is_made_whole(quiet: World, storage: str, ending: st
     quiet.run("while [ $(stat -c %s bag/bag* | sort -n | tail -1) -lt 10000 ]; do sleep 0.1; done")
     quiet.run("sleep 2")
     recorder.stop(signal.SIGKILL)
+    # The reindex of rosbag2 finds only files with a number.
+    assert (quiet.home / f"bag/bag_0{ending}").is_file()
     refused = quiet.run("ros2 bag info bag")
     assert refused.code == 1
     assert "ros2 bag reindex bag" in refused.stderr
