@@ -55,7 +55,7 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
             print(f"Learn here: {place.address.url}", flush=True)
             for line in elsewhere(place.address.port, os.environ):
                 print(line, flush=True)
-            print("Press Ctrl-C to stop it.", flush=True)
+            print("Press Ctrl-C to stop serving the page.", flush=True)
             Thread(target=_pass_on, args=(connection, events), daemon=True).start()
             with suppress(ConnectionError):
                 grading.run(Desk(lambda content: _send(connection, content)), events, workspace)

@@ -51,7 +51,7 @@ def sim(
     given = [("--image", image), ("--view", where if view else None), ("--port", port)]
     options = [text for name, value in given if value is not None for text in (name, str(value))]
     env = users_environment(ros)
-    print(f"turtlesim in {who_hears(env)}. Press Ctrl-C to stop it.", file=sys.stderr, flush=True)
+    print(f"turtlesim in {who_hears(env)}. Press Ctrl-C to stop turtlesim.", file=sys.stderr, flush=True)
     start = interpreter(
         "-m", "grader.view.turtlesim_node", *options, *context.args, python=str(ros.python), env=env, searches=True
     )

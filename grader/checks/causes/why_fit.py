@@ -94,7 +94,10 @@ def _why_radius(fit: Fit) -> tuple[Diagnosis, str] | None:
     if abs(value - c) <= more or abs(value - math.sqrt(abs(c))) <= more:
         return RADIUS_OF_C
     if 0.0 < value - radius <= 4.0 * fit.arc.noise_m:
-        return "extremes-for-centre", "A radius from the outermost points alone contains all their noise."
+        return (
+            "extremes-for-centre",
+            "A radius that is computed only from the outermost points contains all the noise of these points.",
+        )
     return None
 
 

@@ -66,7 +66,7 @@ class Rate:
     tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error of the mean rate.")
     min_interval_s: float = number(at_least=0, about="The shortest interval between two arrivals.")
     max_interval_s: float = number(
-        above=0, about="The longest interval between two arrivals, and from the last one to the end."
+        above=0, about="The longest interval between two arrivals, and from the last arrival to the end."
     )
     first_within_s: float = number(3.0, above=0, about="The maximum time from the start to the first arrival.")
 
