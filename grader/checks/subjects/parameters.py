@@ -89,8 +89,8 @@ def sets_parameter(evidence: Evidence, params: SetsParameter) -> Finding:
             return crash_finding(evidence, crash, end_observed(evidence), expected)
         observed = f"The node did not answer when {name} was set."
         text = (
-            "A node answers while rclpy.spin runs. Something blocks its callbacks, or its parameter services are "
-            "turned off."
+            "A node answers while rclpy.spin runs. Something blocks the node's callbacks, or the node's parameter "
+            "services are turned off."
         )
         return failed(observed, expected, Cause("no-response", text, where))
     successful, reason = result["successful"], result["reason"].strip()
