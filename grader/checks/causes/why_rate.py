@@ -86,6 +86,17 @@ def why_sleep_in_callback(evidence: Evidence) -> Cause | None:
     return Cause("sleep-in-callback", text, found[1])
 
 
+def why_rate_in_callback(evidence: Evidence) -> Cause | None:
+    """Return the cause if a callback calls sleep and the node creates a rate, else None."""
+    found = _made_in_callback(evidence, "sleep") if evidence.code.calls("create_rate") else None
+    if found is None:
+        return None
+    text = (
+        "sleep of a rate returns when rclpy.spin calls the timer of the rate, but rclpy.spin waits for this callback."
+    )
+    return Cause("sleep-in-callback", text, found[1])
+
+
 def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:
     """Return the cause if one function calls `call` in as many lines as there are messages per period, else None."""
     for module in evidence.code.modules:

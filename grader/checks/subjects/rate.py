@@ -15,6 +15,7 @@ from grader.checks.causes.why_rate import (
     sends_each_time,
     why_often,
     why_publishers_grow,
+    why_rate_in_callback,
     why_several_calls,
     why_sleep_in_callback,
     why_timers_grow,
@@ -189,6 +190,9 @@ def _few(evidence: Evidence, params: Rate, what: Subject, measured: Measured, ex
     slow = _slow_timer(evidence, params, amount)
     if slow is not None:
         return failed(observed, expected, slow)
+    asleep = why_rate_in_callback(evidence)
+    if asleep is not None:
+        return failed(observed, expected, asleep)
     if amount == 1:
         cause = f"A timer calls a method repeatedly, so that {what.call} is called more than once."
         stop = cancelled(evidence)
