@@ -39,7 +39,6 @@ SHOWN_BY_TESTS = {
     "service-not-called": "checks/subjects/test_services.py",
     "slow-stop": "checks/subjects/test_running.py",
     "unsteady-tests": "checks/subjects/test_tests_run.py",
-    "wrong-speed": "checks/subjects/test_services.py",
     "square-gap": "checks/subjects/test_square.py",
     "too-soon": "checks/subjects/test_square.py",
     "unreadable": "checks/test_judge.py",
