@@ -146,7 +146,7 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
         "The distance is the sum of these steps."
     )
     if holds(np.cumsum(np.abs(np.diff(x)) + np.abs(np.diff(y))), lambda line: line.numbers["distance"]):
-        cause = f"This is the sum of all dx and dy, without their signs. {cause}"
+        cause = "This is the sum of all dx and dy, without signs. A step is the square root of dx * dx + dy * dy."
     return failed(observed, expected, Cause("wrong-distance", cause, where))
 
 
