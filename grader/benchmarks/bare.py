@@ -1,4 +1,4 @@
-"""The two parts of F, the unit of cost: a bare colcon build of a package, and a bare process with one rclpy node."""
+"""The two costs that make up the unit F: a bare colcon build of a package, and a bare process with one rclpy node."""
 
 from __future__ import annotations
 

@@ -141,7 +141,7 @@ def _ready_s(pid: int) -> float:
 
 
 def _disks(pid: int) -> dict[int, tuple[int, int]]:
-    """Return the bytes and files on each writable disk of the cell, by device.
+    """Return the number of bytes and the number of files on each writable disk of the cell, by device.
 
     The result is empty for a process outside the cell.
     """

@@ -1,4 +1,4 @@
-"""Runs of a learner's node, by name: the commands that arrived, and the motion of the turtle."""
+"""Invented recordings of a learner's node, keyed by name. Each has commands and the motion of the turtle."""
 
 from __future__ import annotations
 

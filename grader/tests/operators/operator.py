@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Package:
-    """A package (contents by path), and the path of the node's file, which the operators for source code change."""
+    """A package (contents by path), and the path of the node's file, which the operators on source code change."""
 
     files: Mapping[str, str]
     source: str

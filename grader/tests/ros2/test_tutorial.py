@@ -28,7 +28,7 @@ BIN = Path(sys.executable).parent
 
 
 class Terminal:
-    """A bash on a terminal, as after `source .venv/bin/activate`."""
+    """A bash shell on a terminal, in the state in which `source .venv/bin/activate` leaves it."""
 
     def __init__(self, home: Path, domain: int) -> None:
         cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
