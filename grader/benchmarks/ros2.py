@@ -1,9 +1,9 @@
-"""Measure `ros2 topic list` with a running turtlesim, and `ros2 interface show`, relative to a bare rclpy node.
+"""Measure commands of `ros2` and their completion, beside a running turtlesim, relative to a bare rclpy node.
 
     python -m grader.benchmarks.ros2 [--times N]
 
-Everything is measured in one run. The measurements alternate, so that other load affects all of them. The benchmark
-also prints how often the list of topics was complete.
+Everything is measured in one run. The measurements alternate, so that other load affects all of them. The first command
+starts the daemon, which the later ones use. The benchmark also prints how often the lists of topics were complete.
 """
 
 from __future__ import annotations
@@ -24,8 +24,18 @@ from grader.ros import installation, underlay
 _ROS2 = str(Path(sys.executable).with_name("ros2"))
 _NODE = "import rclpy; rclpy.init(); node = rclpy.create_node('bare'); node.destroy_node(); rclpy.shutdown()"
 _COMPLETE = "/parameter_events\n/rosout\n/turtle1/cmd_vel\n/turtle1/color_sensor\n/turtle1/pose\n"
-AIM_S = {"topic list": 0.8, "interface show": 0.25}
-"""The aims for the wall time on an idle machine (s)."""
+_TAB = "ros2 topic echo /tur"
+COMMANDS = {
+    "topic list": ["topic", "list"],
+    "topic list --no-daemon": ["topic", "list", "--no-daemon"],
+    "interface show": ["interface", "show", "geometry_msgs/msg/Twist"],
+    "pkg list": ["pkg", "list"],
+    "--help": ["--help"],
+}
+AIMS = {"topic list": 1.0, "topic list --no-daemon": 1.6, "interface show": 0.15, "pkg list": 0.15, "--help": 0.15}
+"""The aims for the wall time on an idle machine, divided by the wall time of the bare node."""
+AIM_TAB_S = 0.15
+"""The aim for the completion of a topic (s)."""
 
 
 def main() -> None:
@@ -38,39 +48,56 @@ def main() -> None:
         user = {"HOME": home, "PATH": os.environ.get("PATH", "/usr/bin:/bin")}
         # The grader does not assign this domain to a user.
         env = installation.users_environment(ros, user, domain=0)
-        commands = {
-            "topic list": [_ROS2, "topic", "list"],
-            "interface show": [_ROS2, "interface", "show", "geometry_msgs/msg/Twist"],
-            "bare rclpy node": interpreter("-c", _NODE, python=str(ros.python), searches=True).argv,
+        runs = {
+            **{name: ([_ROS2, *words], env) for name, words in COMMANDS.items()},
+            "Tab": ([_ROS2], {**env, **_completing(_TAB)}),
+            "bare rclpy node": (interpreter("-c", _NODE, python=str(ros.python), searches=True).argv, env),
         }
         with subprocess.Popen(
-            [_ROS2, "run", "turtlesim", "turtlesim_node"], env=env, stderr=subprocess.PIPE, text=True
+            [_ROS2, "run", "turtlesim", "turtlesim_node"],
+            env=env,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
         ) as turtlesim:
             assert turtlesim.stderr is not None
             while "Spawning turtle" not in turtlesim.stderr.readline():
                 pass
             try:
-                _measure(commands, env, times)
+                _measure(runs, times)
             finally:
-                turtlesim.send_signal(signal.SIGINT)
+                os.killpg(turtlesim.pid, signal.SIGINT)  # as Ctrl-C does: `ros2 run` itself waits for the node
+                subprocess.run([_ROS2, "daemon", "stop"], env=env, stdout=subprocess.DEVNULL, check=False)
 
 
-def _measure(commands: dict[str, list[str]], env: dict[str, str], times: int) -> None:
-    wall: dict[str, list[float]] = {name: [] for name in commands}
-    complete = 0
+def _completing(line: str) -> dict[str, str]:
+    """Return the variables with which a shell asks for the completions of this line."""
+    return {
+        "_ARGCOMPLETE": "1",
+        "_ARGCOMPLETE_STDOUT_FILENAME": "/dev/stdout",
+        "COMP_LINE": line,
+        "COMP_POINT": str(len(line)),
+    }
+
+
+def _measure(runs: dict[str, tuple[list[str], dict[str, str]]], times: int) -> None:
+    wall: dict[str, list[float]] = {name: [] for name in runs}
+    complete = dict.fromkeys(("topic list", "topic list --no-daemon", "Tab"), 0)
     for _ in range(times):
-        for name, argv in commands.items():
+        for name, (argv, env) in runs.items():
             begun = time.monotonic()
             done = subprocess.run(argv, env=env, capture_output=True, text=True, check=True)
             wall[name].append(time.monotonic() - begun)
-            complete += name == "topic list" and done.stdout == _COMPLETE
+            if name in complete:
+                complete[name] += done.stdout == _COMPLETE or (name == "Tab" and "/turtle1/pose" in done.stdout)
     bare_s = statistics.median(wall["bare rclpy node"])
-    print(f"{'':18}{'median s':>10}{'longest s':>11}{'/ bare node':>13}{'aim s':>8}")
+    print(f"{'':24}{'median s':>10}{'longest s':>11}{'/ bare node':>13}{'aim':>10}")
     for name, seconds in wall.items():
         middle = statistics.median(seconds)
-        aim = f"{AIM_S[name]:8.2f}" if name in AIM_S else ""
-        print(f"{name:18}{middle:10.3f}{max(seconds):11.3f}{middle / bare_s:13.2f}{aim}")
-    print(f"\n`topic list` was complete {complete} times of {times}.")
+        aim = f"{AIMS[name]:10.2f}" if name in AIMS else f"{AIM_TAB_S:8.2f} s" if name == "Tab" else ""
+        print(f"{name:24}{middle:10.3f}{max(seconds):11.3f}{middle / bare_s:13.2f}{aim}")
+    for name, count in complete.items():
+        print(f"`{name}` was complete {count} times of {times}.")
 
 
 if __name__ == "__main__":
