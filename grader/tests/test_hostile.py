@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
     from grader.evidence.evidence import Evidence
 
+UNKNOWN = "_NODE_NAME_UNKNOWN_"
+"""The name of a node in rclpy while only its endpoints are known."""
 EXERCISE = "03-circle-publisher"
 ATTACKS = read_attacks()
 WAYS = ("defended", "as-user", "undefended")
@@ -212,8 +214,11 @@ def test_without_its_defence_a_check_would_pass(attack: Attack, runs: Runs) -> N
 
 
 def is_double(node: str) -> bool:
-    """Return whether a student's node has the name of a node of the grader."""
-    return node.endswith(NAMESAKE) or node.startswith(OWN_NAMESPACE)
+    """Return whether a student's node has the name of a node of the grader, or its name has not arrived yet.
+
+    DDS announces the endpoints of a participant before the name of its node.
+    """
+    return node.endswith((NAMESAKE, UNKNOWN)) or node.startswith(OWN_NAMESPACE)
 
 
 @pytest.mark.exhaustive
