@@ -6,6 +6,7 @@ import os
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING
 
 from grader.checks.exercises import exercise_of_folder, find_exercise
@@ -80,7 +81,7 @@ def begin_message(begun: Begun) -> str:
         f"The lesson:           {lesson}",
         "Grade your work:      grader check",
         "Grade every save:     grader watch",
-        f"In each new terminal: source {_setup_file()}",
+        f"In each new terminal: source {quote(str(_setup_file()))}",
     ]
     return "\n".join(lines)
 

@@ -15,6 +15,7 @@ import tempfile
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Literal
 
 from grader.common.private_folder import private_folder
@@ -94,7 +95,7 @@ def _why_none(env: Mapping[str, str]) -> str:
     if made is not None:
         return (
             f"This course was set up for the ROS 2 in {made}, which is not sourced in this terminal. "
-            f"Type: source {made}/setup.bash"
+            f"Type: source {quote(f'{made}/setup.bash')}"
         )
     distro = env.get("ROS_DISTRO")
     found = f"ROS 2 {distro.capitalize()} is sourced, and no" if distro and distro != DISTRO else "No"

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Literal
 
 from grader.common import package_managers, xdg
@@ -127,7 +128,7 @@ def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None)
     elif os.path.realpath(stamp.ros) == os.path.realpath(now):
         yield Line("set-up", "matches the lock file")
     elif now == bootstrap.WHEELS:
-        todo = f"source {stamp.ros}/setup.bash; or make demo, for the course's own ROS 2"
+        todo = f"source {quote(f'{stamp.ros}/setup.bash')}; or make demo, for the course's own ROS 2"
         yield Line("set-up", f"made for {made_for}, which is not sourced", "broken", todo)
     else:
         observed = f"made for {made_for}, and {now} is sourced and used"

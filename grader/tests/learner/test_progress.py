@@ -104,6 +104,14 @@ def test_start_adds_missing_files_and_overwrites_nothing(home: Path) -> None:
     assert (package / "setup.py").read_text() == "mine"
 
 
+@pytest.mark.usefixtures("home")
+def test_start_quotes_the_path_that_a_new_terminal_sources(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.prefix", "/home/ada/my course/.venv")
+    monkeypatch.setenv("SHELL", "/bin/bash")
+    said = steps.begin_message(steps.start("01", None))
+    assert said.endswith("In each new terminal: source '/home/ada/my course/.venv/setup.bash'")
+
+
 def test_start_lists_lines_that_a_later_step_needs_in_package_files(home: Path) -> None:
     steps.start("01", None)
     package = home / "ros2_ws/src/my_robot_controller"
