@@ -11,7 +11,7 @@ PANEL = "For authors"
 
 
 def add_to(app: typer.Typer) -> None:
-    """Add these commands to `app`."""
+    """Add `grader release` and `grader validate` to the typer application `app`."""
     app.command(epilog="Example: grader release --to ../for-students", rich_help_panel=PANEL)(release)
     app.command(epilog="Example: grader validate 03-circle-publisher", rich_help_panel=PANEL)(validate)
 

@@ -1,4 +1,4 @@
-"""Write docs/kinds.md, which lists every kind of check with its parameters, from the registry of kinds.
+"""Write docs/kinds.md, the page that lists every kind of check with its parameters.
 
     python -m grader.authoring.kinds_page [--check]
 
@@ -80,7 +80,10 @@ def _contents() -> str:
 
 
 def _examples() -> dict[str, tuple[str, CheckSpec]]:
-    """Map each kind to the first step and check of this kind in the course. Raises UsageError for an unused kind."""
+    """Map each kind to the first check of this kind in the course and to its step.
+
+    Raises UsageError if the course has no check of a kind.
+    """
     found: dict[str, tuple[str, CheckSpec]] = {}
     for step, file in catalogue().items():
         exercise = load_exercise(file)
@@ -121,7 +124,7 @@ def unit_of(parameter: str) -> str:
 
 
 def _check(kind: Kind[Any], spec: CheckSpec) -> Iterable[str]:
-    """Yield the lines of the check as an author would write them. Default values of the kind are omitted."""
+    """Yield the lines of exercise.toml that define the check. Parameters with their default values are omitted."""
     yield "[[check]]"
     yield f"id = {_toml(spec.id)}"
     yield f"kind = {_toml(spec.kind)}"

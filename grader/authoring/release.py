@@ -4,8 +4,8 @@
 
 First, source notebooks are updated from the files and checks of the solution. Then each marked region of the solution
 is replaced with the text that students start from (grader/exercise/markers.py). Notebooks are converted in the same way
-as by nbgrader (grader/notebook/released.py). All other files are copied. A file that would be empty is not written,
-because students create that file themselves.
+as nbgrader converts them (grader/notebook/released.py). All other files are copied. A file that would be empty without
+its solution is not written, because students create this file themselves.
 """
 
 from __future__ import annotations
@@ -48,11 +48,11 @@ class ReleasedFile:
 
 
 def released(solution: Path) -> dict[str, ReleasedFile]:
-    """Return the files that students start from, by their POSIX paths.
+    """Return the files that students start from, as a dictionary whose keys are POSIX paths.
 
     `solution` is the folder of a step in solutions/.
 
-    Raises UsageError with file and line if markers are wrong or the result cannot be parsed.
+    Raises UsageError, which names the file and the line, if a marker is wrong or a released file cannot be parsed.
     """
     files: dict[str, ReleasedFile] = {}
     found = _read(solution)
@@ -123,7 +123,7 @@ def _stale_step(solution: Path, exercise: Path) -> list[str]:
 
 
 def release_file(data: bytes, path: str, name: str) -> bytes | None:
-    """Return the released content of a file, or None if the student creates the file. Error messages contain `name`."""
+    """Return the released content of a file, or None if the student creates the file. Messages call the file `name`."""
     if path.endswith(RECORDED):
         return None
     if path.endswith(".ipynb"):

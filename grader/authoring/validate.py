@@ -35,7 +35,7 @@ _CODE = re.compile(r"^```.*?^```|`[^`\n]*`", re.MULTILINE | re.DOTALL)
 def validate(
     names: list[str], tell: Callable[[str], None] = lambda _: None, *, course: Path | None = None
 ) -> list[str]:
-    """Return the problems of these exercises (or of all exercises if `names` is empty), one sentence per problem.
+    """Return the problems of the exercises in `names` (or of all exercises if `names` is empty), as one sentence each.
 
     `tell` is called with progress messages. `course` is the folder course/; the default is the folder of this checkout
     or installation.

@@ -1,10 +1,11 @@
-"""Measure the most important costs in one run, and print a table with their aims.
+"""Measure the most important costs in one run, and print a table of the costs and the values to aim for.
 
     python -m grader.benchmarks.all [--times N] [--class N] [--sync N]
 
-F is the wall time of a bare `colcon build` of the package plus that of a bare process with one rclpy node, as in
-grader.benchmarks.check. F is measured again before each cost, so that other programs slow down F and the cost alike.
-The first line shows the load of the machine. Results measured on a busy machine can be compared only with each other.
+F is the sum of two wall times: that of `colcon build` of the package and that of a process with one rclpy node, both
+without the grader. grader.benchmarks.check uses the same F. F is measured again before each cost, so that other
+programs slow down F and the cost alike. The first line shows the load of the machine. Results measured on a busy
+machine can be compared only with each other.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ _NODE = "my_robot_controller/draw_circle.py"
 
 @dataclass(frozen=True)
 class Row:
-    """A row of the table. `value` and `aim` have the same unit. A value up to the aim is good."""
+    """A row of the table. `value` and `aim` have the same unit. A value is good if it is at most the aim."""
 
     name: str
     value: float

@@ -1,4 +1,4 @@
-"""The two costs that make up the unit F: a bare colcon build of a package, and a bare process with one rclpy node."""
+"""The two parts of the unit F: a `colcon build` of a package and a process with one rclpy node, without the grader."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _COLCON = "import sys; from colcon_core.command import main; sys.exit(main())"
 
 
 def bare_costs(submission: Path, folder: Path) -> dict[str, Cost]:
-    """Measure a bare build and a bare node in an empty folder. The unit of cost F is the sum of the two wall times."""
+    """Measure a build and a node without the grader, in an empty folder. F is the sum of the two wall times."""
     ros = with_turtlesim(find_ros())
     env = environment(ros, home=folder)
     opened = open_submission(submission)

@@ -11,12 +11,12 @@ benchmark prints how often each of these statements is true:
 - at all: any failed check names the cause in this way;
 - false: a failed check names a wrong cause. A diagnosis that only repeats what was observed does not count.
 
-Each statement is counted twice: according to the diagnoses that the operators expect, and according to facts without
-diagnoses (the difference between the two packages, the source and the recording; grader/tests/operators/facts.py). The
-benchmark also lists each wrong package whose report missed the cause, with the difference from the correct package.
-`--keep` stores recordings, and `--again` judges stored recordings again without running anything. If a run with
-`--keep` is stopped, the next run continues where it stopped. At the end, the benchmark checks a few wrong packages
-without and with `--explain`, and prints the ratio of the CPU times.
+Each statement is checked in two ways: against the diagnoses that the operators expect, and against facts that do not
+depend on diagnoses (the difference between the two packages, the source and the recording;
+grader/tests/operators/facts.py). The benchmark also lists each wrong package whose report missed the cause, with the
+difference from the correct package. `--keep` stores recordings, and `--again` judges stored recordings again without
+running anything. If a run with `--keep` is stopped, the next run continues where it stopped. At the end, the benchmark
+checks a few wrong packages without and with `--explain`, and prints the ratio of the CPU times.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ OBSERVATIONS = frozenset(
 
 @dataclass(frozen=True)
 class Judged:
-    """A wrong package with the outcomes of its checks, and the duration of judging it (s)."""
+    """A wrong package with the outcomes of its checks, and the time that judging the package took (s)."""
 
     made: Made
     evidence: Evidence
@@ -101,7 +101,7 @@ class Judged:
 
     @property
     def contradicted(self) -> list[str]:
-        """The statements that contradict a fact."""
+        """The statements of the report that contradict a fact."""
         return [sentence for outcome in self.failed for sentence in self.facts.false(outcome)]
 
     def marks(self) -> dict[str, bool]:
@@ -179,11 +179,11 @@ def again(kept: Path) -> Judged:
 
 
 def cost_of_explain(mades: Iterable[Made], folder: Path) -> float:
-    """Return the CPU time of checking these packages with their causes tested, as a multiple of that without."""
+    """Return the CPU time of `grader check --explain` divided by the CPU time of `grader check` for these packages."""
     with_s = without_s = 0.0
     for made in mades:
         check = [str(GRADER), "check", str(written(made, folder)), "--exercise", made.exercise, "--clock", "simulated"]
-        # A check of a wrong package exits with 1.
+        # `grader check` exits with code 1 if the package is wrong.
         without_s += cost(["sh", "-c", '"$@" || true', "sh", *check]).cpu_s
         with_s += cost(["sh", "-c", '"$@" || true', "sh", *check, "--explain"]).cpu_s
     return with_s / without_s

@@ -1,8 +1,8 @@
 """Count the CPU time of a command and of all its descendants in a control group.
 
-The kernel adds the CPU time of a process to that of its parent when the parent waits for it. No process waits for the
-processes that are still running when a cell ends, so without a control group, most of the CPU time of a build or trial
-can be missing.
+The kernel adds the CPU time of a process to the CPU time of its parent when the parent waits for the process. No
+process waits for the processes that are still running when a cell ends, so without a control group, most of the CPU
+time of a build or trial can be missing.
 
 This module needs control groups of version 1. In version 2, a process is in only one group, and each cell has a group.
 """
@@ -37,7 +37,7 @@ class CpuGroup:
         return ControlGroup((self.folder,)).joined(argv) if self.folder else list(argv)
 
     def wait(self) -> None:
-        """Wait until no process of the group is running, but only for a short time."""
+        """Wait a short time for all processes of the group to exit."""
         until = time.monotonic() + _ENDED_S
         while self.folder and (self.folder / "cgroup.procs").read_text().strip() and time.monotonic() < until:
             time.sleep(0.01)

@@ -1,4 +1,4 @@
-"""Measure how long it takes to create a page (relative to F) and to show it in a browser, also for a class of 200.
+"""Measure how long it takes to create a page (relative to F) and to show the page, also for a class of 200 students.
 
     python -m grader.benchmarks.html [--times N] [--submission FOLDER]
 
@@ -29,7 +29,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 _GRADER = str(Path(sys.executable).with_name("grader"))
 _CLASS = 200
 
-# This script works like `grader check`, then creates the page, and prints the time for this (s) and the size.
+# This script works like `grader check`, then creates the page, and prints the time for creating it (s) and its size.
 _PAGE = """
 import sys, time
 from pathlib import Path

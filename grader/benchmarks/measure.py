@@ -1,4 +1,4 @@
-"""Measure a command: wall time and CPU time with all its descendants, and the peak memory of the command itself."""
+"""Measure a command: its wall time, its CPU time including all descendants, and its peak memory without descendants."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ class Cost:
 def cost(argv: Sequence[str], *, env: Mapping[str, str] | None = None, cwd: Path | None = None) -> Cost:
     """Run a command until it exits, and return its cost.
 
-    Without a control group, the CPU time does not include processes in cells for which no process waited.
+    Without a control group, the CPU time does not include the processes that were still running when their sandbox cell
+    ended.
 
     Raises:
         RuntimeError: the command failed.

@@ -1,12 +1,13 @@
-"""Measure the cost of autograding a notebook relative to its parts, and of a class relative to nbgrader alone.
+"""Measure the cost of autograding a notebook relative to its parts, and the cost of a class relative to nbgrader alone.
 
     python -m grader.benchmarks.notebooks [--repeat N] [--class N]
 
 In one run on the same machine, this benchmark measures:
 
 - `nbgrader autograde` of the solved notebook of step 03;
-- the same for a notebook with empty cells, which is nbgrader's own cost (imports, a kernel, the database);
-- one `grader check` of the package.
+- `nbgrader autograde` of the notebook with empty cells, which shows nbgrader's own cost (imports, a kernel, the
+  database);
+- `grader check` of the package.
 
 Autograding the solved notebook should take at most 1.5 times as long as the other two measurements together. Then a
 class is measured: nbgrader autogrades the submissions one by one, and `grader gradebook sync` grades several in

@@ -2,8 +2,8 @@
 
     python -m grader.benchmarks.open_page [--times 5] [--idle 30]
 
-`grader open` and `grader watch` grade the same saves, in pairs. Each save waits until everything is idle. The page runs
-in a real browser, whose CPU time is not counted.
+`grader open` and `grader watch` grade the same saves, in pairs. The benchmark waits until everything is idle before
+each save. The page runs in a real browser, whose CPU time is not counted.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def main() -> None:
 
 
 def _begun(stack: ExitStack, home: Path) -> Course:
-    """Return a course in a new home folder, in which the step has been started."""
+    """Start the step with `grader start` in a new home folder, and return the course in this folder."""
     home.mkdir()
     learner = stack.enter_context(contextmanager(course)(home))
     learner.run("start", CIRCLE)
@@ -105,7 +105,7 @@ def _pair(
     _rest()
     begun = time.time()
     watched.save(old, new)
-    # A proof prints the report again, so the line must be that of this save.
+    # `grader watch` prints the report again when a cause is confirmed, so the line must belong to this save.
     screen.expect(line)
     return page_s, time.time() - begun
 
@@ -125,7 +125,7 @@ def _screen(learner: Course) -> Iterator[pexpect.spawn[str]]:
 
 
 def _rest() -> None:
-    """Wait until the descendants of this process are idle, so the next trial is prepared and no fix is being tried.
+    """Wait until all descendants of this process are idle. Then the next trial is prepared, and no fix is being tested.
 
     A learner also needs some seconds between two saves.
     """

@@ -3,8 +3,8 @@
     python -m grader.benchmarks.reading [--times N] [--submission FOLDER]
 
 The submission is graded once. After that, the files of the submission are read repeatedly, alternately in child
-processes and in the process of the benchmark. The limit applies to CPU time, because CPU time depends less on the load
-of the machine.
+processes and in the process of the benchmark. The limit of this benchmark applies to CPU time, because CPU time depends
+less on the load of the machine than wall time does.
 """
 
 from __future__ import annotations

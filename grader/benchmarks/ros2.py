@@ -1,9 +1,10 @@
-"""Measure commands of `ros2` and their completion, beside a running turtlesim, relative to a bare rclpy node.
+"""Measure `ros2` commands and their completion while turtlesim runs, relative to a process with one rclpy node.
 
     python -m grader.benchmarks.ros2 [--times N]
 
 Everything is measured in one run. The measurements alternate, so that other load affects all of them. The first command
-starts the daemon, which the later ones use. The benchmark also prints how often the lists of topics were complete.
+starts the ROS 2 daemon, and all later commands use this daemon. The benchmark also prints how often the lists of topics
+were complete.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ def main() -> None:
     ros = underlay.with_turtlesim(installation.find_ros())
     with tempfile.TemporaryDirectory() as home:
         user = {"HOME": home, "PATH": os.environ.get("PATH", "/usr/bin:/bin")}
-        # The grader does not assign this domain to a user.
+        # The grader does not assign this ROS domain to any user.
         env = installation.users_environment(ros, user, domain=0)
         runs = {
             **{name: ([_ROS2, *words], env) for name, words in COMMANDS.items()},
@@ -71,7 +72,7 @@ def main() -> None:
 
 
 def _completing(line: str) -> dict[str, str]:
-    """Return the variables with which a shell asks for the completions of this line."""
+    """Return the environment variables with which a shell requests the completions of this line."""
     return {
         "_ARGCOMPLETE": "1",
         "_ARGCOMPLETE_STDOUT_FILENAME": "/dev/stdout",

@@ -12,7 +12,7 @@ Out = Annotated[Path, typer.Argument(help="The folder for the pages.", metavar="
 
 
 def add_to(app: typer.Typer) -> None:
-    """Add this command to `app`."""
+    """Add the command `grader book` to the typer application `app`."""
     app.command(rich_help_panel=PANEL, epilog="Example: grader book build/book")(book)
 
 

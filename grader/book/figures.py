@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure of figures.js at the end of the section with this anchor."""
+    """An interactive figure that figures.js draws at the end of the section with this anchor."""
 
     name: str
     anchor: str
@@ -23,5 +23,5 @@ FIGURES = {
 
 
 def figure_html(figure: Figure) -> str:
-    """Return the element for the figure. The script draws the figure in this element."""
+    """Return the HTML element in which figures.js draws the figure."""
     return f'<figure class="explore" data-figure="{figure.name}" hidden></figure>\n'

@@ -110,7 +110,7 @@ def _th_open(_: RendererHTML, _tokens: Sequence[Token], _at: int, _options: Opti
 
 
 def _without_neighbours(tokens: list[Token]) -> list[Token]:
-    """Remove the last line with the links to the neighbouring steps, because the page has its own links."""
+    """Remove the last line, which links to the previous and the next step, because the page has its own links."""
     if len(tokens) > 3 and tokens[-2].type == "inline" and _NEIGHBOURS.match(tokens[-2].content):
         tokens = tokens[:-3]
         if tokens[-1].type == "hr":
@@ -138,7 +138,7 @@ def _add_anchors(tokens: list[Token]) -> None:
 
 
 def _link(tokens: list[Token]) -> None:
-    """Replace links to lessons with links to their pages, and paragraphs that contain only a picture with figures."""
+    """Make links to lessons point to their pages, and make a figure of each paragraph that contains only a picture."""
     for token in _inner(tokens):
         if token.type == "link_open":
             token.attrSet("href", _LESSON_LINK.sub(rf"\1{PAGE}\2", str(token.attrs["href"])))
@@ -149,7 +149,7 @@ def _link(tokens: list[Token]) -> None:
 
 
 def _with_figure(tokens: list[Token], figure: Figure) -> list[Token]:
-    """Insert the figure at the end of its section, or else at the end of the lesson."""
+    """Insert the figure at the end of its section, or at the end of the lesson if the lesson has no such section."""
     begin = next((at for at, token in enumerate(tokens) if token.attrs.get("id") == figure.anchor), len(tokens))
     heads = (at for at, token in enumerate(tokens) if at > begin and token.type == "heading_open")
     end = next(heads, len(tokens))

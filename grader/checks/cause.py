@@ -25,7 +25,7 @@ class Cause:
     fix: tuple[Edit, ...] = ()
 
     def at(self, where: Where | None) -> Cause:
-        """Return the cause with this place in the code added, unless the cause already has a place."""
+        """Return the cause with this place in the code. A cause that already has a place is returned unchanged."""
         return self if self.where is not None else replace(self, where=where)
 
     def fixed_by(self, edits: tuple[Edit, ...]) -> Cause:

@@ -1,4 +1,4 @@
-"""A small change to the files of a submission that would fix a mistake. The grader tries the change."""
+"""A small change that would fix a mistake in the files of a submission. The grader tests the change in a copy."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def at(where: Where | None, old: str, new: str) -> tuple[Edit, ...]:
 
 
 def applied(files: Mapping[str, bytes], edits: Sequence[Edit]) -> dict[str, bytes] | None:
-    """Return the files after all edits, or None if the text that an edit replaces does not exist."""
+    """Return the files after all edits, or None if a file does not contain the text that an edit replaces."""
     changed = dict(files)
     # Edit from the last line to the first, so that an inserted line does not move the lines of later edits.
     for edit in sorted(edits, key=lambda each: -each.line):
@@ -60,7 +60,7 @@ def difference(before: Mapping[str, bytes], after: Mapping[str, bytes]) -> str:
 
 
 def _replaced(line: str, edit: Edit) -> str | None:
-    """Return the line with the first `old` replaced.
+    """Return the line in which the first occurrence of `edit.old` is replaced with `edit.new`.
 
     If possible, replace a whole name rather than part of a longer name.
     """

@@ -17,9 +17,11 @@ if TYPE_CHECKING:
 
 
 def find_exercise(name: str, course: Path | None = None) -> Exercise:
-    """Return the exercise with the id `name`, or the only one whose id starts with `name`, such as "03" or "3".
+    """Return the exercise with the id `name`, or the only exercise whose id starts with `name`.
 
-    Raises UsageError if no exercise matches, or more than one exercise does.
+    The names "3" and "03" mean the same exercise.
+
+    Raises UsageError if no exercise or more than one exercise matches.
     """
     files = catalogue(course)
     name = f"{int(name):02}" if name.isascii() and name.isdigit() else name
@@ -49,9 +51,9 @@ def exercise_of_folder(path: Path, course: Path | None = None) -> Exercise | Non
 def load_exercise(path: Path) -> Exercise:
     """Return the exercise in this file, or in the file exercise.toml of this folder.
 
-    Raises UsageError with every problem in the file: the key, its value, and the allowed values.
+    Raises UsageError, which lists every problem in the file: the key, its value, and the allowed values.
     """
-    from grader.checks.kinds import KINDS  # imported here because it imports all checks
+    from grader.checks.kinds import KINDS  # imported here because this module imports all checks
 
     file = path / FILE_NAME if path.is_dir() else path
     try:
@@ -65,9 +67,9 @@ def load_exercise(path: Path) -> Exercise:
 
 
 def exercise_from(sources: Sources) -> Exercise:
-    """Return an exercise of the course with an instructor's private checks.
+    """Return an exercise of the course, to which an instructor's private checks are added.
 
-    Raises UsageError with every problem in the files.
+    Raises UsageError, which lists every problem in the files.
     """
     from grader.checks.kinds import KINDS
 

@@ -25,7 +25,7 @@ class Judgement:
     """The findings of the checks so far.
 
     `findings` contains a finding for every check. The findings in `settled` are final, because the evidence of their
-    stage was complete. Each other finding says that the node was not run, or that a required check has not passed yet.
+    stage was complete. Any other finding says that the node was not run, or that a required check has not passed yet.
     """
 
     exercise: Exercise
@@ -59,9 +59,9 @@ class Judgement:
 def judge(evidence: Evidence) -> tuple[Outcome, ...]:
     """Return the outcome of every check, in the order of the exercise.
 
-    A check is skipped if a check that it needs did not pass; the message of the skipped check names the first such
-    check. If the machine could not produce the evidence for a check (`evidence.fault`), the status of that check and of
-    every check that needs it is `error`.
+    A check is skipped if a check that it needs did not pass; the message of the skipped check names the first check
+    that did not pass. If the machine could not produce the evidence for a check (`evidence.fault`), the status of that
+    check and of every check that needs it is `error`.
     """
     return judge_so_far(evidence, {}).outcomes
 
@@ -125,7 +125,7 @@ def judge_early(evidence: Evidence) -> Early:
 
 
 def _judges_trial(exercise: Exercise, spec: CheckSpec, trial: str) -> bool:
-    """Return whether the check judges this trial's recording, perhaps from the viewpoint of an additional node."""
+    """Return whether the check judges this trial's recording, either for the trial's node or for an additional node."""
     return KINDS[spec.kind].stage == "trial" and trial in (spec.trial, exercise.trial(spec.trial).beside)
 
 

@@ -80,7 +80,7 @@ class Kind(Generic[P]):
         return None if self.early is None or isinstance(params, Finding) else self.early(evidence, params)
 
     def request(self, evidence: Evidence, values: Mapping[str, Param]) -> Requested | None:
-        """Return what to draw for the requirements of a check with these parameter values, or None."""
+        """Return the requirements of a check with these parameter values in a form that can be drawn, or None."""
         params = self._params(evidence, values)
         return None if self.requested is None or isinstance(params, Finding) else self.requested(evidence, params)
 
@@ -150,7 +150,7 @@ def strings(*, about: str) -> Any:
 
 
 def table(*, about: str, optional: bool = False) -> Any:
-    """Create a field for a table of numbers, strings and booleans. The value is a tuple of names and values.
+    """Create a field for a table of numbers, strings and booleans. The field's value is a tuple of pairs (name, value).
 
     If the field is optional, the default is an empty table.
     """

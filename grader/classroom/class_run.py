@@ -26,7 +26,7 @@ LOOK_S = 0.5
 def run(order: Order, todo: list[Todo], engine: Engine, results: Results, screen: Screen) -> list[Result]:
     """Grade the submissions and write each result as soon as it is ready, in any order.
 
-    Submissions that end with an `error` are graded once more after all others if at least one other submission could be
+    Submissions that end with an `error` are graded once more at the end if at least one other submission could be
     judged. If another submission could be judged, the machine works, so the error occurred by chance or was caused by
     the submission.
 

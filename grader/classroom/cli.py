@@ -26,7 +26,7 @@ class Clock(str, Enum):
 
 
 def add_to(app: typer.Typer) -> None:
-    """Add these commands to `app`."""
+    """Add `grader grade` and `grader gradescope build` to the typer application `app`."""
     app.command(
         rich_help_panel=PANEL,
         epilog="Example: grader grade submitted --exercise 03-circle-publisher --out grades  (then open "

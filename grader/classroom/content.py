@@ -89,7 +89,7 @@ def _of_archive(archive: Path) -> str:
             while file.tell() <= archives.MOST_PACKED and (data := file.read(1024 * 1024)):
                 whole.update(data)
     except (OSError, ValueError) as error:
-        whole.update(f"cannot be read: {error}".encode())  # `read` reports it
+        whole.update(f"cannot be read: {error}".encode())  # `read` reports this error
     return whole.hexdigest()
 
 

@@ -111,7 +111,7 @@ def perform(
     options = Options(in_cell=in_cell, clock=task.clock, seed=task.seed, explain=task.explain, trials_at_once=1)
     try:
         return _with_page(grade(exercise, _submission(task), options, tell, trial=Waiting))
-    except MachineError as error:  # this submission cannot be read here, but others may be
+    except MachineError as error:  # other submissions can still be readable on this machine
         return set_aside(task, str(error))
 
 

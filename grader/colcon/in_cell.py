@@ -3,8 +3,8 @@
 colcon runs the setup.py of a package three times, each time in a new interpreter that imports setuptools and reads the
 metadata of all installed packages again. These imports take most of the CPU time of a build. To avoid this, one process
 does these imports once, before the submission arrives, and forks for each run of setup.py. The fork gets the folder,
-environment, arguments and streams of the process that colcon started. This process then only waits for the exit code of
-the fork. If a fork might behave differently from a new interpreter, no fork is used (`Run.of`).
+environment, arguments and streams of the process that colcon started. The process that colcon started then only waits
+for the exit code of the fork. If a fork might behave differently from a new interpreter, no fork is used (`Run.of`).
 
 This file runs as a separate script. Standard input is the submission, a tar stream that is unpacked into src.
 """
@@ -110,7 +110,7 @@ class Forks:
         theirs.close()
 
     def do(self, run: Run) -> None:
-        """Execute this run in a fork, and exit with its exit code. Return if no fork is available.
+        """Execute this run in a fork, and exit with the fork's exit code. Return if no fork is available.
 
         The caller is a process that colcon has started and that would otherwise become a new interpreter.
         """
@@ -272,7 +272,8 @@ def main() -> None:
     sys.path.pop(0)
     forks = Forks()
     colcon = importlib.import_module("colcon_core.command").main
-    # colcon loads these modules during a build and skips those that fail to load. The package would then be blamed.
+    # During a build, colcon skips these modules if they fail to load, and the package would be blamed. So load them
+    # now.
     for name in ("colcon_core.shell.dsv", "colcon_core.shell.sh", "colcon_core.task.python.build"):
         importlib.import_module(name)
     for name in ("colcon_ros.package_identification.ros", "colcon_ros.task.ament_python.build"):

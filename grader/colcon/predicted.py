@@ -123,7 +123,7 @@ def _is_module(path: str, packages: tuple[str, ...]) -> bool:
 
 
 def _may_look_around(target: str | None, files: Mapping[str, bytes]) -> bool:
-    """Return whether a node may read files that are not modules, or may notice that such files are missing."""
+    """Return whether a node could read files that are not modules, or could notice that such files are missing."""
     file = module_file(target.partition(":")[0], files) if target else None
     if file is None:
         return True

@@ -1,7 +1,7 @@
 """Runner: run `colcon build` on a submission in a cell, and read the result without executing it.
 
-The source enters the cell as a tar stream, and the install tree leaves it as another tar stream. So the build does not
-touch the disk of this machine, and the same stream can later be passed to the cell of the trial.
+The source enters the cell as a tar stream, and the install tree leaves the cell as another tar stream. So the build
+does not touch the disk of this machine, and the same stream can later be passed to the cell of the trial.
 """
 
 from __future__ import annotations
@@ -153,7 +153,8 @@ def _read(done: process.Finished) -> Built:
 def _described(done: process.Finished) -> tuple[Build, bool]:
     """Return the result of the build, and whether its install tree must be discarded."""
     lines = done.stderr[len(_READY) :].decode("utf-8", "replace").splitlines(keepends=True)
-    # colcon warns that the prefix of the wheels is not a colcon install tree. This is unrelated to the submission.
+    # colcon warns that the prefix of the wheels is not a colcon install tree. The warning is unrelated to the
+    # submission.
     log = "".join(line for line in lines if "colcon_ros.prefix_path.ament" not in line)
     out_of = next((name for name, signs in _LIMITS_HIT.items() if any(sign in done.stderr for sign in signs)), None)
     cut = done.timed_out or done.too_much or done.out_of is not None

@@ -1,4 +1,4 @@
-"""Check that a value in a JSON file has the type that the grader writes, because others may have written the file."""
+"""Check that a value in a JSON file has the type that the grader writes. Other programs can change the file."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ else:
 
 
 def load_numpy() -> None:
-    """Import numpy now, for example in a thread while there is time for it."""
+    """Import numpy now rather than on first use, for example in a thread that runs in the background."""
     _NUMPY.load()
 
 

@@ -43,7 +43,7 @@ class Manager(NamedTuple):
     """Debian's name for a newer Python, which is installed if the default Python is too old."""
 
     def packages(self, needs: Iterable[Need]) -> List[str]:
-        """Return this package manager's names for the packages needed."""
+        """Return this package manager's names for the packages that are needed."""
         names = (self._name(need.package) for need in needs)
         return list(dict.fromkeys(name for name in names if name))
 
@@ -136,7 +136,7 @@ def command(manager: Optional[Manager], needs: Sequence[Need], *, root: bool) ->
 
 
 def script(manager: Manager, groups: Sequence[Sequence[Need]]) -> str:
-    """Return shell lines that install each group separately, so that a missing package does not stop the others."""
+    """Return shell lines that install each group separately, so that a missing package stops only its own group."""
     lines = ["export LC_ALL=C DEBIAN_FRONTEND=noninteractive", *([manager.update + " -q"] if manager.update else [])]
     for group in groups:
         words = [_install(manager), manager.quiet, *manager.packages(group)]

@@ -34,7 +34,7 @@ def refusal_in(said: str) -> Optional[str]:
 
 
 def of_the_machine(error: OSError) -> bool:
-    """Return whether the machine has no disk space, memory, files or processes left."""
+    """Return whether the error means that the machine has no disk space, memory, files or processes left."""
     return error.errno in _SCARCE
 
 

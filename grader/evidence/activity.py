@@ -44,7 +44,7 @@ def ended_at_start(recording: Recording) -> bool:
 
 
 def _failed_in_constructor(recording: Recording) -> bool:
-    """Return whether the last traceback in standard error leads through an __init__."""
+    """Return whether the last traceback in standard error contains a call to an __init__ method."""
     _, found, last = recording.stderr.text.rpartition(TRACEBACK)
     return bool(found) and IN_CONSTRUCTOR in last
 

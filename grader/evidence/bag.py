@@ -25,8 +25,8 @@ def write_bag(folder: Path, messages: Sequence[Message], prefixes: Iterable[Path
 
     The folders in `prefixes` contain the .msg files of types that the library rosbags does not know.
 
-    The timestamp is the arrival time on the trial's clock (ns), or 0 for messages from before the scenario. Messages
-    that arrived at the same instant are a nanosecond apart, because readers sort by timestamp.
+    The timestamp is the arrival time on the trial's clock (ns), or 0 for messages from before the scenario. The
+    timestamps of messages that arrived at the same instant are one nanosecond apart, because readers sort by timestamp.
     """
     store = jazzy_types()
     known = list(prefixes)

@@ -99,12 +99,12 @@ class Evidence:
         return self if id_ == self.trial.id else self._views[id_]
 
     def views(self) -> tuple[Evidence, ...]:
-        """Return the evidence once for each trial that was run, and always for the first trial."""
+        """Return one view of the evidence for each trial that was run, and always one for the first trial."""
         ids = [trial.id for trial in self.exercise.trials]
         return tuple(self.from_trial(id_) for id_ in ids if id_ in self.runs or id_ == ids[0])
 
     def with_run(self, run: Run) -> Evidence:
-        """Return the evidence with the result of this trial, including the viewpoints of additional nodes."""
+        """Return the evidence with the result of this trial added, also from the viewpoints of the additional nodes."""
         specs = (self.trial, *self.exercise.beside(self.trial.id))
         return replace(self, runs={**self.runs, **{spec.id: _seen_by(spec, run, specs) for spec in specs}})
 
@@ -173,7 +173,7 @@ class Evidence:
         return trajectory_of(self.recording)
 
     def entry_point(self) -> str | None:
-        """Return the executable's entry point "module:attribute": the installed one, or else the one in setup.py."""
+        """Return the executable's entry point "module:attribute" as it was installed, or else as setup.py has it."""
         executable = self.trial.executable
         if self.build is not None and executable in self.build.entry_points:
             return self.build.entry_points[executable]

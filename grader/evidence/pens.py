@@ -1,4 +1,4 @@
-"""The pens that the turtles had, and the periods in which they had them."""
+"""The pens that the turtles had, and the period in which a turtle had each pen."""
 
 from __future__ import annotations
 

@@ -109,7 +109,7 @@ class Trajectory:
 def driven_from(recording: Recording) -> Pose:
     """Return the pose of the turtle before the first command.
 
-    If this pose is not the start pose, a call by the submission has changed it.
+    If this pose is not the start pose, a call by the submission has moved the turtle.
     """
     before, frames = _before_driving(recording), recording.frames
     if not before:

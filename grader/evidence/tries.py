@@ -11,7 +11,7 @@ Result = Literal["passes", "further", "refuted"]
 
 @dataclass(frozen=True)
 class Try:
-    """One try: the check and its diagnosis, the result, and the change that was tried.
+    """A change that was tested in a copy of the submission: the check, its diagnosis, the change, and the result.
 
     `difference` is a unified diff for instructors only, because the diff gives the solution away.
     """

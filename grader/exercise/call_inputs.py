@@ -55,7 +55,10 @@ class Arc:
 
 @dataclass(frozen=True)
 class PointsInput:
-    """One call to a function with x and y (m): the points of an arc, or given numbers, as lists if `lists` is set."""
+    """One call to a function with the coordinates x and y of points (m): the points of an arc, or given numbers.
+
+    If `lists` is set, the function gets lists instead of arrays.
+    """
 
     id: str
     arc: Arc | None = None

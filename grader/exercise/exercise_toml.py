@@ -57,7 +57,7 @@ FIELD = Allowed(
 
 
 def parse_exercise(data: bytes, name: str, folder: Path, kinds: Mapping[str, KindSpec]) -> Exercise:
-    """Return the exercise in the bytes of an exercise.toml. `name` is the file name that messages use.
+    """Return the exercise that the bytes of an exercise.toml describe. `name` is the file name that messages use.
 
     Raises UsageError, which lists all mistakes.
     """
@@ -65,7 +65,7 @@ def parse_exercise(data: bytes, name: str, folder: Path, kinds: Mapping[str, Kin
 
 
 def parse_tables(top: dict[str, Any], name: str, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) -> Exercise:
-    """Return the exercise in the tables of an exercise.toml. Raises UsageError, which lists all mistakes."""
+    """Return the exercise that the tables of an exercise.toml describe. Raises UsageError, which lists all mistakes."""
     problems: list[str] = []
     top = {**top, "check": expand(top["check"], top.get("trial"))} if "check" in top else top
     exercise = _exercise(Table(top, "", problems), folder, digest, kinds)

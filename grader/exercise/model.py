@@ -112,7 +112,7 @@ class TrialSpec:
 
 @dataclass(frozen=True)
 class Hint:
-    """One `[[hint]]`, for these checks or for the whole exercise.
+    """One `[[hint]]`, for some checks or for the whole exercise.
 
     `part` is the letter of one part of the exercise, such as "b".
     """

@@ -7,7 +7,8 @@
     start = { points = 2 }
 
 creates the checks `eight-entry-point`, `eight-start` and `eight-node-name`. Checks of the first trial have no prefix.
-The titles of these checks begin with `title`. If a key is the name of a check, it changes keys of that check.
+The titles of these checks begin with `title`. A key with the name of a check, such as `start`, changes keys of that
+check.
 """
 
 from __future__ import annotations

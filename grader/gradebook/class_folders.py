@@ -44,11 +44,11 @@ class ClassFolders:
         return Path(self.course.format_path(self.course.submitted_directory, student, step))
 
     def handed_in(self, student: str, step: str) -> Path:
-        """Return the folder of a submission to which the files from its notebook have been added."""
+        """Return the folder that contains a submission together with the files from its notebook."""
         return Path(self.course.root) / CLASS / HANDED_IN / student / step
 
     def autograded(self, student: str, step: str) -> Path:
-        """Return the path of the notebook that autograde ran. There may be no notebook at this path."""
+        """Return the path of the notebook that autograde ran. The notebook at this path does not always exist."""
         return Path(self.course.format_path(self.course.autograded_directory, student, step)) / f"{step}.ipynb"
 
     def submissions(self, steps: Sequence[str]) -> list[tuple[str, str]]:

@@ -15,7 +15,7 @@ kernel = typer.Typer(name="kernel", help="Install the course's kernel for Jupyte
 
 
 def add_to(app: typer.Typer) -> None:
-    """Add these commands to `app`."""
+    """Add the commands for nbgrader, classes and kernels to the typer application `app`."""
     gradebook.command(epilog="Example: grader gradebook sync 03-circle-publisher")(sync)
     gradebook.command(epilog="Example: grader gradebook compare")(compare)
     classes.command(epilog="Example: grader class new ros2-2027 --roster roster.csv")(new)

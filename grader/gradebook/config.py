@@ -1,4 +1,4 @@
-"""The settings for course/nbgrader_config.py, which use the course's folders and additional steps of the grader."""
+"""The settings for course/nbgrader_config.py: the folders of the course, and the grader's additional steps."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
     (root / CLASS).mkdir(mode=0o700, exist_ok=True)  # other users of the machine must not read the gradebook
     folders.db_url = f"sqlite:///{root / CLASS / GRADEBOOK}?timeout={BUSY_S}"
 
-    # exercises/ already exists in git. Let nbgrader create it again.
+    # exercises/ already exists in git. Let nbgrader create the folder again.
     config.GenerateAssignment.force = True
     config.GenerateAssignment.preprocessors = [
         steps.LockCells,

@@ -56,7 +56,7 @@ def withhold_unconfirmed(
 ) -> list[Unconfirmed]:
     """Withhold every score that is not confirmed.
 
-    Return the cells that are now worth 0 points, in the form of `unconfirmed`.
+    Return the cells that are now worth 0 points, in the form in which `unconfirmed` returns them.
     """
     for _, _, grade, _ in _doubts(gradebook, results, steps, unread):
         if grade.auto_score != 0.0 or grade.manual_score is None:

@@ -1,4 +1,4 @@
-"""Converters and the collect step for nbgrader that use only the files that the reader returns."""
+"""nbgrader's converters and collect step, limited to the files that the process for reading submissions returns."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ class BoundedCollect(ExchangeCollect):  # type: ignore[misc, unused-ignore]
     def copy_files(self) -> None:
         """Copy the files as in the base class, except folders that nbgrader cannot have created."""
         self.src_records: list[dict[str, Any]] = [record for record in self.src_records if record["username"]]
-        self.check_owner = False  # it would stop if a student removes a folder at this moment
+        self.check_owner = False  # nbgrader would stop if a student removed a folder now
         super().copy_files()
 
     def do_copy(self, src: str, dest: str, log: Any = None) -> None:  # noqa: ANN401 - as the base class

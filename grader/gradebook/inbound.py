@@ -1,6 +1,6 @@
 """The folders in nbgrader's exchange.
 
-`nbgrader submit` creates such folders, but students can create any other folders.
+`nbgrader submit` creates one folder per submission, but students can create other folders there.
 """
 
 from __future__ import annotations

@@ -71,7 +71,7 @@ def _start(exercise: Exercise, path: str) -> str | None:
 
 
 def _with(exercise: Exercise, files: Mapping[str, bytes], parts: list[Part]) -> dict[str, bytes] | None:
-    """Return the files, completed by the notebook's parts that count, or None if no part counts."""
+    """Return the files together with the parts of the notebook that count, or None if no part counts."""
     whole = {path: data for path, data in files.items() if not path.endswith(".ipynb")}
     if parts and exercise.package and not any(path.rpartition("/")[2] in PACKAGE_FILES for path in whole):
         start = tree.read_folder(starting_point(exercise)).files

@@ -163,7 +163,7 @@ def _put_together(
             graded = graded_folder(exercise, submitted, folders.handed_in(student, step))
             found.append(Found(student, step, graded.parent.resolve() / graded.name))
         except Exception as error:
-            # An error in a student's files must not stop the grading of others.
+            # An error in a student's files must not stop the grading of other submissions.
             if _of_the_machine(error):
                 raise
             why[student, step] = f"it could not be read ({_in_words(error)})"
@@ -172,7 +172,7 @@ def _put_together(
 
 
 def _of_the_machine(error: BaseException | None) -> bool:
-    """Return whether the disk caused the error, and not a student's files."""
+    """Return whether the disk caused the error rather than a student's files."""
     while error is not None:
         if isinstance(error, OSError) and error.errno in OF_THE_DISK:
             return True

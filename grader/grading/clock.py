@@ -4,17 +4,17 @@ The rules, in the order in which they are applied:
 
 1. `--clock simulated` or `--clock wall` sets the clock.
 2. Without these options, a trial starts in simulated time, in which nothing has to wait and no other program can
-disturb
-   the trial. If the source contains a sign that the node may follow wall time, the trial starts in wall time instead
-   (grader.trial.clues).
+   disturb the trial. If the source contains a sign that the node may follow wall time, the trial starts in wall time
+   instead (grader.trial.clues).
 3. A trial in simulated time stops at the first sign that the node follows wall time after all: a thread sleeps,
-   commands arrive while the clock is held, or the node never becomes idle (grader.trial.simulated). Wall time decides
-   then. But if several threads kept the node from becoming idle, this may have happened by chance, so the trial in
-   simulated time is first repeated once.
-4. Wall time also decides if a measured value is near the edge of its tolerance, or if the node did not stop.
-5. If a trial in wall time fails while other programs use the processors, it is repeated while nothing else is graded.
-   A busy machine can make a correct node look wrong, but it cannot make a wrong node look correct. So the first trial
-   that passes counts. If no trial of WALL_TRIALS passes, the trial with the least disturbance counts.
+   commands arrive while the clock is held, or the node never becomes idle (grader.trial.simulated). Then the trial is
+   repeated in wall time. But if several threads kept the node from becoming idle, this may have happened by chance, so
+   the trial is first repeated once in simulated time.
+4. The trial is also repeated in wall time if a measured value is near the edge of its tolerance, or if the node did not
+   stop.
+5. If a trial in wall time fails while other programs use the processors, the trial is repeated while nothing else is
+   graded. A busy machine can make a correct node look wrong, but it cannot make a wrong node look correct. So the first
+   trial that passes counts. If no trial of WALL_TRIALS passes, the trial with the least disturbance counts.
 """
 
 from __future__ import annotations
@@ -119,5 +119,5 @@ def wants_another(attempts: Sequence[Attempt]) -> bool:
 
 
 def that_counts(attempts: Sequence[Attempt]) -> Attempt:
-    """Return the attempt in wall time that counts (rule 5)."""
+    """Return the attempt in wall time whose result counts (rule 5)."""
     return attempts[-1] if attempts[-1].passed else min(attempts, key=lambda attempt: attempt.disturbance)

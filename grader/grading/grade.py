@@ -65,8 +65,8 @@ def grade(
 ) -> Graded:
     """Grade a submission.
 
-    `tell` is called with a short message about each step. `early` is called with the outcomes that are certain to fail,
-    before anything is built. A machine fault is reported as outcomes with the status `error`, and never as an
+    `tell` is called with a short message about each step. `early` is called before the build, with the outcomes of the
+    checks that are certain to fail. A machine fault is reported as outcomes with the status `error`, and never as an
     exception. A caller can replace `build` and `trial`. For example, `grader watch` passes builds and trials that it
     started in advance.
     """
@@ -92,7 +92,7 @@ def explained(
     trial: Callable[..., Trial] = Trial,
     give_up: Callable[[], bool] = lambda: False,
 ) -> Graded:
-    """Return the graded submission. If possible, each cause is proved by fixing it in a copy.
+    """Return the graded submission. If possible, each cause is proved by a fix in a copy.
 
     `give_up` is called before each try. Once `give_up` returns true, no more changes are tried. `build` contains the
     result of the last build.

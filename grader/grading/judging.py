@@ -93,6 +93,6 @@ def _first_clocks(evidence: Evidence, choice: ClockChoice) -> Clocks:
         return {}
     trials = [spec for spec in evidence.exercise.trials if spec.tests is None]
     clocks = {spec.id: first_clock(choice, evidence.from_trial(spec.id)) for spec in trials}
-    # One node that may follow wall time is enough.
+    # If one of the nodes in a trial may follow wall time, the whole trial runs in wall time.
     wall = {spec.beside: clocks[spec.id] for spec in trials if spec.beside and clocks[spec.id].name == "wall"}
     return clocks | wall

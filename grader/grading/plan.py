@@ -52,6 +52,6 @@ def executables_of(evidence: Evidence) -> tuple[str, ...]:
 
 
 def _topics(checks: Sequence[CheckSpec]) -> tuple[str, ...]:
-    """Return the topics that these checks need: every parameter with a slash at its start, since it may be a topic."""
+    """Return the topics that these checks need: all parameters that begin with a slash, since these can be topics."""
     names = {value for check in checks for value in check.params.values() if isinstance(value, str)}
     return tuple(sorted(name for name in names if name.startswith("/")))

@@ -46,7 +46,7 @@ class Tests:
             bench.close()
 
     def start(self, views: Iterable[Evidence]) -> None:
-        """Start the tests of each of these trials, which do not need the build."""
+        """Start the student's tests in each of these trials. The tests do not need the build."""
         for view in views:
             spec = view.trial.tests
             assert spec is not None

@@ -90,7 +90,7 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
 def _leave_shared_memory_out(profile: Path) -> None:
     """Set the environment variables for the Fast DDS profile.
 
-    The file loopback.xml explains why these nodes do not use LOCALHOST with its shared memory.
+    The file loopback.xml explains why the nodes of `ros2` verbs do not use LOCALHOST with its shared memory.
     """
     if os.environ.get(_RANGE) == "LOCALHOST" and os.environ.get(_PROFILE) == str(FASTDDS_PROFILE):
         os.environ.update({_RANGE: "SYSTEM_DEFAULT", _PROFILE: str(profile)})

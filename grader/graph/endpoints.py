@@ -1,4 +1,4 @@
-"""The part of the graph that a node has discovered: other nodes, publishers and subscriptions. It needs rclpy."""
+"""The part of the graph that a node has discovered: other nodes, publishers and subscriptions. Needs rclpy."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class End:
-    """A publisher or subscription, like `grader.trial.recording.Endpoint`, whose module would import numpy."""
+    """A publisher or subscription, like `grader.trial.recording.Endpoint`, but without importing numpy."""
 
     kind: str
     node: str

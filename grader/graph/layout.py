@@ -46,7 +46,8 @@ def render(dot: str, kind: Format) -> bytes:
         )
         raise MachineError(message)
     if kind == "svg":
-        # A viewer without this font uses the next one. Verdana is equally wide, and most sans-serif fonts are narrower.
+        # A viewer without this font uses the next font in the list. Verdana is equally wide, and most sans-serif fonts
+        # are narrower.
         return done.stdout.replace(b'font-family="DejaVu Sans"', b'font-family="DejaVu Sans,Verdana,sans-serif"')
     return done.stdout
 

@@ -27,7 +27,7 @@ Step = Annotated[
 
 
 def add_to(app: typer.Typer) -> None:
-    """Add these commands to `app`."""
+    """Add the learner's commands to the typer application `app`."""
     app.command(rich_help_panel=PANEL, epilog="Example: grader start 01")(start)
     app.command(rich_help_panel=PANEL, epilog="Examples: grader run; grader run 07 draw_square")(run)
     app.command(rich_help_panel=PANEL, epilog="Example: grader watch")(watch)
@@ -105,7 +105,7 @@ def solution(
     ],
     workspace: Workspace = None,
 ) -> None:
-    """Show the solution of a step beside yours, after yours has passed."""
+    """Show the solution of a step beside your files, after the step has passed."""
     from rich.console import Console
 
     from grader.learner.compare import print_solution

@@ -56,15 +56,15 @@ class Progress:
         return self.steps.get(name, StepProgress())
 
     def with_step(self, name: str, step: StepProgress) -> Progress:
-        """Return a copy with this progress in a step."""
+        """Return a copy of the progress in which this step has this progress."""
         return replace(self, steps={**self.steps, name: step})
 
     def at(self, name: str) -> Progress:
-        """Return a copy with a different current step."""
+        """Return a copy of the progress in which the current step is `step`."""
         return replace(self, current=name, steps={**self.steps, name: self.step(name)})
 
     def graded(self, name: str, report: Report) -> Progress:
-        """Return a copy that includes a new report. Points never decrease, and a passed step stays passed."""
+        """Return the progress after a new report. Points never decrease, and a passed step stays passed."""
         before = self.step(name)
         better = report.points >= before.points
         after = replace(

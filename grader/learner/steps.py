@@ -31,7 +31,7 @@ FIRST_OF_PART_TWO = "08"
 
 @dataclass(frozen=True)
 class Begun:
-    """A step that was started, with the changes in the workspace and the folder with the work."""
+    """A step that was started, with the changes in the workspace and the folder with the learner's work."""
 
     exercise: Exercise
     started: Started
@@ -93,7 +93,7 @@ def _setup_file() -> Path:
 
 
 def current(folder: Path | None) -> tuple[Exercise, Path] | None:
-    """Return the current step and the folder with the work on it, or None before the first `start`."""
+    """Return the current step and the folder with the learner's work, or None before the first `start`."""
     root = progress.workspace_of(folder)
     name = progress.load(root).current
     if name is None or name not in catalogue():
@@ -149,7 +149,7 @@ def keep_picture(evidence: Evidence, report: Report, folder: Path | None = None)
 
 
 def parts() -> dict[str, list[str]]:
-    """Return the steps of each part of the course by the part's title. Parts without steps are omitted."""
+    """Return a mapping from the title of each part of the course to its steps. Parts without steps are omitted."""
     names = list(catalogue())
     found = {
         PART_ONE: [name for name in names if name < FIRST_OF_PART_TWO],

@@ -71,7 +71,7 @@ class Events:
         self._queue: SimpleQueue[Happened] = SimpleQueue()
         self._stop = Event()
         self._saved = Event()
-        # All folders share one reader, because a second one would take keys from the first.
+        # All folders share one reader of key presses, because a second reader would take keys from the first reader.
         if read_key is not None:
             Thread(target=self._keys, args=(read_key,), daemon=True).start()
 
@@ -197,12 +197,12 @@ class Watched:
     def prepare(self) -> None:
         """Start the simulator and the launcher of the next trial.
 
-        Starting them keeps two processors busy for half a second.
+        Starting the simulator and the launcher keeps two processors busy for half a second.
         """
         if self._warm is None and self._wanted is not None:
             plan, ros = self._wanted
             trial = Trial(plan, ros, in_cell=self._options.in_cell)
-            # If it cannot be started, the next grading reports why.
+            # If the trial cannot be started, the next grading reports the reason.
             with suppress(MachineError):
                 trial.start()
                 self._warm = (plan, trial)
@@ -212,7 +212,7 @@ class Watched:
 
     @property
     def unproved(self) -> bool:
-        """Whether the last report has causes that `prove` has not tried yet."""
+        """Whether the last report has causes that `prove` has not tested yet."""
         return self._unproved is not None and can_be_explained(self._unproved)
 
     def prove(self, tell: Callable[[str], None], give_up: Callable[[], bool]) -> Graded | None:
@@ -240,7 +240,7 @@ class Watched:
         return open_submission(self.folder) if self.exercise.package else open_answers(self.folder)
 
     def _next_trial(self, plan: Plan, ros: Ros, *, in_cell: bool) -> Trial:
-        # The next grading will begin with the same trial as this one.
+        # The next grading will begin with the same trial as this grading.
         if self._wanted is None and plan.clock == "simulated":
             self._wanted = (plan, ros)
         if self._warm is not None and self._warm[0] == plan:

@@ -93,7 +93,7 @@ def ended(text: str) -> str:
 
 
 def counts(file: str | None, start: str | None) -> Literal["cell", "file"]:
-    """Return the text that counts: that of the file if the student has changed the file, or else that of the cell.
+    """Return the text that counts: the file's text if the student has changed the file, or else the cell's text.
 
     `file` is the text of the file, and `start` is its text in the starting point. The text of a missing file is None.
     """
@@ -126,7 +126,7 @@ def begin(exercise: Exercise, folder: Path, *, alone: bool = False) -> tuple[str
     if not alone and not target.exists() and own.is_dir():
         written = workspace.add_missing(own, target, {})[0]
     written += workspace.add_missing(source, target, {})[0]
-    # An instructor runs the solution's notebook: the numbers of its code are in its file already.
+    # For an instructor who runs the solution's notebook, the file already contains the numbers that the code uses.
     if not alone and exercise.numbers is not None and folder.resolve().parent.name != SOLUTIONS:
         written += _own_numbers(exercise.numbers, source, target)
     return tuple(f"{exercise.package}/{path}" for path in dict.fromkeys(written))

@@ -1,4 +1,4 @@
-"""The format of a kernel's messages on the pipe between the relay (outside the cell) and the bridge (inside it).
+"""The format of a kernel's messages on the pipe between the relay (outside the cell) and the bridge (inside).
 
 A frame is a ZeroMQ message with its channel: one byte for the channel, two for the number of parts, and four for the
 size of each part, all big-endian, followed by the parts. The reader gets the size of a message before its content.
@@ -63,7 +63,7 @@ class Unpacker:
             yield channel, parts
 
     def _sizes(self) -> list[int] | None:
-        """Return the sizes of the parts of the next message (bytes), or None if they are incomplete."""
+        """Return the sizes of the parts of the next message (bytes), or None if some sizes have not arrived."""
         if len(self._data) < _HEAD.size:
             return None
         channel, count = _HEAD.unpack_from(self._data)

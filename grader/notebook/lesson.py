@@ -17,7 +17,7 @@ def pieces(lesson: Path) -> list[str | Path]:
 
     If a notebook is copied without other files, links to those files no longer work.
     """
-    # Every second part is the text of the group.
+    # `split` returns texts and the paths of images in turn.
     split = _IMAGE.split(lesson.read_text(encoding="utf-8"))
     found: list[str | Path] = []
     for number, text in enumerate(split):

@@ -43,7 +43,7 @@ def solved_away(source: str, cell_type: str, *, solution: bool, name: str) -> st
     """Return the source of a cell with its solutions replaced by the starting point.
 
     Raises:
-        UsageError: markers are wrong, or a solution cell has no markers, so that all of it would be released.
+        UsageError: markers are wrong, or a solution cell has no markers, so that the whole solution would be released.
     """
     text = stripped(source, _syntax(source, cell_type), name)
     if solution and text == source:

@@ -1,4 +1,4 @@
-"""Open UDP sockets inside a sandbox cell, send them to the grader outside, and then become another program.
+"""Open UDP sockets inside a sandbox cell, send them to the grader outside, and then execute another program.
 
 This file is executed as a script, before any student code is in the cell. The arguments of the script are the
 descriptor of the Unix socket to the grader, the ports separated by commas, and the command of the other program.

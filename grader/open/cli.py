@@ -15,7 +15,7 @@ Workspace = Annotated[
 
 
 def add_to(app: typer.Typer) -> None:
-    """Add this command to `app`."""
+    """Add the command `grader open` to the typer application `app`."""
     app.command("open", rich_help_panel=PANEL, epilog="Example: grader open")(open_page)
 
 

@@ -43,7 +43,7 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _interrupt)
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    # Report progress that cannot be read here, not in the page.
+    # If the progress cannot be read, report this here rather than in the page.
     page_data(Content(), progress.workspace_of(workspace))
     place = listen("open", port)
     try:

@@ -1,4 +1,4 @@
-"""The UDP ports of DDS participants on this machine: those of the nodes in a cell, and those that they may reach.
+"""The UDP ports of DDS participants on this machine: the ports of the nodes in a cell, and the ports they may reach.
 
 A participant has two ports that depend on the domain and on its number (DDSI-RTPS, 9.6.1.1). In addition, the reader
 that rmw_fastrtps has for ros_discovery_info gets the first free port from 7000 on, in every domain.
@@ -50,7 +50,7 @@ class Ports:
 
 
 def reserve(domain: int) -> Ports:
-    """Bind the ports of OWN participants on this machine, or of fewer if fewer are free, and return them.
+    """Bind the ports of OWN participants, or of fewer participants if fewer ports are free. Return the ports.
 
     The port numbers are high, because nodes use the lowest free ports.
 

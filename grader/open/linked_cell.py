@@ -69,7 +69,8 @@ class LinkedCell:
 
     def kill(self) -> None:
         """Kill the cell and all its processes."""
-        # Kill the whole group, because a child of bubblewrap that is starting does not yet die with it.
+        # Kill the whole process group: while bubblewrap is starting, its child processes do not yet exit together with
+        # it.
         with suppress(ProcessLookupError):
             os.killpg(self.process.pid, signal.SIGKILL)
 

@@ -43,7 +43,7 @@ def _turtle_is_there() -> bool:
 
 
 class Program:
-    """A program that may be running, with its last lines. `changed` is called after each change."""
+    """A program that may be running, with the last lines of its output. `changed` is called after each change."""
 
     def __init__(self, changed: Callable[[], object]) -> None:
         self.lines: deque[str] = deque(maxlen=KEPT)
@@ -140,7 +140,7 @@ class Programs:
     async def start_turtlesim(self) -> None:
         """Start `grader sim --view`."""
         await self.turtlesim.start("-m", "grader.cli", "sim", "--view")
-        # Wait for turtlesim, because a node that starts earlier would start a second one.
+        # Wait for turtlesim, because a node that starts earlier would start a second turtlesim.
         for _ in range(round(READY_S / _LOOK_S)):
             if not self.turtlesim.running or any("Spawning turtle" in line for line in self.turtlesim.lines):
                 return

@@ -72,7 +72,7 @@ def arguments(text: str) -> list[str]:
 
 
 def answer(words: list[str], env: Mapping[str, str]) -> Answer:
-    """Run `ros2` with arguments from `arguments`, and return its output."""
+    """Run `ros2` with the arguments that `arguments` returned, and return the output of `ros2`."""
     start = interpreter("-m", "grader.ros2.main", *words, env=env, searches=True)
     endless = words[:2] == ["topic", "hz"]
     process = subprocess.Popen(

@@ -59,5 +59,5 @@ def _html(evidence: Evidence, report: Report, folder: Path) -> str:
 
 
 def _is_worth_showing(view: Evidence) -> bool:
-    """Return whether the turtle had to be driven or has moved. A turtle that rightly stands still only confuses."""
+    """Return whether the turtle had to drive or has moved. Otherwise, a picture of the turtle would only confuse."""
     return must_drive(view) or (view.run.recording is not None and not scene_of(view).notice)

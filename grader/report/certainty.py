@@ -1,8 +1,9 @@
 """Whether the cause of a failed check is a fact or a possibility.
 
-A cause is a fact if the files, the build, an exception or the recording show it directly, or if a try has proved it:
-after the change, the check passes or the node gets further. All other causes are conclusions from the source code or
-from the node's behaviour, and may be wrong. `FACTS` is the only list: a diagnosis that is not in it is a possibility.
+A cause is a fact if the files, the build, an exception or the recording show it directly, or if a test has proved it:
+after the suggested fix, the check passes or the node gets further. All other causes are conclusions from the source
+code or from the node's behaviour, and may be wrong. `FACTS` is the only list: a diagnosis that is not in it is a
+possibility.
 """
 
 from __future__ import annotations

@@ -95,7 +95,7 @@ def ticks(low: float, high: float, most: int = 5) -> list[float]:
 
 
 def thin(series: Series, end_s: float, bins: int = BINS) -> Series:
-    """Return the series. If it is long, return the lowest and the highest value of each bin instead.
+    """Return the series, or only the lowest and the highest value of each bin if the series is long.
 
     Values that are not finite are omitted.
     """

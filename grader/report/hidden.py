@@ -1,4 +1,4 @@
-"""A report as students may see it: for a hidden check, it shows only whether the check passed.
+"""A report as students may see it: for a hidden check, the report shows only whether the check passed.
 
 Ids, titles and findings of hidden checks are left out, and so are trials that only hidden checks use.
 """

@@ -156,7 +156,7 @@ def _natural(name: str) -> list[tuple[int, str]]:
 
 
 def _short(names: Sequence[str]) -> list[str]:
-    """Return the names without the leading and trailing folders that they all share."""
+    """Return the names without the leading and trailing folders that all names share."""
     parts = [name.rstrip("/").split("/") for name in names]
     if len(parts) < 2:
         return list(names)

@@ -33,7 +33,7 @@ def make_page(template: str, scripts: Sequence[str], data: object, values: Mappi
 
 
 def save_page(page: str, file: Path) -> None:
-    """Write a page. Raises the error that `not_written` returns if the page cannot be written."""
+    """Write a page. If the page cannot be written, raises the error that `not_written` returns."""
     try:
         file.write_text(page, encoding="utf-8", errors="replace")
     except OSError as error:

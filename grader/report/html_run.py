@@ -45,7 +45,7 @@ class Run:
     """A trial in the form that the page's template needs.
 
     `data` is the input of the player. `end` describes how the node's process exited. `idle` is true if the exercise
-    requires commands and none arrived.
+    requires commands but no command arrived.
     """
 
     key: str

@@ -28,7 +28,7 @@ def write(file: Path, content: bytes) -> None:
     """Write the file.
 
     Raises:
-        UsageError: the file cannot be written there.
+        UsageError: the file cannot be written at this path.
         MachineError: the disk is full, or the machine failed in another way.
     """
     try:

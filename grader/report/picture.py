@@ -47,7 +47,7 @@ class Panel:
 
 
 def save_picture(evidence: Evidence, report: Report, file: Path) -> None:
-    """Write the picture as a PNG file. Raises the error that `not_written` returns if the file cannot be written."""
+    """Write the picture as a PNG file. If the file cannot be written, raises the error that `not_written` returns."""
     image = read(_png, evidence, report)
     try:
         file.write_bytes(image)

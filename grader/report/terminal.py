@@ -63,7 +63,7 @@ def render_changes(before: Report, after: Report, console: Console) -> None:
 
 
 def early(outcomes: Sequence[Outcome]) -> list[str]:
-    """Return lines about mistakes that the files already reveal, to be read while the package is built and run."""
+    """Return lines about mistakes that the files already reveal, so that users see them before the package is built."""
     shown = [(outcome, outcome.finding) for outcome in outcomes if not outcome.hidden]
     lines = [
         f"{outcome.title}: {finding.observed}" + (f" ({finding.where})" if finding.where else "")
@@ -147,7 +147,8 @@ def _verdict(report: Report) -> Text:
 def _footnotes(report: Report, *, verbose: bool) -> list[str]:
     clock = {"simulated": "Judged in simulated time", "wall": "Judged in wall time"}.get(report.clock, "")
     why = printable(report.clock_why)
-    # Nearly all nodes are judged in simulated time, so that is printed only on request or if wall time was used too.
+    # Nearly all nodes are judged in simulated time, so the clock is printed only on request or if wall time was used
+    # too.
     simulated_alone = report.clock == "simulated" and "in wall time: " not in why
     notes = [] if simulated_alone and not verbose else [f"{clock}: {why}" if clock and why else clock or why]
     if report.seed is not None:

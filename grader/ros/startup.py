@@ -1,4 +1,4 @@
-"""Start commands such as `ros2`: run the real command instead if there is one, and add ROS 2 to the environment."""
+"""Start commands such as `ros2`: run the real command if there is one, or else add ROS 2 to the environment."""
 
 from __future__ import annotations
 

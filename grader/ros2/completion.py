@@ -50,7 +50,7 @@ def topic_types(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa
 
 
 def service_types(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    """Return the type of the service on the command line if that is in the graph, and otherwise all service types."""
+    """Return the type of the service on the command line if it is in the graph, and otherwise all service types."""
     return _types(_look().services, parsed_args.service_name) or index.all_interfaces("srv")
 
 

@@ -82,8 +82,8 @@ def room(
     command = [_bwrap(), "--unshare-net", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--hostname", "grader"]
     command += ["--die-with-parent", "--size", str(ROOM_DISK), "--tmpfs", "/tmp", "--perms", "0777", "--dir", str(HOME)]
     command += [*_disk(view), *(["--proc", "/proc"] if user is None else ["--dir", "/proc"])]
-    # rclpy loads LTTng, which keeps a file here. If it cannot, its threads wait for any child of the process and may
-    # collect the exit code of a node that exits at this moment.
+    # rclpy loads LTTng, which keeps a file here. If LTTng cannot write this file, the threads of LTTng wait for any
+    # child of the process, and may collect the exit code of a node that exits at this moment.
     command += ["--size", str(ROOM_DISK), "--perms", "1777", "--tmpfs", "/dev/shm"]
     command = [*_ordinary(command, user), *_environment(env), "--chdir", str(cwd or HOME), "--"]
     return [*command, *_stay_ordinary(user), *argv]

@@ -40,7 +40,7 @@ _numbers = count()
 
 @dataclass(frozen=True)
 class ControlGroup:
-    """A group: one folder (version 2), one per controller (version 1), or none if groups are not possible."""
+    """A control group: one folder (version 2), one per controller (version 1), or none if groups are not possible."""
 
     folders: tuple[Path, ...] = ()
 
@@ -105,7 +105,7 @@ def _make(limits: Limits) -> ControlGroup:
 
 
 def _parents() -> list[Path]:
-    """Return the folders in which a group can be created: one for both controllers, one for each, or none."""
+    """Return the folders in which a group can be created: one for both controllers, one per controller, or none."""
     own = dict(_own())
     if all(name in own for name in CONTROLLERS):
         # In a container, the path may be that of the host. In this case, the group is the root of the container's tree.

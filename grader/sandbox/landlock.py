@@ -1,7 +1,7 @@
 """Landlock: a process denies itself all files except those that it names (landlock(7), Linux 5.13 and later).
 
-Newer kernels can deny more kinds of access. Landlock is one of two defences of this process; the other is the filter in
-reading_calls.py.
+Newer kernels can deny more kinds of access. The process that reads students' files has two defences: Landlock and the
+filter in reading_calls.py.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class _Below(ctypes.Structure):
 def allow_only_reading(paths: Iterable[Path]) -> bool:
     """Permanently deny this thread everything that Landlock can deny, except for reading these files and folders.
 
-    Paths that do not exist are ignored. Return False if the kernel does not support this.
+    Paths that do not exist are ignored. Return False if the kernel does not support Landlock.
     """
     c = ctypes.CDLL(None)
     version = c.syscall(_CREATE, None, ctypes.c_size_t(0), _VERSION)

@@ -67,7 +67,7 @@ class _Tail:
 
 
 class _Pump:
-    """The three pipes of a child process, served together so that a full pipe does not block the others."""
+    """The three pipes of a child process, served together so that a full pipe does not block another pipe."""
 
     def __init__(self, child: subprocess.Popen[bytes], stdin: bytes, most_stdout: int, most_stderr: int) -> None:
         assert child.stdin is not None

@@ -48,7 +48,7 @@ class _Program(ctypes.Structure):
 
 
 def forbid_all_but_reading() -> bool:
-    """Install the filter in this process permanently. Return False if the kernel does not support this."""
+    """Install the filter in this process permanently. Return False if the kernel does not support the filter."""
     if platform.machine() != "x86_64":
         return False
     filter_ = program()

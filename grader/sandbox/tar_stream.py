@@ -52,7 +52,7 @@ def read_tar(stream: bytes, most: int) -> dict[PurePosixPath, Member]:
 
 
 def read_all(stream: bytes, most: int) -> list[tuple[PurePosixPath, Member]] | None:
-    """Return all members of the stream with their names, or None if it is damaged or has more than `most` members."""
+    """Return all members of the stream with their names, or None if the stream is damaged or has too many members."""
     found = list(islice(_members(stream), most + 1))
     end = _end(found[-1][1]) if found else 0
     return found if len(found) <= most and not stream[end:].strip(b"\0") else None

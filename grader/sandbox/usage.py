@@ -48,7 +48,7 @@ def exceeded(pid: int, limits: Limits) -> str | None:
 
 
 class Guard:
-    """A thread that watches a cell until it is closed, and calls `over` once if a limit is exceeded."""
+    """A thread that watches a cell until `close` is called, and calls `over` once if a limit is exceeded."""
 
     def __init__(self, pid: int, limits: Limits, over: Callable[[str], None]) -> None:
         self._pid, self._limits, self._over = pid, limits, over
@@ -64,7 +64,7 @@ class Guard:
         self._thread.join()
 
     def worked_s(self, begin: float, end: float) -> float:
-        """Return the minimum CPU time (s) that the cell's processes used between two times of CLOCK_MONOTONIC."""
+        """Return a lower bound of the CPU time (s) that the cell used between two times of CLOCK_MONOTONIC."""
         first = self._worked[0][1]
         before = max((cpu for at, cpu in self._worked if at <= begin), default=first)
         return max((cpu for at, cpu in self._worked if at <= end + EVERY_S), default=first) - before

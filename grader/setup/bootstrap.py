@@ -1,4 +1,4 @@
-"""The first half of the set-up: check the machine and create .venv. Then grader.setup.install fills it.
+"""The first half of the set-up: check the machine and create .venv. Then grader.setup.install fills .venv.
 
     python3 -m grader.setup.bootstrap (learner | cluster | notebooks | docs | tests) [--python PYTHON]
 
@@ -133,7 +133,7 @@ def look(
 
 
 def report_missing(needs: Sequence[Need], why: str) -> bool:
-    """Print what the system lacks, and `why` it was not installed. Return whether the set-up must stop."""
+    """Print what the system lacks, and the reason (`why`) for which it was not installed. Return whether to stop."""
     root = os.getuid() == 0
     manager = package_managers.find_manager(os.environ.get("PATH", ""))
     if not all(need.lost for need in needs):

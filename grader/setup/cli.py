@@ -13,7 +13,7 @@ PANEL = "Your machine"
 
 
 def add_to(app: typer.Typer) -> None:
-    """Add these commands to `grader`."""
+    """Add `grader doctor`, `grader env` and `grader shell` to the typer application `app`."""
     app.command(epilog="Example: source <(grader env)", rich_help_panel=PANEL)(env)
     app.command(epilog="Example: grader shell --domain 7", rich_help_panel=PANEL)(shell)
     app.command(epilog="Example: grader doctor", rich_help_panel=PANEL)(doctor)

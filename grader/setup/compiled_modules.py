@@ -13,7 +13,7 @@ HEADER = 16
 def remove_incomplete(folder: Path) -> None:
     """Remove the incomplete modules in this folder and its subfolders.
 
-    After that, Python compiles these modules again.
+    Python compiles a removed module again when the module is imported.
     """
     for path in folder.rglob("__pycache__/*.pyc"):
         if not is_complete(path):

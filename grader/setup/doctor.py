@@ -47,7 +47,7 @@ LITTLE_MEMORY = 1 * GIB
 class Line:
     """The result of one test of the machine.
 
-    A line with the state `advice` does not prevent grading, but a `broken` one does.
+    A line with the state `broken` means that the machine cannot grade. Other lines do not prevent grading.
     """
 
     subject: str

@@ -1,4 +1,4 @@
-"""The lock file: the version and hashes of every package that the set-up installs, for all Pythons, in parts.
+"""The lock file: the version and hashes of every package that the set-up installs, for all versions of Python.
 
 The file is in pip's format and has sections. `# part: NAME` starts the list of packages that only one part needs, and
 `# part: NAME NAME` starts a list of packages that several parts need. Each set-up installs exactly the packages of its
@@ -54,7 +54,7 @@ _NAME = re.compile(r"([A-Za-z0-9][A-Za-z0-9._-]*)==(\S+)")
 class Entry:
     """One version of a package in the lock file.
 
-    `text` contains its lines in the file, including the hashes and the final newline.
+    `text` contains the lines of the entry in the file, including the hashes and the final newline.
     """
 
     name: str

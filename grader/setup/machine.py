@@ -272,7 +272,7 @@ def missing_of_python(
 def lack_message(
     needs: Sequence[Need], manager: Optional[package_managers.Manager], *, root: bool, why: str = ""
 ) -> str:
-    """Return a message that states what the system lacks, which command installs it, and `why` it was not installed."""
+    """Return a message: what the system lacks, the command that installs it, and `why` it was not installed."""
     whats = [f"  - {what}" for what in dict.fromkeys(need.what for need in needs)]
     lines = ["The course needs the following, which this system does not have:", *whats]
     lines += [f"They were not installed: {why}."] if why else []

@@ -43,7 +43,7 @@ DOMAIN = 101
 
 
 def why_not_heard(ros: Ros, *, confined: bool) -> str | None:
-    """Publish for up to 20 s. Return None if another node received a message, and otherwise the last line of output.
+    """Publish for up to 20 s. Return None if another node received a message, or else the last line of the output.
 
     If `confined` is True, the publisher is in a cell, and the other node is outside.
     """

@@ -22,7 +22,7 @@ def provide(needs: Sequence[package_managers.Need], env: Mapping[str, str], say:
     Return the reason why something could not be installed.
 
     The required packages are installed first, in one command. Each optional package is installed separately, so that a
-    missing package does not stop the others.
+    missing package does not prevent the installation of the others.
     """
     path = env.get("PATH", "")
     manager = package_managers.find_manager(path)
@@ -54,7 +54,7 @@ def _groups(needs: Sequence[package_managers.Need]) -> List[List[package_manager
 
 
 def _rights(path: str) -> Optional[List[str]]:
-    """Return the words, such as sudo, that run a command as root, or None if there is no way."""
+    """Return the words, such as sudo, that run a command as root, or None if this is not possible."""
     if os.getuid() == 0:
         return []
     sudo = package_managers.find_program("sudo", path)

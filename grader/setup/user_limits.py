@@ -12,7 +12,7 @@ LEAST_PROCESSES = 1024
 
 
 def shares() -> tuple[str, str]:
-    """Return the limits, and the command that raises them if they are too low for grading, or an empty string."""
+    """Return the limits, and the command that raises them (an empty string if they are high enough for grading)."""
     files, processes = (resource.getrlimit(which)[0] for which in (resource.RLIMIT_NOFILE, resource.RLIMIT_NPROC))
     reads, writes = os.pipe()
     try:

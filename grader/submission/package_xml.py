@@ -60,12 +60,12 @@ def open_tag(data: bytes) -> tuple[str, int]:
     parser.StartElementHandler = lambda name, _: opened.append((name, parser.CurrentLineNumber))
     parser.EndElementHandler = lambda _: opened.pop()
     with suppress(ExpatError):
-        parser.Parse(data, True)  # noqa: FBT003 (the module's own way to say: this is all)
+        parser.Parse(data, True)  # noqa: FBT003 (the argument means that no more data follows)
     return opened[-1] if opened else ("", 1)
 
 
 def line_of(data: bytes, *patterns: str) -> int | None:
-    """Return the first line (from 1) that matches the first of the patterns found in the file, or None."""
+    """Return the first line (from 1) that matches a pattern, or None. Patterns that come first are preferred."""
     lines = data.decode("utf-8", "replace").splitlines()
     for pattern in patterns:
         for number, line in enumerate(lines, start=1):

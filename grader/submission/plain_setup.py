@@ -1,4 +1,4 @@
-"""PlainSetup: a setup.py of the usual form, of which everything that affects the installed files is constant.
+"""PlainSetup: a setup.py of the usual form, in which everything that affects the installed files is constant.
 
 Most packages have such a setup.py. Such a setup.py is read with `ast` and never run. For any other setup.py, the result
 is None.

@@ -1,4 +1,4 @@
-"""The files that the reading process may open in addition to a submission's: Python's, the grader's, the lessons."""
+"""The files other than a submission's that the reading process may open: Python's, the grader's, and the lessons."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """Find the only package in a folder, or explain to a beginner why there is not exactly one.
 
-As in colcon, a folder that contains package.xml or setup.py is a package, and all folders below it belong to it.
+As in colcon, a folder that contains package.xml or setup.py is a package, and all folders below the folder belong to
+the package.
 """
 
 from __future__ import annotations
@@ -100,7 +101,7 @@ def _visit_below(search: _Search, folder: int, entry: Entry, path: str, depth: i
 
 
 def _is_folder_behind(name: str, folder: int) -> bool:
-    """For an error message, return whether the link leads to a folder. The link is not followed."""
+    """For an error message, return whether the link leads to a folder. The folder is not opened."""
     try:
         return stat.S_ISDIR(os.stat(name, dir_fd=folder).st_mode)
     except OSError:

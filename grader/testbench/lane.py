@@ -139,7 +139,7 @@ class Lane:
         self._send(json.dumps(order).encode() + b"\n" + self._package.tree)
 
     def run(self, node: str, behaviour: Behaviour) -> Ended:
-        """Run the tests on this node (the id of a broken one, or ""), and return the result.
+        """Run the tests on a node (the id of a broken node, or "" for the correct node), and return the result.
 
         Raises:
             MachineError: pytest or rclpy could not be imported.
@@ -202,7 +202,7 @@ class Lane:
         elif event == b"t":
             answer = brain.tick(number, now_ns)
         data = json.dumps(answer).encode()
-        with suppress(OSError):  # a run that does not read its answers gets no further ones
+        with suppress(OSError):  # a run that does not read its answers gets no further answers
             os.write(self._answers, _LENGTH.pack(len(data)) + data)
 
     def _discard_questions(self) -> None:

@@ -1,4 +1,4 @@
-"""Take what has arrived directly from a subscription or a service, without an executor.
+"""Take waiting messages from a subscription, or waiting requests from a service, without an executor.
 
 An executor checks every entity and every event each time it runs. In each frame, this check takes longer than anything
 else.

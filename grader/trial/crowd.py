@@ -39,8 +39,8 @@ def is_crowded(waited_s: float, others_s: float, *, of_s: float) -> bool:
 def is_machines(stalled_s: float, others_s: float) -> bool:
     """Return whether the machine can be at fault for stalls of this total length (s).
 
-    A thread waits for a processor only while something else uses it. If the other programs worked for a shorter time
-    than the stalls lasted, the threads of the node kept each other waiting, as when a node floods a topic.
+    A thread waits for a processor only while something else uses the processor. If the other programs worked for a
+    shorter time than the stalls lasted, the threads of the node kept each other waiting, as when a node floods a topic.
     """
     return others_s >= stalled_s
 

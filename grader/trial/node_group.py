@@ -61,7 +61,7 @@ class NodeGroup:
         return sum(process.read_output(now_s) for process in self.processes)
 
     def waited_to_write(self, size: int) -> bool:
-        """Given how many bytes the nodes wrote together, return whether one of them may have waited for a reader."""
+        """Return whether a node may have waited for a reader. `size` is the number of bytes that all nodes wrote."""
         return any(process.waited_to_write(size) for process in self.processes)
 
     def worked_s(self, begin: float, end: float) -> float:
@@ -103,7 +103,7 @@ class GroupThreads:
         return [threads.look() for threads in self._each]
 
     def runs(self) -> tuple[bytes, ...]:
-        """For each thread in the last observation, return how many times the thread has run."""
+        """Return the number of times that each thread in the last observation has run."""
         return sum((threads.runs() for threads in self._each), ())
 
     def main_asleep(self) -> bool:

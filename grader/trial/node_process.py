@@ -42,7 +42,7 @@ class LaunchError(Exception):
 
 
 def await_launcher(stdout: IO[bytes], stderr: IO[bytes] | None = None) -> None:
-    """Wait until a launcher is ready for its order.
+    """Wait until a launcher is ready to receive the command that it must run.
 
     Raises:
         LaunchError: the launcher exited. The message is its output.

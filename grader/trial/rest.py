@@ -145,7 +145,7 @@ class Threads:
         raise GoneError
 
     def runs(self) -> tuple[bytes, ...]:
-        """For each thread in the last observation, return how many times the thread has run.
+        """Return the number of times that each thread in the last observation has run.
 
         Reading the counters is three times as fast as a full observation of the threads.
         """

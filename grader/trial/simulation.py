@@ -48,8 +48,8 @@ class Simulation:
     """The part of a trial that uses ROS 2. `frame` moves the turtle, and `spin` handles everything that has arrived.
 
     An executor checks every entity and every event each time it runs, which takes longer than anything else in a frame.
-    `take_in` handles only messages and service requests. `take_in` is sufficient while no other node `may_act` on an
-    action of the simulator.
+    `take_in` handles only messages and service requests. `take_in` is sufficient while `may_act` is false, that is,
+    while no other node can use an action of the simulator.
     """
 
     held = False
@@ -158,7 +158,7 @@ class Simulation:
     def spin(self, timeout_s: float = 0.0) -> list[object]:
         """Handle everything that has arrived, waiting up to `timeout_s` if there is nothing yet.
 
-        Return the objects whose messages or requests were handled.
+        Return the entities whose messages or requests were handled.
 
         An entity is, for example, a subscription that received one or more messages, or a service that received a
         request.

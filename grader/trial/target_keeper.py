@@ -26,7 +26,7 @@ ANNOUNCED_EVERY_S = 0.5
 
 
 class TargetKeeper(Node):
-    """Adds the targets, announces the remaining ones, and removes each target that a node caught."""
+    """Adds the targets, announces the remaining targets, and removes each target that a node caught."""
 
     def __init__(
         self,

@@ -28,7 +28,7 @@ _TOKEN_CHARS = 22
 
 @dataclass(frozen=True)
 class Address:
-    """A port on 127.0.0.1, and the token that a page needs to read and drive."""
+    """A port on 127.0.0.1, and the token that a page needs to read the state and to drive the turtles."""
 
     port: int
     token: str

@@ -17,7 +17,7 @@ Image = Annotated[
 
 
 def add_to(app: typer.Typer) -> None:
-    """Add the command to `app`."""
+    """Add the command `grader sim` to the typer application `app`."""
     app.command(
         context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
         epilog="Examples: grader sim --view; in a terminal without a browser: grader sim --view terminal",

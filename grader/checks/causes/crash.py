@@ -130,7 +130,8 @@ def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:
     roots = [crash for crash in last if crash.error not in STOPS]
     if not roots:
         return None
-    # The exceptions of rclpy are the clearest. The first traceback of a chain may not contain a line of student code.
+    # An exception of rclpy explains a mistake best. The first traceback of a chain can be without a line of student
+    # code.
     root = next((crash for crash in roots if crash.error in RCLPY_ERRORS), roots[0])
     return replace(root, where=root.where or next((crash.where for crash in last if crash.where is not None), None))
 
@@ -186,7 +187,7 @@ def _own_file(path: str, files: Mapping[str, bytes]) -> str | None:
 
 
 def _is_beside(path: str) -> bool:
-    """Return whether this may be the path of a file next to setup.py, and not of another package such as rclpy."""
+    """Return whether the path can belong to a file next to setup.py rather than to another package such as rclpy."""
     folders = path.split("/")[:-1]
     return not any(name in folders for name in PACKAGES) or folders[-1] in PACKAGES
 

@@ -24,7 +24,7 @@ FORM = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION in the list c
 
 
 def line(evidence: Evidence) -> Where:
-    """Return the line of setup.py with the entry point of the exercise, or else the line that calls setup()."""
+    """Return the line of setup.py with the exercise's entry point, or the call to setup() if there is no such line."""
     setup = evidence.setup_py
     point = setup.entry_point(evidence.trial.executable) if setup is not None else None
     return Where("setup.py", point.line if point is not None else setup.setup_line if setup is not None else None)

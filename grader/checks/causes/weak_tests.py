@@ -93,7 +93,10 @@ def in_a_loop(code: TestCode) -> Cause | None:
 
 
 def timed_loop(code: TestCode) -> Cause | None:
-    """Return the cause if a loop always lasts for a fixed wall time, like a sleep. A deadline of a wait is right."""
+    """Return the cause if a loop always lasts for a fixed wall time, like a sleep.
+
+    A loop that waits for something until a deadline is correct.
+    """
     for module in code.modules:
         for node in module.nodes:
             if not isinstance(node, ast.While) or not isinstance(node.test, ast.Compare):

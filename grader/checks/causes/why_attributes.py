@@ -133,7 +133,7 @@ def _class_for_object(name: str) -> Cause:
 
 
 def _of_own_type(scene: CrashScene, owner: str, name: str) -> Cause:
-    """Return the cause if a class in the file lacks the attribute: only its instances have it, or it does not exist."""
+    """Return the cause of an AttributeError about a class in the student's file or about an instance of this class."""
     own = scene.class_named(owner)
     assert own is not None
     outside = next((each for each in scene.top_functions() if each.name == name), None)

@@ -216,7 +216,7 @@ def _too_many(scene: CrashScene, many: re.Match[str]) -> Cause | None:
     if len(calls) != 1 or any(isinstance(each, ast.Starred) for each in calls[0].args):
         return None
     passed = len(calls[0].args)
-    # Python counts the object of a method as an argument, too.
+    # Python counts `self` as an argument of a method, too.
     most = int(many["most"]) - (int(many["given"]) - passed)
     takes = f"at most {count(most, 'argument')}" if most else "no arguments"
     text = (

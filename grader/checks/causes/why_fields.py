@@ -122,7 +122,7 @@ def _assigned(scene: CrashScene, field: str) -> ast.expr | None:
 def _resolved(scene: CrashScene, value: ast.expr) -> ast.expr:
     """Return the expression, or the value assigned to a name if the expression is that name.
 
-    The scene must have a module.
+    Call this function only if `scene.module` is not None.
     """
     assert scene.module is not None
     return scene.module.names.get(dotted(value) or "") or value

@@ -22,7 +22,7 @@ ROUGH_M = 0.02
 
 @dataclass(frozen=True)
 class Fit:
-    """A circle that was reported: the centre and the radius (m). `within` are the tolerances of the three values."""
+    """A circle that the student's code returned: centre and radius (m). `within` are the tolerances of the values."""
 
     arc: Arc
     values: tuple[float, float, float]
@@ -46,7 +46,7 @@ class Fit:
     def is_like(self, other: Sequence[float], more: float = 0.0) -> bool:
         """Return whether the values differ from those in `other` by at most their tolerances plus `more`.
 
-        `other` may be shorter.
+        If `other` has fewer values, only the first values are compared.
         """
         return all(
             abs(value - one) <= width + more for value, one, width in zip(self.values, other, self.within, strict=False)

@@ -28,7 +28,7 @@ OWN_POSE = "/turtle1/pose"
 
 
 def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
-    """Return the most likely cause. `left` are the targets that were not caught."""
+    """Return the most likely reason why the targets in `left` were not caught."""
     recording = evidence.recording
     ended = [other for other in recording.beside if other.end.by == "itself"]
     if ended:

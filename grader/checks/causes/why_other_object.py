@@ -36,10 +36,7 @@ def subscription_for_publisher(scene: CrashScene) -> Cause | None:
 
 
 def set_twice(scene: CrashScene, name: str, text: str) -> Cause:
-    """Return the cause of a missing attribute.
-
-    If the name of the object is assigned more than once, the cause lists the lines of the assignments.
-    """
+    """Return the cause of a missing attribute, with the lines that assign the object if there are several."""
     holders = [dotted(node.value) for node in scene.on_line if isinstance(node, ast.Attribute) and node.attr == name]
     for holder in filter(None, holders):
         lines = [

@@ -98,7 +98,7 @@ def why_rate_in_callback(evidence: Evidence) -> Cause | None:
 
 
 def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:
-    """Return the cause if one function calls `call` in as many lines as there are messages per period, else None."""
+    """Return the cause if one function has as many calls to `call` as messages arrive in each period, else None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.FunctionDef):

@@ -63,11 +63,12 @@ def _no_spin(evidence: Evidence) -> Cause | None:
 
 
 def _nothing_to_spin(evidence: Evidence) -> Cause | None:
-    """Return the cause if spin_once has no timeout in a node with nothing to do, else None."""
+    """Return the cause if spin_once is called without a timeout in a node that has nothing to do, else None."""
     if any(evidence.code.calls(name) for name in WAKES):
         return None
     for call in evidence.code.calls("spin_once"):
-        # In rclpy.spin_once, the timeout follows the node and the executor. In Executor.spin_once, it comes first.
+        # In rclpy.spin_once, the timeout is the third argument. In Executor.spin_once, the timeout is the first
+        # argument.
         of_rclpy = dotted(call.node.func) in ("rclpy.spin_once", "spin_once")
         limit = call.argument(2 if of_rclpy else 0, "timeout_sec")
         if limit is None or (isinstance(limit, ast.Constant) and limit.value is None):

@@ -1,4 +1,4 @@
-"""Why a service call does not arrive: it is never made, its name is wrong, or something waits in a callback."""
+"""Why a service call does not arrive: the call is never made, its name is wrong, or something waits in a callback."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def why_topic(wanted: str, topic: str, evidence: Evidence) -> Cause:
-    """Return the cause of a wrong topic name, if the two names and the source show it."""
+    """Return the cause of a wrong topic name if the wrong name, the right name and the source show the cause."""
     last = wanted.rpartition("/")[2]
     if topic == f"/{last}":
         return Cause(

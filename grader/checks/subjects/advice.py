@@ -22,7 +22,7 @@ WAITS = frozenset({"sleep"})
 
 
 def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
-    """The submission calls create_timer, and no loop does the regular work instead."""
+    """The submission calls create_timer, and does not use a loop for its periodic work."""
     loop = _sending_loop(evidence)
     if evidence.code.calls("create_timer") and loop is None:
         return passed("The node uses a timer.")

@@ -63,7 +63,7 @@ class OneOf:
 
 
 def answer_text(evidence: Evidence, params: OneOf) -> Finding:
-    """The answer is one of the strings."""
+    """The answer is one of the correct strings."""
     given = _given(evidence, params.answer, STRING, str)
     if isinstance(given, Finding):
         return given
@@ -74,7 +74,7 @@ def answer_text(evidence: Evidence, params: OneOf) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class AllOf:
-    """The strings that the list must contain, in any order, and no other strings."""
+    """The strings that the student's list must contain, in any order. The list must not contain any other string."""
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
     items: tuple[str, ...] = strings(about="All items of the right answer, in any order.")
@@ -82,7 +82,7 @@ class AllOf:
 
 
 def answer_list(evidence: Evidence, params: AllOf) -> Finding:
-    """The answer is a list of exactly these strings."""
+    """The answer is a list that contains all correct strings and no other string."""
     given = _given(evidence, params.answer, LIST_OF_STRINGS, tuple)
     return given if isinstance(given, Finding) else _compare(evidence, params.answer, given, params.items, params.cause)
 

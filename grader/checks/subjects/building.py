@@ -120,7 +120,7 @@ def _broken(evidence: Evidence) -> Finding:
 
 
 def _line_of(evidence: Evidence, *patterns: str) -> Where | None:
-    """Return the first line of setup.py that matches the first of the patterns found there, or None."""
+    """Return the first line of setup.py that matches a pattern, or None. Patterns that come first are preferred."""
     line = line_of(evidence.submission.files["setup.py"], *patterns)
     return None if line is None else Where("setup.py", line)
 

@@ -126,7 +126,7 @@ def says_whether_active(evidence: Evidence, params: SaysWhetherActive) -> Findin
 
 
 def _is_active(goals: list[Goal], t_s: float) -> bool | None:
-    """Return whether the turtle follows a goal at this time (s), or None if a goal begins or ends by itself then."""
+    """Return whether the turtle follows a goal at this time (s), or None if a goal begins or ends at the same time."""
     for goal in goals:
         ended_s = goal.ended_s if goal.status == "succeeded" else None
         if any(each_s is not None and abs(each_s - t_s) < SAME_TIME_S for each_s in (goal.t_s, ended_s)):

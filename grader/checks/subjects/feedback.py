@@ -104,7 +104,7 @@ def _ended_s(evidence: Evidence, goal: Goal) -> float:
 
 
 def _near(evidence: Evidence, params: LogFeedback, line: Line, matches: Callable[[float, float], bool]) -> bool:
-    """Return whether `matches` is true for the time and heading of a frame that the line may be about."""
+    """Return whether `matches` is true for the time and heading of one of the frames that the line can describe."""
     frames = evidence.recording.frames
     near = (frames.t_s >= line.t_s - params.lag_s) & (frames.t_s <= line.t_s + FRAME_S)
     pairs = zip(frames.t_s[near].tolist(), frames.theta[near].tolist(), strict=True)

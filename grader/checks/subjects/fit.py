@@ -30,14 +30,14 @@ SIGMAS = 6.0
 
 @dataclass(frozen=True, kw_only=True)
 class OneCall:
-    """One call made by the trial."""
+    """One call that the trial makes to the student's function."""
 
     call: str = string("the id of a call", about="The id of a `[[trial.points]]` or a `[[trial.bag]]`.")
 
 
 @dataclass(frozen=True, kw_only=True)
 class FitCall(OneCall):
-    """One call, with the points of a circle."""
+    """One call that the trial makes to the student's function with the points of a circle."""
 
     rounding_m: float = number(
         1e-3,

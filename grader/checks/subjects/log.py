@@ -121,7 +121,7 @@ def log_rate(evidence: Evidence, params: LogRate) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class Counter:
-    """The name that the counter has in the format, and its first value."""
+    """The name of the counter in the format of a log line, and the first value of the counter."""
 
     format: str = string("a log line with its numbers in braces", about=FORMAT)
     counts: str = string("the name of a number in the format", about="The name of the counter in the format.")

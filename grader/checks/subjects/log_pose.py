@@ -33,7 +33,7 @@ LENGTHS = ("hypot", "sqrt", "dist")
 
 @dataclass(frozen=True, kw_only=True)
 class LogPosition:
-    """The logged x and y may be at most `lag_s` old and may differ by at most the tolerance."""
+    """The logged x and y may be up to `lag_s` old and may differ from the turtle's position by up to the tolerance."""
 
     format: str = string("a log line with x and y in it", about="The format of a line with the numbers `x` and `y`.")
     tolerance_m: float = number(0.02, above=0, about="The maximum error of x and y.")
@@ -164,7 +164,7 @@ def _added(evidence: Evidence) -> Where | None:
 
 
 def _overwritten(evidence: Evidence) -> Cause | None:
-    """Return the cause if a method replaces the last pose before it calculates the distance from there, else None."""
+    """Return the cause if a method replaces the last pose before calculating the distance from that pose, else None."""
     for module in evidence.code.modules:
         for method in (node for node in module.nodes if isinstance(node, ast.FunctionDef)):
             given = {argument.arg for argument in method.args.args} - {"self"}
@@ -183,7 +183,7 @@ def _overwritten(evidence: Evidence) -> Cause | None:
 
 
 def _reads(step: ast.BinOp, begin: str) -> bool:
-    """Return whether a difference contains an attribute whose full name begins like this."""
+    """Return whether a subtraction uses the attribute `begin`, or an attribute below it if `begin` ends with a dot."""
     names = [dotted(node) or "" for node in ast.walk(step) if isinstance(node, ast.Attribute)]
     return any(name.startswith(begin) if begin.endswith(".") else name == begin for name in names)
 
@@ -205,7 +205,7 @@ def _too_few(evidence: Evidence, text_: str) -> Finding:
 
 
 def _window(recording: Recording, t_s: float, lag_s: float) -> slice:
-    """Return the frames (at least one) that a line logged at this time may describe."""
+    """Return the frames (at least one) that a line logged at this time can describe."""
     times = recording.frames.t_s
     begin = int(np.searchsorted(times, t_s - lag_s))
     end = int(np.searchsorted(times, t_s + EARLY_S))

@@ -126,7 +126,8 @@ def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
 def _imported(evidence: Evidence) -> dict[str, Where]:
     """Return the ROS 2 packages that the nodes of the exercise import, with the line of the first import.
 
-    A name that is almost that of a known package is a typing error: no such package can be declared.
+    A name that is almost the name of a known package is a typing error: a package with the wrong name cannot be
+    declared.
     """
     found: dict[str, Where] = {}
     for trial in evidence.exercise.trials:

@@ -107,7 +107,7 @@ def _drives(command: Command) -> bool:
 
 
 def _moved(trajectory: Trajectory, from_s: float, until_s: float) -> tuple[float, float] | None:
-    """Return the first and the last time (s) of a movement between two times, or None."""
+    """Return the first and the last time (s) at which the turtle moved between `from_s` and `until_s`, or None."""
     moving = (trajectory.steps > RESTS_M) & (trajectory.t_s > from_s) & (trajectory.t_s <= until_s)
     times = trajectory.t_s[np.flatnonzero(moving)]
     return (float(times[0]), float(times[-1])) if len(times) else None

@@ -25,7 +25,7 @@ HUNDREDTH = 0.0101
 
 @dataclass(frozen=True, kw_only=True)
 class Printed(OneCall):
-    """One run of the program, and the names of the numbers in its line that are compared."""
+    """One run of the program, and the names of the printed numbers that are compared."""
 
     format: str = string("a line with its numbers in braces", about=FORMAT)
     values: tuple[str, ...] = strings(about='The numbers that are compared: "messages", "rate", "x", "y", "radius".')

@@ -30,7 +30,7 @@ ROUND_M = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class InBag:
-    """A folder in the package."""
+    """The folder of the student's bag, inside the package."""
 
     bag: str = string("the name of a folder", about=BAG)
 
@@ -73,7 +73,7 @@ def readable(evidence: Evidence, params: InBag) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class TopicInBag(InBag):
-    """The bag must contain a topic with this type."""
+    """The topic that the bag must contain, with the topic's type."""
 
     topic: str = string("a topic", start="/", about="The topic that must be in the bag.")
     type: str = string("a type", about="The type of its messages.")

@@ -78,7 +78,7 @@ def calls_service(evidence: Evidence, params: CallsService) -> Finding:
 
 
 def _before_the_answer(call: Call, asked: Call) -> bool:
-    """Return whether the call came before the response to `asked`.
+    """Return whether the call arrived before the response to the call `asked`.
 
     If there was no delay, the call and the response have the same time.
     """

@@ -215,7 +215,7 @@ def _wrong_names(evidence: Evidence, message: Announcement, expected: str) -> Fi
 
 
 def removes(evidence: Evidence, params: Removes) -> Finding:
-    """Each turtle that the trial caught was removed, and no other turtle was. Unknown names change nothing."""
+    """Exactly the turtles that the trial caught were removed. Calls with unknown names changed nothing."""
     expected = f"When {params.service} is called, the node removes this turtle with /kill, and no other."
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     recording = evidence.recording

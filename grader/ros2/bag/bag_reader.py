@@ -66,7 +66,7 @@ def messages(
 
 
 def _without_index(path: Path, topics: set[str], start: int | None) -> Iterator[tuple[str, int, bytes]]:
-    """Yield the messages of an MCAP bag without chunks, which rosbags cannot read.
+    """Yield the messages of an MCAP bag without chunks. The library rosbags cannot read such a bag.
 
     rosbag2 writes such bags with `--storage-preset-profile fastwrite`.
     """

@@ -64,7 +64,7 @@ class BagWriter:
             raise Ros2Error(message) from error
 
     def _number_file(self) -> None:
-        """Rename the new file as in rosbag2, bag/bag_0.mcap: its reindex finds only files with a number."""
+        """Give the new file a number, as in bag/bag_0.mcap, because rosbag2 can reindex only files with a number."""
         storage = self._writer.storage
         assert isinstance(storage, McapWriter | Sqlite3Writer)
         numbered = storage.path.with_stem(f"{storage.path.stem}_0")
@@ -81,8 +81,8 @@ class BagWriter:
     def add_topic(self, topic: str, kind: str, offered: Sequence[Qos] = (), definition: str | None = None) -> None:
         """Add a topic, so that its messages can be written.
 
-        `definition` is the definition of the type from another bag. It is used if the type is not installed. The
-        definition may be an empty string.
+        `definition` is the definition of the type from another bag. `definition` is used only if the type is not
+        installed, and may be an empty string.
 
         Raises:
             Ros2Error: the type of the topic is not installed, and `definition` is None.

@@ -65,7 +65,7 @@ def start(*, debug: bool = False) -> None:
 
 
 def start_for_later() -> None:
-    """Start a daemon for the next command, unless it is disabled by GRADER_ROS2_DAEMON=0."""
+    """Start a daemon for the next command, unless GRADER_ROS2_DAEMON=0 disables daemons."""
     if os.environ.get("GRADER_ROS2_DAEMON") != "0" and socket_path.folder() is not None:
         start()
 

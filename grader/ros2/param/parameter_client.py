@@ -62,7 +62,7 @@ class Parameters:
     def names(self, prefixes: Sequence[str] = ()) -> list[str]:
         """Return the sorted names of the parameters.
 
-        If `prefixes` are given, leave out names that begin with none of these.
+        If `prefixes` are given, only names that begin with one of these prefixes are returned.
         """
         answer = self._call(ListParameters, "list_parameters", ListParameters.Request(prefixes=list(prefixes)))
         return sorted(answer.result.names)
