@@ -97,7 +97,7 @@ def read_cases(below: Path = CASES) -> tuple[Case, ...]:
 
 
 def base_of(case: Case) -> Path | None:
-    """Return the folder of the case's base, or None."""
+    """Return the folder of the package that the case starts from, or None."""
     if not case.base:
         return None
     return BASES / case.base if (BASES / case.base).is_dir() else ROOT / "solutions" / case.base
@@ -143,7 +143,7 @@ def apply_edits(edits: Iterable[Mapping[str, str]], package: Path, name: str) ->
 
 
 def copy_solution(step: str, to: Path) -> None:
-    """Copy a solution's package (in step 02: its answers) without the markers, as a learner would have written it."""
+    """Copy a solution's package (in step 02, the answers) without the markers, as a learner would have written it."""
     source = ROOT / "solutions" / step
     source = source / "my_robot_controller" if (source / "my_robot_controller").is_dir() else source
     for file in sorted(path for path in source.rglob("*") if path.is_file() and "__pycache__" not in path.parts):

@@ -92,13 +92,13 @@ def page() -> str:
 
 
 def _number(case: Case) -> str:
-    """Return a case's number, with its folder unless that is mistakes/: the numbers of each folder start at 101."""
+    """Return a case's number, with the folder unless the folder is mistakes/: each folder's numbers start at 101."""
     number = case.name.partition("-")[0]
     return number if case.folder.parent == MISTAKES else f"{case.folder.parent.name}/{number}"
 
 
 def _shown(id_: str, by_case: dict[str, list[str]]) -> str:
-    """Return some of the cases that show this diagnosis, or otherwise a test that shows it."""
+    """Return some of the cases that show this diagnosis. If there is none, return a test that shows the diagnosis."""
     names = by_case.get(id_, [])
     if not names and id_ in SHOWN_BY_TESTS:
         return f"[{Path(SHOWN_BY_TESTS[id_]).stem}](../tests/{SHOWN_BY_TESTS[id_]})"

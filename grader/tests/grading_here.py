@@ -92,7 +92,7 @@ def grade_here(case: Case, clock: ClockChoice, folder: Path, builds: Builds) -> 
 
 
 def all_graded_here(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Grade]:
-    """Yield the fixture `graded`: it grades a case with a clock. All cases of this module are graded in parallel."""
+    """Yield the fixture `graded`: it grades a case with a clock. All cases of a module are graded in parallel."""
     folder, builds = tmp_path_factory.mktemp("graded"), Builds()
     futures: dict[tuple[str, str], Future[Graded]] = {}
     with ThreadPoolExecutor(AT_ONCE) as pool:

@@ -1,4 +1,4 @@
-"""Grade cases in parallel with the real command, and compare the reports with those that the cases expect."""
+"""Grade cases in parallel with the real command, and compare the reports with the expected reports."""
 
 from __future__ import annotations
 

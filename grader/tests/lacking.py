@@ -1,4 +1,4 @@
-"""Skip a test, or fail in CI, if a program that it needs is missing."""
+"""Skip a test, or fail in CI, if a program that the test needs is missing."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Folders that several test processes of a session share.
 
-The first process creates such a folder, and the others wait.
+The first process creates such a folder, and the other processes wait.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Every attack in hostile/ is stopped by the sandbox, and works without it."""
+"""Every attack in hostile/ is stopped by the sandbox, and works without a sandbox."""
 
 from __future__ import annotations
 

@@ -155,7 +155,7 @@ def test_no_other_place_names_an_interpreter() -> None:
 
 
 def names_an_interpreter(node: ast.AST) -> bool:
-    """Return whether the expression is `sys.executable` or the interpreter of a Ros."""
+    """Return whether the expression is `sys.executable` or the attribute `python` of a `Ros` object."""
     return isinstance(node, ast.Attribute) and ast.unparse(node) in ("sys.executable", "here.python", "ros.python")
 
 

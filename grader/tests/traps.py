@@ -1,4 +1,4 @@
-"""A folder full of traps: if a program loads one, the trap writes its name into a file outside the folder."""
+"""A folder full of traps: if a program loads a trap, the trap writes its name into a file outside the folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Checks of a node that spawns turtles, announces the remaining ones, and removes those that were caught."""
+"""Checks of a node that spawns turtles, announces the remaining turtles, and removes the caught turtles."""
 
 from __future__ import annotations
 

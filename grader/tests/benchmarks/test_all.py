@@ -1,4 +1,4 @@
-"""The table of `python -m grader.benchmarks.all`, printed by a separate process, since benchmarks use these tests."""
+"""The table of `python -m grader.benchmarks.all`, printed by a separate process, since benchmarks import the tests."""
 
 from __future__ import annotations
 

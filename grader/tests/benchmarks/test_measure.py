@@ -1,4 +1,4 @@
-"""The cost of a command, measured in a separate process, since benchmarks use these tests."""
+"""The cost of a command, measured in a separate process, because benchmarks import the tests."""
 
 from __future__ import annotations
 

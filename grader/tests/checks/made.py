@@ -234,7 +234,7 @@ def recording(commands: Iterable[Command | Timed], start: Pose | None = None, **
 
 
 def legs(*parts: tuple[int, float, float], rest_s: float = DURATION_S) -> list[Timed]:
-    """Return commands TICK_S apart: each speed (m/s, rad/s) for a number of ticks, then zeros until `rest_s`."""
+    """Return commands every TICK_S: each speed (m/s, rad/s) for a number of ticks, then zeros until `rest_s`."""
     speeds = [(linear, angular) for ticks, linear, angular in parts for _ in range(ticks)]
     speeds += [(0.0, 0.0)] * (int(rest_s / TICK_S) - 1 - len(speeds))
     return [((index + 1) * TICK_S, linear, angular) for index, (linear, angular) in enumerate(speeds)]

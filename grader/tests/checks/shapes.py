@@ -1,4 +1,4 @@
-"""Invented recordings of a learner's node, keyed by name. Each has commands and the motion of the turtle."""
+"""Invented recordings of a learner's node, by name. Each recording contains commands and the turtle's motion."""
 
 from __future__ import annotations
 

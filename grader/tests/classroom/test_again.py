@@ -31,7 +31,7 @@ STEP = "03-circle-publisher"
 class Scripted:
     """An engine with a planned sequence of results for each submission.
 
-    After the last planned result, this result is repeated.
+    After all planned results, the last result is repeated.
     """
 
     def __init__(self, ends: dict[str, list[str]]) -> None:

@@ -70,7 +70,7 @@ def graded(order: Order, engine: Engine, out: Path) -> dict[str, Result]:
 
 
 def make_four(folder: Path) -> Path:
-    """Create a class with a correct submission, one that kills workers, and two without a package."""
+    """Create a class of four submissions: one is correct, one kills workers, and two have no package."""
     copy_solution(STEP, folder / "anna")
     copy_solution(STEP, folder / "deadly")
     for student in ("ben", "clara"):

@@ -24,7 +24,7 @@ ATTACKS = ("301", "304", "501", "504", "602", "613")
 
 
 def make_mixed(folder: Path) -> Path:
-    """Create a class of step 03 with wrong, correct, unusual and some hostile submissions from all catalogues."""
+    """Create a class of step 03 with wrong, correct, unusual and some hostile submissions from all folders of cases."""
     for name, amount in AMONG.items():
         for case in spread(read_cases(TESTS / name), amount):
             make_submission(case, folder / f"{name}-{case.name}")

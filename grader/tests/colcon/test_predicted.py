@@ -31,7 +31,7 @@ NODES = ("draw_circle", "test_node")
 
 @pytest.fixture(scope="module")
 def package() -> Submission:
-    """Return a package with all that is usual: a subpackage, data files, and files that are not installed."""
+    """Return a package with everything that a usual package may contain, such as a subpackage and data files."""
     given = open_submission(STEP)
     setup_py = given.files["setup.py"].decode()
     setup_py = setup_py.replace('["package.xml"]', '["package.xml", "config/a.yaml", "config/run.sh"]')
@@ -63,7 +63,7 @@ def tree(package: Submission) -> bytes:
 
 
 def changed(tree: bytes, change: Callable[[tarfile.TarInfo, bytes], Iterator[tuple[tarfile.TarInfo, bytes]]]) -> bytes:
-    """Return the tree with every member replaced by those that `change` yields."""
+    """Return the tree in which every member is replaced by the members that `change` yields."""
     stream = io.BytesIO()
     with (
         tarfile.open(fileobj=io.BytesIO(tree)) as old,
@@ -84,7 +84,7 @@ def test_colcon_installs_the_predicted_files(tree: bytes, predicted: Predicted) 
 
 
 def test_a_comparison_does_not_need_the_predicted_tree_itself_to_be_complete(predicted: Predicted) -> None:
-    """A tree without the files of colcon and without the folders is not an install tree of colcon."""
+    """A tree without folders and without the files that colcon adds differs from every install tree of colcon."""
     assert not installs(predicted.tree, predicted)
 
 

@@ -47,7 +47,7 @@ def test_it_is_the_same_for_each_process_of_a_user(tmp_path: Path) -> None:
 
 
 def test_a_lock_in_the_shared_folder_overwrites_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Another user guesses the name of the lock and makes it a link to a file of this user."""
+    """Another user guesses the name of the lock file, and creates a link with this name to a file of this user."""
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     mine = tmp_path / "mine.txt"
     mine.write_text("my work")

@@ -1,4 +1,4 @@
-"""Run a target with atheris: `python -m grader.tests.fuzz TARGET --minutes N`. Install it with `pip install atheris`.
+"""Run a target with atheris: `python -m grader.tests.fuzz TARGET --minutes N`. Needs `pip install atheris`.
 
 A finding ends the run. The input that caused the finding is stored in build/fuzz/TARGET/; `--again FILE` runs this
 input again.

@@ -126,7 +126,7 @@ def edit(folder: Path, change: Callable[[list[Notebook]], list[Notebook]]) -> No
 
 
 def with_cell(folder: Path, source: str) -> None:
-    """Insert a cell after the cell that loads everything."""
+    """Insert a cell after the first cell, which loads the extension."""
     cell: Notebook = {
         "cell_type": "code",
         "id": "mine",

@@ -130,7 +130,7 @@ def said(cell: NotebookNode) -> str:
 
 
 def names(folder: str) -> set[str]:
-    """Return the names in a folder of the machine."""
+    """Return the names of the files and folders in a folder of this machine."""
     return {path.name for path in Path(folder).iterdir()}
 
 

@@ -1,4 +1,4 @@
-"""Grade the solution with the real command: again from a recording, on a broken machine, and many in parallel."""
+"""Grade with the real command: the solution, a recording, on a broken machine, and many submissions in parallel."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """Graders share the machine.
 
-A grader that needs the machine to itself waits for the others, and graders that start later wait for this grader.
+A grader that needs the machine to itself waits for the other graders, and graders that start later wait for this
+grader.
 """
 
 from __future__ import annotations

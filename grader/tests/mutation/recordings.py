@@ -56,8 +56,8 @@ def recordings(
 ) -> list[Recorded]:
     """Return the recordings of these cases. `make` creates missing recordings, in parallel on all processors.
 
-    A case is recorded again if its submission or its exercise has changed. Empty the cache, because the trial has
-    changed.
+    A case is recorded again if its submission or its exercise has changed. If the code of the trial has changed, the
+    caller must first empty the cache.
     """
     kept = below or cache()
     with ThreadPoolExecutor(os.cpu_count()) as pool:

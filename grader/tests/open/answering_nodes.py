@@ -1,4 +1,4 @@
-"""Three nodes that answer questions: two of this process, in separate contexts, and one of a child process."""
+"""Three nodes that answer questions: two nodes of this process, in separate contexts, and a node of a child process."""
 
 from __future__ import annotations
 

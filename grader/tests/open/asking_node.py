@@ -1,4 +1,4 @@
-"""A node outside of the cell that asks until it has heard from all nodes of answering_nodes.py."""
+"""A node outside of the cell that publishes questions until all nodes of answering_nodes.py have answered."""
 
 from __future__ import annotations
 

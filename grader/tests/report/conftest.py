@@ -1,4 +1,4 @@
-"""Pages of reports, and a browser tab that collects all errors in it."""
+"""Pages of reports, and a browser tab whose errors are collected."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def problems() -> list[str]:
-    """Return the problems in the tab: errors, console messages, dialogs, and the URLs that it requested."""
+    """Return the problems in the tab: errors, console messages, dialogs, and the URLs that the tab requested."""
     return []
 
 

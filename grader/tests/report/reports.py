@@ -1,4 +1,4 @@
-"""Reports for tests: one for each status, and a hostile one.
+"""Reports for tests: a report for each status, and a hostile report.
 
 The grader judges invented evidence to create all these reports.
 """

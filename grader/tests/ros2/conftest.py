@@ -14,7 +14,7 @@ start and exit."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Skip the tests of our own `ros2` if the real one is used."""
+    """Skip the tests of our own `ros2` if the tests use the real `ros2`."""
     for item in items:
         if item.path.parent == Path(__file__).parent and item.path.name not in COMPARED:
             item.add_marker(of_our_ros2)

@@ -147,7 +147,7 @@ def test_what_the_simulator_works_beyond_its_own_share_is_the_nodes(monkeypatch:
 class Busy:
     """An object that replaces both a node and a trial in tests.
 
-    For each request, the object returns these times for which the processes have worked (s).
+    Every request returns the CPU times with which the object was created (s).
     """
 
     def __init__(

@@ -30,7 +30,10 @@ play(other, one)
 
 
 def waited(*, asleep: float, wrote: bool = False, share: float = 0.0) -> float:
-    """Return the time (s) after which the trial gives up on a node that sleeps this often, with this CPU share."""
+    """Return the time (s) after which the trial stops waiting for a node.
+
+    The node sleeps in the share `asleep` of all observations, and uses the share `share` of a processor.
+    """
     patience, now_s, observed = HandshakePatience(0.0), 0.0, 0.0
     while True:
         now_s += LOOK_S

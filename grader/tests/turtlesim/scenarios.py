@@ -1,6 +1,6 @@
 """Functions that test_node.py runs in processes with ROS 2.
 
-The functions use turtlesim, frame by frame, and a client.
+The functions advance turtlesim frame by frame, and use a client.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""If the simulator answers late, a call takes effect only when it is answered. The calls stay in order."""
+"""If the simulator answers late, a call takes effect only when it is answered. The calls are answered in order."""
 
 from __future__ import annotations
 

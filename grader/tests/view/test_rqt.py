@@ -1,4 +1,4 @@
-"""rqt, rqt_console and rqt_plot with a running turtlesim, in the system's Chromium, started as a user would."""
+"""rqt, rqt_console and rqt_plot with a running turtlesim, in the system's Chromium, as a user starts them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A whole workspace handed in, with what colcon made of an older state and with an environment."""
+"""A student hands in a whole workspace, with colcon's files of an older state and a virtual environment."""
 from pathlib import Path
 
 

@@ -1,4 +1,4 @@
-"""The node's file is a link to a file outside; another goes up with `..`, one is absolute."""
+"""The node's file and two other files are relative or absolute links to files outside the package."""
 from pathlib import Path
 
 

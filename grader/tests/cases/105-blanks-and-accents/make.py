@@ -1,4 +1,4 @@
-"""Names with blanks, accents and signs of the shell, beside a right solution."""
+"""A correct solution, with files whose names contain spaces, accents and special characters of the shell."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Written on Windows: every text with CRLF, the Python files with a byte order mark."""
+"""A package written on Windows: all text files have CRLF line endings, and Python files have a byte order mark."""
 from pathlib import Path
 
 

@@ -1,4 +1,4 @@
-"""The node's file is in Latin-1, as an old editor saves it: Python does not read it."""
+"""The node's file is in Latin-1, as an old editor saves it. Python cannot read the file."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""`ros2 pkg create` was run once more, inside the package: the outer one is what colcon builds."""
+"""`ros2 pkg create` was run again inside the package. colcon builds the outer package."""
 import shutil
 from pathlib import Path
 

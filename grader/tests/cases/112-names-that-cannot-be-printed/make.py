@@ -1,4 +1,4 @@
-"""Names with line breaks and with bytes that are not UTF-8, beside a right solution."""
+"""A correct solution, with files whose names contain line breaks and bytes that are not UTF-8."""
 
 import os
 from pathlib import Path

@@ -33,7 +33,7 @@ def changed(**values: float) -> OwnNumbers:
 
 
 def given(numbers: OwnNumbers | str | None, by: str | None = "alice") -> Evidence:
-    """Return the evidence of a circle with the numbers derived for alice, and a file with the given numbers."""
+    """Return the evidence of a circle that was driven with alice's numbers, and of a file with the given numbers."""
     commands = every(1.0 / RATE_HZ, RADIUS_M, SIDE[str(ALICE.values["direction"])])
     text = numbers if numbers is None or isinstance(numbers, str) else to_toml(numbers)
     return evidence(
@@ -47,7 +47,7 @@ def test_the_own_numbers_pass_whoever_may_write_the_name_otherwise(by: str | Non
 
 
 def test_no_spelling_of_the_own_id_makes_a_friends_circle_pass() -> None:
-    """Bob submits Alice's program, and tries different spellings of his own id until one gives him her numbers."""
+    """Bob submits Alice's program, and tries spellings of his own id until a spelling gives him Alice's numbers."""
     for number in range(512):
         spelling = "".join(char.upper() if number >> at & 1 else char for at, char in enumerate("bobbobbob"))
         numbers = draw_numbers(SPEC, spelling)

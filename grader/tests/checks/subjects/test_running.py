@@ -108,7 +108,10 @@ def test_by_either_clock_an_end_in_the_first_moment_is_one_at_the_start(
 @pytest.mark.parametrize("clock", ["wall", "simulated"])
 @pytest.mark.parametrize(("frame", "starts"), [("await_or_execute", True), ("handler", True), ("spin_once", False)])
 def test_a_node_that_crashes_in_its_first_callback_has_started(clock: ClockName, frame: str, *, starts: bool) -> None:
-    """The node counts as started even if it exits very early. A class that is passed to rclpy.spin has no callback."""
+    """The node counts as started even if it exits very early.
+
+    If rclpy.spin gets a class instead of a node, no callback is called, and the node does not count as started.
+    """
     text = f'{START}\n  File "/ros/rclpy/executors.py", line 838, in {frame}\n    x\nValueError: x\n'
     end = ProcessEnd(by="itself", exit_code=1, t_s=0.0, stop_s=None)
     crashed_early = evidence(recording([], clock=clock, end=end, stderr=Output(text)))

@@ -1,4 +1,4 @@
-"""A node that spawns turtles, announces the remaining ones, and removes those that were caught."""
+"""A node that spawns turtles, announces the remaining turtles, and removes the turtles that were caught."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A compiled file that Python uses without checking the source."""
+"""The package contains a compiled file that Python uses without checking the source."""
 
 import importlib.util
 import py_compile

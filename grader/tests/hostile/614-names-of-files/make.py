@@ -1,4 +1,4 @@
-"""File names with commands, which cannot be stored in git on every system."""
+"""Some file names contain commands. git cannot store such names on every system."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Test turtle_teleop_key, draw_square and mimic on the real ROS 2, together with turtlesim, started as a user would."""
+"""Test turtle_teleop_key, draw_square and mimic on the real ROS 2, with turtlesim, as a user starts them."""
 
 from __future__ import annotations
 
