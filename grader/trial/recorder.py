@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
-import re
 import time
 from collections import Counter
 from typing import TYPE_CHECKING, Any, Literal
@@ -13,6 +11,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 
+from grader.trial.interface_class import load_class
 from grader.trial.observed import Offer
 from grader.trial.recording import Command, Endpoint, Graph, LogLine, Message
 
@@ -26,7 +25,6 @@ OWN_NAMESPACE = "/_grader"
 OWN_NODES = ("/turtlesim", f"{OWN_NAMESPACE}/recorder")
 NAMESAKE = " (not the simulator)"
 """If a student's node has the same name as one of the grader's nodes, this suffix is added to its name."""
-_TYPE = re.compile(r"([a-z][a-z0-9_]*)/msg/([A-Z][A-Za-z0-9]*)")
 _LEVELS = {10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
 
 # A node that keeps creating topics or messages must not fill the memory of the grader.
@@ -210,7 +208,7 @@ class Recorder(Node):
         return self._simulated.get(topic) != type_name or bool(self.count_publishers(topic) > 1)
 
     def _subscribe(self, topic: str, type_name: str) -> bool:
-        message_type = self._load(type_name)
+        message_type = load_class(type_name, "msg", self._prefixes)
         if message_type is None:
             return False
         offers = self.get_publishers_info_by_topic(topic)
@@ -226,15 +224,6 @@ class Recorder(Node):
         except Exception:
             return False
         return True
-
-    def _load(self, type_name: str) -> Any | None:  # noqa: ANN401 - a message class
-        match = _TYPE.fullmatch(type_name)
-        if match is None:
-            return None
-        package, name = match.groups()
-        if not any((prefix / "share" / package / "msg" / f"{name}.msg").is_file() for prefix in self._prefixes):
-            return None
-        return getattr(importlib.import_module(f"{package}.msg"), name)
 
 
 def _each_type_first(endpoints: set[Endpoint]) -> list[Endpoint]:

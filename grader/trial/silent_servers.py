@@ -5,9 +5,9 @@ In DDS, a request reaches every server of the service, and the client takes whic
 
 from __future__ import annotations
 
-import importlib
-import re
 from typing import TYPE_CHECKING, Any
+
+from grader.trial.interface_class import load_class
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 MOST_SERVICES = 20
 """The maximum number of services with a silent server. A node must not fill the memory of the grader."""
-_TYPE = re.compile(r"([a-z][a-z0-9_]*)/srv/([A-Z][A-Za-z0-9]*)")
 
 
 class SilentServers:
@@ -44,7 +43,7 @@ class SilentServers:
         return any(served)
 
     def _serve(self, offer: Offer) -> bool:
-        service_type = self._load(offer.type)
+        service_type = load_class(offer.type, "srv", self._prefixes)
         if service_type is None:
             return False
 
@@ -55,13 +54,3 @@ class SilentServers:
         service = self._recorder.create_service(service_type, offer.service, received)
         service.send_response = lambda *_: None
         return True
-
-    def _load(self, type_name: str) -> Any | None:  # noqa: ANN401 - a service class
-        """Return the class of an installed service type, or None. The name was chosen by a node of the submission."""
-        match = _TYPE.fullmatch(type_name)
-        if match is None:
-            return None
-        package, name = match.groups()
-        if not any((prefix / "share" / package / "srv" / f"{name}.srv").is_file() for prefix in self._prefixes):
-            return None
-        return getattr(importlib.import_module(f"{package}.srv"), name)

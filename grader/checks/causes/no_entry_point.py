@@ -24,10 +24,18 @@ FORM = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION in the list c
 
 
 def line(evidence: Evidence) -> Where:
-    """Return the line of setup.py with the exercise's entry point, or the call to setup() if there is no such line."""
+    """Return the line of setup.py with the exercise's entry point; without one, the line of `console_scripts`.
+
+    Without both, the line that calls setup() is returned.
+    """
     setup = evidence.setup_py
-    point = setup.entry_point(evidence.trial.executable) if setup is not None else None
-    return Where("setup.py", point.line if point is not None else setup.setup_line if setup is not None else None)
+    if setup is None:
+        return Where("setup.py")
+    point = setup.entry_point(evidence.trial.executable)
+    if point is not None:
+        return Where("setup.py", point.line)
+    listed = line_of(evidence.submission.files.get("setup.py", b""), r"[\"']console_scripts\b")
+    return Where("setup.py", listed or setup.setup_line)
 
 
 def no_entry_point(evidence: Evidence) -> Finding:
@@ -127,7 +135,7 @@ def _missing(evidence: Evidence, points: tuple[EntryPoint, ...]) -> Cause:
     if file is not None:
         text = f"{shorten(file)} exists, but setup.py has no entry point for it."
         return Cause("entry-point-missing", text)
-    return Cause("entry-point-missing", "setup.py has no entry point with this name, and no file looks like it.")
+    return Cause("entry-point-missing", "setup.py has no entry point with this name.")
 
 
 def _looks_like_a_node(evidence: Evidence, targets: list[str | None]) -> str | None:

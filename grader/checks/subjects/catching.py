@@ -45,7 +45,7 @@ class Catches:
     turtles: float = number(1, at_least=1, about="The minimum number of turtles to catch.")
     service: str = string(
         "the full name of a service",
-        default=" ",
+        default="",
         about="The service with a field `name` that must be called before a turtle is removed, if another node of the "
         "trial offers it.",
     )
@@ -74,11 +74,11 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
         text = "Only the spawner may remove a target. Call its service /catch."
         cause = Cause("not-driven", text, evidence.place("create_client"))
         return failed("The node removed a target itself, with /kill.", expected, cause)
-    uncaught = _uncaught(recording, gone, params.service.strip())
+    uncaught = _uncaught(recording, gone, params.service)
     if uncaught is not None:
         observed = f"{shorten(uncaught.turtle)} was removed at {uncaught.gone_s:.1f} s, although nobody caught it."
         other = next(iter(evidence.exercise.beside(evidence.trial.id)), evidence.trial)
-        cause = why_killed(evidence.from_trial(other.id), uncaught, params.service.strip())
+        cause = why_killed(evidence.from_trial(other.id), uncaught, params.service)
         return failed(observed, expected, cause)
     if len(gone) == len(tracks) >= params.turtles:
         return passed(f"All {count(len(gone), 'target')} were caught, the last one at {gone[-1].gone_s:.0f} s.")

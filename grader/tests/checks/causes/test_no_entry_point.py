@@ -33,13 +33,13 @@ def setup_py(instead: str, more: str = "") -> Files:
 @pytest.mark.parametrize(
     ("files", "diagnosis", "where", "words"),
     [
-        (setup_py(""), "entry-point-missing", "setup.py:5", f"{NODE_FILE} exists, but"),
-        ({**setup_py(""), NODE_FILE: None, OTHER: NODE}, "entry-point-missing", "setup.py:5", f"{OTHER} exists, but"),
+        (setup_py(""), "entry-point-missing", "setup.py:13", f"{NODE_FILE} exists, but"),
+        ({**setup_py(""), NODE_FILE: None, OTHER: NODE}, "entry-point-missing", "setup.py:13", f"{OTHER} exists, but"),
         (
             {**setup_py(""), NODE_FILE: None},
             "entry-point-missing",
-            "setup.py:5",
-            "setup.py has no entry point with this name,",
+            "setup.py:13",
+            "setup.py has no entry point with this name.",
         ),
         (
             {
@@ -48,8 +48,8 @@ def setup_py(instead: str, more: str = "") -> Files:
                 OTHER: NODE,
             },
             "entry-point-missing",
-            "setup.py:5",
-            "setup.py has no entry point with this name,",
+            "setup.py:13",
+            "setup.py has no entry point with this name.",
         ),
         (
             setup_py('            "a = b.c:main" "draw_circle = my_robot_controller.draw_circle:main",\n'),
@@ -129,7 +129,7 @@ SCRIPT = replace(BUILD, entry_points={})
         ({"scripts/draw_circle": "#!/usr/bin/python\r\n1\r\n"}, "script-shebang", "scripts/draw_circle:1", ""),
         ({"draw_circle": "python3\n"}, "script-shebang", "draw_circle:1", '"python3"'),
         ({}, "script-shebang", f"{NODE_FILE}:1", '"import rclpy"'),
-        ({NODE_FILE: None}, "entry-point-missing", "setup.py:5", ""),
+        ({NODE_FILE: None}, "entry-point-missing", "setup.py:13", ""),
     ],
 )
 def test_a_script_is_no_entry_point(files: Files, diagnosis: str, where: str, words: str) -> None:

@@ -43,7 +43,7 @@ def leads_to(target: str) -> Build:
 @pytest.mark.parametrize(
     ("files", "build", "diagnosis", "where"),
     [
-        (setup_py(f'            "{POINT}",\n', ""), NOTHING, "entry-point-missing", "setup.py:5"),
+        (setup_py(f'            "{POINT}",\n', ""), NOTHING, "entry-point-missing", "setup.py:13"),
         (setup_py("console_scripts", "console_script"), NOTHING, "entry-point-group", "setup.py:13"),
         (
             setup_py(f'"{POINT}",', f'"test_node = my_robot_controller.first:main"\n            "{POINT}",'),
