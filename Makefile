@@ -1,4 +1,4 @@
-# The commands to type; `make help` lists them. Each target first sets up what it needs, and is quick if that is done.
+# The targets of make; `make help` lists them. Each target first sets up what it needs, and is quick if that is done.
 
 .DEFAULT_GOAL := help
 .PHONY: help demo cluster notebooks docs test test-all lint lock clean
