@@ -41,7 +41,7 @@ _NODE = "my_robot_controller/draw_circle.py"
 
 @dataclass(frozen=True)
 class Row:
-    """A row of the table. `value` and `aim` have the same unit. A value is good if it is at most the aim."""
+    """A row of the table. `value` and `aim` have the same unit. A value is good if it is not above the aim."""
 
     name: str
     value: float

@@ -1,4 +1,4 @@
-"""Measure the cost of `grader check` relative to F: a bare colcon build plus a bare process with one rclpy node.
+"""Measure the cost of `grader check` relative to F, the time of a `colcon build` plus a process with one rclpy node.
 
     python -m grader.benchmarks.check [--times N] [--submission FOLDER]
 

@@ -125,7 +125,7 @@ def _screen(learner: Course) -> Iterator[pexpect.spawn[str]]:
 
 
 def _rest() -> None:
-    """Wait until all descendants of this process are idle. Then the next trial is prepared, and no fix is being tested.
+    """Wait until all descendants of this process are idle, that is, until nothing is prepared or tested any more.
 
     A learner also needs some seconds between two saves.
     """

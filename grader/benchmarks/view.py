@@ -131,7 +131,7 @@ def _listening(url: str) -> Iterator[None]:
 
 
 def _latency(page: Page, number: int) -> float:
-    """Return the time from a key press until the turtle moves (s). The direction alternates to avoid the walls."""
+    """Return the time from a key press until the turtle moves (s). The arrow keys alternate."""
     key = "ArrowUp" if number % 2 else "ArrowDown"
     if number == 0:
         # The first key press adds the driving node to the graph.

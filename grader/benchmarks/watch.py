@@ -1,4 +1,4 @@
-"""Measure how long `grader watch` takes from save to verdict, relative to F: a bare build plus a bare rclpy node.
+"""Measure how long `grader watch` takes from save to verdict, relative to F: a `colcon build` plus an rclpy node.
 
     python -m grader.benchmarks.watch [--times N] [--submission FOLDER --exercise NAME --file PATH]
 

@@ -25,7 +25,8 @@ class Judgement:
     """The findings of the checks so far.
 
     `findings` contains a finding for every check. The findings in `settled` are final, because the evidence of their
-    stage was complete. Any other finding says that the node was not run, or that a required check has not passed yet.
+    stage was complete. A finding that is not in `settled` says that the node was not run, or that a required check has
+    not passed yet.
     """
 
     exercise: Exercise

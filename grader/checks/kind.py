@@ -1,8 +1,8 @@
 """A kind is a type of check, with the parameters that exercise.toml may set.
 
 The parameters of a kind are a dataclass next to the check function. The functions `number`, `string`, `strings` and
-`choice` create its fields with their defaults and allowed values. Therefore, the author of a new exercise writes no
-Python code.
+`choice` create the fields of this dataclass with their defaults and allowed values. Therefore, the author of a new
+exercise writes no Python code.
 """
 
 # ruff: noqa: ANN401 (the functions below return what dataclasses.field returns)

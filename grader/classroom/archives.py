@@ -1,6 +1,6 @@
 """Unpack a student's archive into a temporary folder.
 
-The script unpack.py does the work, and this module limits the resources of the script.
+The script unpack.py unpacks the archive, and this module limits the resources of the script.
 """
 
 from __future__ import annotations

@@ -109,7 +109,7 @@ def grade_found(
 
 
 def _engine_is_known(request: Request) -> bool:
-    """Return whether the engine is this machine. Raises UsageError for an unknown engine."""
+    """Return whether the engine is "local", that is, this machine. Raises UsageError for an unknown engine."""
     local = request.engine == "local"
     if not local and not request.engine.startswith(DASK):
         message = f'--engine is "{request.engine}". The engine must be local or {DASK}HOST:PORT.'

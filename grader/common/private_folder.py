@@ -1,7 +1,7 @@
 """A folder with a fixed name that only this user can write to, for files that several processes of the user share.
 
-Other users can also create files in the folder for temporary files. If the grader opened a file with a fixed name
-there, another user could already have created this file, for example as a link to a file of the first user.
+Other users can also create files in the folder for temporary files. If the grader opened a file with a fixed name in
+that folder, another user could have created the file first, for example as a link to a file of the grader's user.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def private_folder(above: Path, name: str) -> Path:
-    """Return the folder `name` in `above`. Create it if it does not exist.
+    """Return the folder `name` in `above`. The folder is created if it does not exist.
 
     Raises:
         MachineError: the folder cannot be created, or other users can write to it.

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Measured:
-    """Arrival times (s), the intervals between arrivals, the mean interval, and the periods before and after these.
+    """The times of arrivals (s), the intervals between them, and the periods before the first and after the last.
 
     `intervals` and `mean_s` leave out the intervals that were changed by a stall of the machine, and those that begin
     in the initial period (`activity.START_S`). `begins` contains the start times of the intervals. `trusted` is the

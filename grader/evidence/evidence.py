@@ -104,7 +104,7 @@ class Evidence:
         return tuple(self.from_trial(id_) for id_ in ids if id_ in self.runs or id_ == ids[0])
 
     def with_run(self, run: Run) -> Evidence:
-        """Return the evidence with the result of this trial added, also from the viewpoints of the additional nodes."""
+        """Return the evidence with the result of this trial, both for the trial's own node and for additional nodes."""
         specs = (self.trial, *self.exercise.beside(self.trial.id))
         return replace(self, runs={**self.runs, **{spec.id: _seen_by(spec, run, specs) for spec in specs}})
 

@@ -28,8 +28,8 @@ KEPT_S = 1.1
 def moved_by(recording: Recording, *, from_start: bool) -> str | None:
     """Return the call that moved the turtle, or None.
 
-    With `from_start`, all calls since the start of the trial count. Without `from_start`, only what happened after the
-    first command counts.
+    With `from_start`, all calls since the start of the trial count. Without `from_start`, only events after the first
+    command count.
     """
     always = next((name for name in recording.interventions if name in ALWAYS), None)
     names = [name for name in recording.interventions if name in MOVING]

@@ -56,7 +56,7 @@ class Archived:
 
 
 def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -> None:
-    """Write the evidence to a folder, which must be new or empty. `prefixes` contain the .msg files.
+    """Write the evidence to a folder, which must be new or empty. `prefixes` are the folders with the .msg files.
 
     Raises:
         UsageError: the folder is not empty.

@@ -24,7 +24,9 @@ class Try:
 
 @dataclass(frozen=True)
 class Tries:
-    """All tries of one submission. `behind` counts the causes that appeared only after other causes had been fixed.
+    """All tested changes of one submission.
+
+    `behind` counts the causes that appeared only after other causes had been fixed.
 
     `stopped` says why some changes were not tried. `stopped` is empty if all changes were tried.
     """
@@ -34,5 +36,5 @@ class Tries:
     stopped: str = ""
 
     def of(self, check: str, diagnosis: str | None) -> Try | None:
-        """Return the try for this check with this diagnosis, or None."""
+        """Return the tested change for this check with this diagnosis, or None."""
         return next((each for each in self.made if (each.check, each.diagnosis) == (check, diagnosis)), None)

@@ -99,7 +99,7 @@ class Account:
 
 
 def walk(read: object) -> Iterator[tuple[object, int]]:
-    """Yield each key and value of parsed JSON together with its nesting depth. The depth of `read` is 1."""
+    """Yield each key and value of parsed JSON together with its nesting depth. The depth of `read` itself is 1."""
     waiting = [(read, 1)]
     while waiting:
         value, depth = waiting.pop()

@@ -131,7 +131,7 @@ class BoundedCollect(ExchangeCollect):  # type: ignore[misc, unused-ignore]
         super().copy_files()
 
     def do_copy(self, src: str, dest: str, log: Any = None) -> None:  # noqa: ANN401 - as the base class
-        """Copy one submission. If this fails, log a warning and continue with the other submissions."""
+        """Copy one submission. If the copy fails, log a warning and continue with the other submissions."""
         with tempfile.TemporaryDirectory(prefix="collect-") as folder:
             safe = Path(folder, "submission")
             try:

@@ -1,4 +1,4 @@
-"""`nbgrader export`: export only confirmed scores, and report the unconfirmed ones."""
+"""`nbgrader export`: export only confirmed scores, and report unconfirmed scores."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The folders in nbgrader's exchange.
 
-`nbgrader submit` creates one folder per submission, but students can create other folders there.
+`nbgrader submit` creates one folder per submission, but students can create other folders in the exchange.
 """
 
 from __future__ import annotations

@@ -56,7 +56,7 @@ def _together(exercise: Exercise, submitted: Path) -> Submission | None:
 
 
 def _worked_on(exercise: Exercise, notebook: bytes) -> list[Part]:
-    """Return the files that the notebook's cells write, except files that are still as in the starting point."""
+    """Return the files that the notebook's cells write, except files that are unchanged from the starting point."""
     try:
         cells = json.loads(notebook)["cells"]
         sources = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]

@@ -1,7 +1,6 @@
 """Additional steps of `nbgrader generate_assignment`: starting points instead of "YOUR CODE HERE", and stripped files.
 
-If something is wrong, each of these steps raises an error, so that nbgrader removes its output and no solution is
-released.
+If a step finds a mistake, the step raises an error, so that nbgrader removes its output and no solution is released.
 """
 
 from __future__ import annotations

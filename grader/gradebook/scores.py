@@ -85,7 +85,8 @@ def sync(
 
     Raises:
         UsageError: nothing was collected, a step is not in the gradebook, or another sync is running.
-        MachineError: the machine cannot grade or write. In this case, unconfirmed scores are also worth 0 points.
+        MachineError: the machine cannot grade or write. If the machine fails, unconfirmed scores are also worth 0
+            points.
     """
     from nbgrader.api import Gradebook
     from sqlalchemy.exc import SQLAlchemyError
@@ -196,7 +197,7 @@ def _require_assignments(gradebook: Any, steps: set[str]) -> None:  # noqa: ANN4
 
 
 def _write(gradebook: Any, folders: ClassFolders, result: Result, tally: Counter[str]) -> list[str]:  # noqa: ANN401
-    """Write the scores of one submission to the gradebook. Return the checks that have no cell."""
+    """Write the scores of one submission to the gradebook. Return the checks without a cell in the notebook."""
     student, step = result.student, result.report.exercise
     gradebook.update_or_create_student(student)
     timestamp = _time_of(folders.submitted(student, step))

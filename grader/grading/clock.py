@@ -13,8 +13,9 @@ The rules, in the order in which they are applied:
 4. The trial is also repeated in wall time if a measured value is near the edge of its tolerance, or if the node did not
    stop.
 5. If a trial in wall time fails while other programs use the processors, the trial is repeated while nothing else is
-   graded. A busy machine can make a correct node look wrong, but it cannot make a wrong node look correct. So the first
-   trial that passes counts. If no trial of WALL_TRIALS passes, the trial with the least disturbance counts.
+   graded. A busy machine can make a correct node look wrong, but it cannot make a wrong node look correct. So the
+   result of the first trial that passes counts. If no trial of WALL_TRIALS passes, the trial with the least disturbance
+   counts.
 """
 
 from __future__ import annotations

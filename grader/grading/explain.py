@@ -45,7 +45,7 @@ def explain(
 ) -> Tries:
     """Try to fix the causes of the failed outcomes. `build_s` is the duration of the build (s).
 
-    `give_up` is called before each try. Once `give_up` returns true, no more changes are tried.
+    `give_up` is called before each change is tested. Once `give_up` returns true, no more changes are tried.
     """
     return _Explaining(evidence, outcomes, MOST_F * (build_s + BARE_NODE_S), regrade, give_up).run()
 
@@ -115,7 +115,7 @@ class _Explaining:
         return Tries(tuple(self.made), len(self.behind), stopped)
 
     def _share(self, target: Outcome, found: Mapping[str, Outcome], diff: str) -> set[Key]:
-        """Record the result of a try for other checks with the same cause. Return the keys of these checks."""
+        """Record the result of a test for other checks with the same cause. Return the keys of these checks."""
         same = [
             each
             for each in self.outcomes
@@ -129,7 +129,7 @@ class _Explaining:
 
 
 def _result(target: Outcome, before: Mapping[str, Outcome], after: Mapping[str, Outcome]) -> Result | None:
-    """Return the result of a try, or None if the try is inconclusive."""
+    """Return the result of testing a change, or None if the test is inconclusive."""
     now = after.get(target.id)
     if now is not None and now.status is Status.ERROR:
         return None

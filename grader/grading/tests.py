@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Tests:
-    """Runs the student's tests, as a context manager. When the context exits, it stops all test runs."""
+    """Runs the student's tests, as a context manager. All test runs are stopped when the context exits."""
 
     __test__ = False  # keeps pytest from collecting this class
 

@@ -88,7 +88,8 @@ class Trials:
         `run` waits for the recordings of these trials.
 
         Nodes that already run from the predicted install tree continue if this tree has the same content as `tree`, the
-        result of the build. If the install trees differ, all of these trials start again.
+        result of the build. If the install trees differ, every trial that was started from the predicted install tree
+        starts again.
         """
         self.tree = tree
         if self._predicted is not None and not self._is_installed(self._predicted):

@@ -27,7 +27,7 @@ _POLL_S = 0.02
 class Turns:
     """Lets one grader at a time use the machine alone.
 
-    All graders use the lock files in `folder`. Without these files, no grader waits.
+    All graders use the lock files in `folder`. If these files cannot be used, no grader waits for another grader.
     """
 
     def __init__(self, folder: Path) -> None:

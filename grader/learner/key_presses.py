@@ -1,4 +1,4 @@
-"""Read single key presses from the terminal without waiting for Enter. The terminal is restored afterwards."""
+"""Read single key presses from the terminal without waiting for Enter. Restore the terminal's settings afterwards."""
 
 from __future__ import annotations
 

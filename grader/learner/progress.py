@@ -56,11 +56,11 @@ class Progress:
         return self.steps.get(name, StepProgress())
 
     def with_step(self, name: str, step: StepProgress) -> Progress:
-        """Return a copy of the progress in which this step has this progress."""
+        """Return a copy of the progress in which the progress in the step `name` is `step`."""
         return replace(self, steps={**self.steps, name: step})
 
     def at(self, name: str) -> Progress:
-        """Return a copy of the progress in which the current step is `step`."""
+        """Return a copy of the progress in which the current step is `name`."""
         return replace(self, current=name, steps={**self.steps, name: self.step(name)})
 
     def graded(self, name: str, report: Report) -> Progress:

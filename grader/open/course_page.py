@@ -36,7 +36,7 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
     """Serve the page and grade, until Ctrl-C, SIGTERM, or the terminal is closed.
 
     Raises:
-        UsageError: another program uses the port, or the user may not use it.
+        UsageError: another program uses the port, or the user is not allowed to use the port.
         MachineError: a library that the page needs is not installed, or the server has exited.
     """
     see_that_it_can_be_served("`grader watch` works without it")

@@ -131,7 +131,7 @@ class Programs:
         return remembered("turtlesim")
 
     async def beside_another(self) -> bool:
-        """Return whether a turtlesim is running that was not started here.
+        """Return whether a turtlesim is running that this object has not started.
 
         A second turtlesim would get the same commands.
         """

@@ -2,8 +2,7 @@
 
 A cause is a fact if the files, the build, an exception or the recording show it directly, or if a test has proved it:
 after the suggested fix, the check passes or the node gets further. All other causes are conclusions from the source
-code or from the node's behaviour, and may be wrong. `FACTS` is the only list: a diagnosis that is not in it is a
-possibility.
+code or from the node's behaviour, and may be wrong. A diagnosis that is not in the list `FACTS` is a possibility.
 """
 
 from __future__ import annotations

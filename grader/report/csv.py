@@ -92,8 +92,8 @@ def _safe(text: str) -> str:
     """Return the text on one line, changed so that no spreadsheet executes it as a formula (CWE-1236).
 
     A spreadsheet may split cells at a separator other than the comma. A new cell could then begin after any separator
-    in SEPARATORS, so the text after each such separator is checked too. Full-width and small variants are treated like
-    the standard characters, because some spreadsheets normalize them on import.
+    in SEPARATORS, so the text after each such separator is checked too. Full-width and small variants of characters are
+    treated like the standard characters, because some spreadsheets normalize them on import.
     """
     begins, line = True, ""
     for char in printable(text):

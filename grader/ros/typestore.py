@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def jazzy_types() -> Typestore:
-    """Return the types that rosbags includes for ROS 2 Jazzy. The types of turtlesim are not among them."""
+    """Return the types that rosbags includes for ROS 2 Jazzy. These types do not include the types of turtlesim."""
     return get_typestore(Stores.ROS2_JAZZY)
 
 

@@ -57,7 +57,7 @@ class View:
 def ros_view(ros: Ros, *more: Path) -> View:
     """Return a view that contains the interpreter, ROS 2 and the folders or files in `more`, but not the grader.
 
-    The view hides the grader even if it is installed in one of these folders.
+    The view hides the grader even if the grader is installed in one of these folders.
     """
     needed = [Path(sys.base_prefix), Path(sys.prefix), *ros.all_prefixes, *more]
     site = Path(sys.prefix) / f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"

@@ -59,7 +59,7 @@ def env(domain: Domain = None) -> None:
 
 
 def shell(domain: Domain = None) -> None:
-    """Open a shell with ROS 2. Type exit to leave it."""
+    """Open a shell with ROS 2. Type exit to leave the shell."""
     from grader.report.progress_line import progress
     from grader.ros import shell as shells
     from grader.ros.installation import who_hears

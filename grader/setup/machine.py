@@ -88,7 +88,7 @@ class SourcedRos(NamedTuple):
 
 
 def sourced_ros(env: Mapping[str, str], ours: Path) -> Optional[SourcedRos]:
-    """Return the sourced ROS 2 Jazzy, or None. `ours` is the prefix of the wheels, which is ignored."""
+    """Return the sourced ROS 2 Jazzy, or None. `ours`, the prefix of the wheels, is ignored."""
     if env.get("ROS_DISTRO") != "jazzy":
         return None
     for prefix in map(Path, clean(env).get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
@@ -164,7 +164,7 @@ def probe(executable: str) -> Optional[Python]:
 
 
 def for_ros(python: Python, ros: SourcedRos) -> Python:
-    """Return the interpreter. If its version is right for this ROS 2, list the modules that it lacks."""
+    """Return the interpreter. If the version of the interpreter is right for this ROS 2, list the missing modules."""
     if python.version[:2] != ros.python or not python.cpython:
         return python
     # Like .venv, use the system's packages, but not those in the user's home.

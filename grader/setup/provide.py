@@ -22,7 +22,7 @@ def provide(needs: Sequence[package_managers.Need], env: Mapping[str, str], say:
     Return the reason why something could not be installed.
 
     The required packages are installed first, in one command. Each optional package is installed separately, so that a
-    missing package does not prevent the installation of the others.
+    missing package does not prevent the installation of other packages.
     """
     path = env.get("PATH", "")
     manager = package_managers.find_manager(path)

@@ -142,7 +142,7 @@ def _sets(node: ast.AST, path: tuple[str, ...]) -> list[int]:
 def read_code(files: Mapping[str, bytes], first: str | None) -> Code:
     """Parse the node's file `first` and the submission's files that it imports. Without `first`, parse all files.
 
-    The other nodes of the package are irrelevant for the node in `first`.
+    Other nodes of the package do not affect the node in `first`.
     """
     paths = {path: None for path in sorted(files) if path.endswith(".py") and not _left_out(path)}
     modules: dict[str, Module] = {}

@@ -69,7 +69,7 @@ class Entry:
 
 @dataclass
 class Tree:
-    """The files below a folder, by POSIX path. `executable` are those that their owner can execute."""
+    """The files below a folder, by POSIX path. `executable` contains the files that their owner can execute."""
 
     files: dict[str, bytes] = field(default_factory=dict)
     executable: set[str] = field(default_factory=set)
@@ -265,7 +265,7 @@ def _add(tree: Tree, path: str, data: bytes, *, executable: bool) -> None:
 def _resolve(tree: Tree, path: str) -> None:
     """Replace a link by the content of its target, if the target is one of the files.
 
-    No file is read from the disk for this.
+    No file is read from the disk to resolve a link.
     """
     at = path
     for _ in range(len(tree.links)):
@@ -286,7 +286,7 @@ def _resolve(tree: Tree, path: str) -> None:
 
 
 def reason(error: OSError, path: str) -> str:
-    """Return the reason why a path could not be read, for `rejected`.
+    """Return the text for `rejected` that says why a path could not be read.
 
     If the machine is at fault, raise MachineError instead.
     """

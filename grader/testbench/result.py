@@ -40,7 +40,7 @@ class NodeRun:
 
     @property
     def accepted(self) -> bool:
-        """Whether all tests passed. A run without any passed test accepts nothing."""
+        """Whether all tests passed. A run without a passed test does not accept the node."""
         return self.exit_code == 0
 
 
@@ -48,7 +48,7 @@ class NodeRun:
 class BenchResult:
     """The runs on the correct node and on the broken nodes.
 
-    Runs that could no longer change the verdict are missing.
+    Runs that could no longer change the verdict are left out.
     """
 
     runs: tuple[NodeRun, ...]

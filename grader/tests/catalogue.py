@@ -98,7 +98,7 @@ def _number(case: Case) -> str:
 
 
 def _shown(id_: str, by_case: dict[str, list[str]]) -> str:
-    """Return some of the cases that show this diagnosis. If there is none, return a test that shows the diagnosis."""
+    """Return some of the cases that show this diagnosis, or else a test that shows this diagnosis."""
     names = by_case.get(id_, [])
     if not names and id_ in SHOWN_BY_TESTS:
         return f"[{Path(SHOWN_BY_TESTS[id_]).stem}](../tests/{SHOWN_BY_TESTS[id_]})"

@@ -1,8 +1,8 @@
 """Each diagnosis has a case in which it is true, and a similar but correct package that must not get the diagnosis.
 
-A case is a correct package with a few edits. The correct package is similar to the case, so a diagnosis that did not
-depend on the mistake itself would appear there too. But the correct packages pass: `test_course` tests the solutions,
-and `unusual/` has cases for the packages in bases/.
+A case is a correct package with a few edits. The correct package is similar to the case. Therefore, a diagnosis that
+did not depend on the mistake itself would also appear in the report on the correct package. All correct packages pass:
+`test_course` tests the solutions, and `unusual/` has cases for the packages in bases/.
 """
 
 from __future__ import annotations

@@ -58,7 +58,7 @@ def test_a_solution_passes_from_any_start(step: str, seed: int) -> None:
     ],
 )
 def test_a_recording_is_judged_again(step: str, tmp_path: Path) -> None:
-    """The steps include one without a package, one without a simulator, and others with several trials or nodes."""
+    """The steps include one without a package, one without a simulator, and steps with several trials or nodes."""
     first, again, kept = tmp_path / "first.json", tmp_path / "again.json", tmp_path / "kept"
     assert grader("check", f"solutions/{step}", "--json", first, "--recording", kept).returncode == 0
     done = grader("regrade", kept, "--json", again)

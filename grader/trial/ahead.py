@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Runs(Protocol):
-    """A trial that waits for its node or already runs it."""
+    """A trial that waits for its node or is already running the node."""
 
     def run(self, package: str, executable: str, tree: bytes) -> Recording:
         """Run the executable and return the recording, like `Trial.run`."""
@@ -76,7 +76,7 @@ class Ahead:
         self._stop()
 
     def clear(self) -> None:
-        """Stop every trial, and forget it."""
+        """Stop and remove every trial."""
         self._stop()
         self._begin_empty()
 
@@ -107,7 +107,7 @@ class Ahead:
     def run(self, name: str, package: str, executable: str, tree: bytes) -> None:
         """Start the node in a trial that is waiting for it. After that, `trial(name).run` returns the recording.
 
-        A node that has already been started continues.
+        A node that has already been started continues to run.
         """
         if name not in self._under_way:
             self._under_way[name] = self._pool.submit(self._started[name].run, package, executable, tree)

@@ -1,7 +1,7 @@
 """Take waiting messages from a subscription, or waiting requests from a service, without an executor.
 
-An executor checks every entity and every event each time it runs. In each frame, this check takes longer than anything
-else.
+An executor checks every entity and every event each time it runs. In each frame, this check takes longer than any other
+part of the frame.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ FOUND_S = 0.5
 
 
 class Caller:
-    """Makes each call at its time.
+    """Makes each service call at the time that the exercise sets.
 
     The clients exist from the start, so that discovery is complete before the first call.
     """

@@ -62,8 +62,8 @@ def _initialize_with(ours: list[str]) -> None:
 def _exit_without_waiting() -> None:
     """Skip the cleanup of the libraries at the end of the process if ROS has been shut down.
 
-    Otherwise, Fast DDS would sleep for 0.1 s, although nothing is left to clean up. The exit code is kept, and Python
-    itself cleans up as usual.
+    During a normal exit, Fast DDS would sleep for 0.1 s, although nothing is left to clean up. The exit code is kept,
+    and Python itself cleans up as usual.
     """
     import rclpy
 

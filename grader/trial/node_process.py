@@ -45,7 +45,7 @@ def await_launcher(stdout: IO[bytes], stderr: IO[bytes] | None = None) -> None:
     """Wait until a launcher is ready to receive the command that it must run.
 
     Raises:
-        LaunchError: the launcher exited. The message is its output.
+        LaunchError: the launcher exited. The message is the output of the launcher.
     """
     received = b""
     while not received.endswith(READY):

@@ -128,9 +128,9 @@ class ProcessEnd:
     """How the node's process ended.
 
     `by` says what stopped the process: "itself" (before the scenario was over), or a signal. `out_of` is set if the
-    grader stopped the process because it used more "memory", "processes" or "files" than a node may. `stop_s` is the
-    time from SIGINT to the exit of the process (s of wall time), or None if the process exited on its own. `t_s` is the
-    time of the exit on the trial's clock. `exit_code` is negative for a signal, as in subprocess.
+    grader stopped the process because it used more "memory", "processes" or "files" than a node may use. `stop_s` is
+    the time from SIGINT to the exit of the process (s of wall time), or None if the process exited on its own. `t_s` is
+    the time of the exit on the trial's clock. `exit_code` is negative for a signal, as in subprocess.
     """
 
     by: Literal["itself", "SIGINT", "SIGTERM", "SIGKILL"]
@@ -249,7 +249,7 @@ def to_json(recording: Recording, *, messages: bool = True) -> dict[str, Any]:
 
 
 def from_json(data: dict[str, Any], payloads: Iterable[bytes] | None = None) -> Recording:
-    """Return the recording in the result of `to_json`. If `data` lacks the message contents, `payloads` has them."""
+    """Return the recording in the result of `to_json`. `payloads` has the contents of messages if `data` lacks them."""
     contents = iter(payloads) if payloads is not None else (base64.b64decode(row[2]) for row in data["messages"])
     frames = data["frames"]
     wall = np.array(frames["wall"], dtype=np.bool_)

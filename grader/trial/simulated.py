@@ -190,7 +190,7 @@ class SimulatedTrial(Simulation):
                 return
 
     def _take_in(self) -> bool:
-        """Handle everything that has arrived. Return whether the node may react to what was just handled."""
+        """Handle everything that has arrived. Return whether the node may react to what was handled."""
         # Plain messages and acknowledgements get no answer, so the node stays idle.
         if not self.may_act():
             return self.take_in() > 0

@@ -152,9 +152,9 @@ class Trial:
             self._ready = True
 
     def suspend(self) -> None:
-        """Suspend the waiting simulator, which uses 0.3 % of a core, until the trial is used. Any thread may call this.
+        """Suspend the waiting simulator, which uses 0.3 % of a core, until the trial is used.
 
-        Outside a cell, do nothing, because suspended processes would not exit if the grader were killed.
+        Any thread may call `suspend`. Outside a cell, do nothing: suspended processes would outlive a killed grader.
         """
         if self._in_cell:
             self._processes.suspend()

@@ -30,7 +30,7 @@ class World:
     def new_name(self) -> str:
         """Return the next free name of the form turtleN.
 
-        A number in these names is not used again before the next reset.
+        A number that was used in such a name is not used again before the next reset.
         """
         return next(name for number in self._numbers if (name := f"turtle{number}") not in self.turtles)
 

@@ -81,7 +81,7 @@ def _draw_turtle(draw: ImageDraw.ImageDraw, x: float, y: float, theta: float, si
 
 
 class Blocks:
-    """A picture that rich can print."""
+    """A picture that the library rich can print."""
 
     def __init__(self, picture: Image.Image) -> None:
         self._picture = picture

@@ -184,7 +184,7 @@ class _Counter:
         self._arrivals.add(time.monotonic())
 
     def look(self, node: Node, now: float) -> None:
-        """Subscribe if not subscribed, but unsubscribe for a while if the rate is too high."""
+        """Subscribe to the topic, but unsubscribe for a while if the rate is too high."""
         flood = self._count > MOST_HZ * max(now - self._looked_s, LOOKED_EVERY_S)
         self._count, self._looked_s = 0, now
         if flood:

@@ -1,4 +1,4 @@
-"""Names in ROS 2 Jazzy that beginners use. The grader uses these names to suggest the right spelling."""
+"""Names in ROS 2 Jazzy that beginners use. The grader suggests a name from these lists for a misspelt name."""
 
 from __future__ import annotations
 

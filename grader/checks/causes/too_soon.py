@@ -14,10 +14,10 @@ WAITS_FOR_SUBSCRIBER = ("get_subscription_count", "count_subscribers")
 
 
 def too_soon(finding: Finding, evidence: Evidence) -> Finding:
-    """Return the finding about a trajectory whose beginning is too short. If possible, name the cause `too-soon`.
+    """Return the finding about a trajectory whose beginning is too short, with the cause `too-soon` if possible.
 
     In simulated time, the clock starts only when the publisher and the subscription are connected, so no command is
-    lost. No command is lost either if the node itself checks how many subscriptions are connected.
+    lost. If the node itself checks how many subscriptions are connected, no command is lost in wall time.
     """
     if evidence.recording.clock != "wall" or any(evidence.code.calls(name) for name in WAITS_FOR_SUBSCRIBER):
         return finding

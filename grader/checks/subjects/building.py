@@ -1,4 +1,4 @@
-"""Checks of the build: colcon built the package, and the install folder contains the files that it should."""
+"""Checks of the build: colcon built the package, and the install folder contains all required files."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ class CancelsGoal:
 
 @dataclass(frozen=True, kw_only=True)
 class SaysWhetherActive:
-    """The service by which the trial requests that the node cancel its goal. Its response has the field `success`."""
+    """The service by which the trial requests that the node cancel its goal. The response has the field `success`."""
 
     service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
 

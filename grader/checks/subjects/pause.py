@@ -92,7 +92,7 @@ def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *,
 
 
 def _drives_again_s(evidence: Evidence, params: Pause) -> float | None:
-    """Return the time of a second call with the same request that made the paused node drive again (s), or None."""
+    """Return the time (s) of a second call with the same request if it made the paused node drive again, else None."""
     calls = [call for call in evidence.recording.calls if call.by_trial and call.t_s >= params.from_s - EARLY_S]
     for first, second in pairwise(calls):
         if (first.service, first.request) == (second.service, second.request):

@@ -126,7 +126,7 @@ def _places(evidence: Evidence, params: Spawns, calls: list[Call], expected: str
 
 
 def places_differ(evidence: Evidence, params: PlacesDiffer) -> Finding:
-    """The turtles are at other places than in another trial of the same node."""
+    """The places of the turtles differ from their places in another trial of the same node."""
     expected = "Each time the node is started, the turtles are at other places."
     now, before = (_spawned(each) for each in (evidence, evidence.from_trial(params.other)))
     if now and now[: len(before)] == before[: len(now)]:

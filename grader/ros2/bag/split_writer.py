@@ -26,7 +26,7 @@ class SplitWriter:
     """A new bag with several files, as a context manager with the methods of BagWriter.
 
     The metadata is written after each file, so that all complete files can be read if the recorder is killed. The
-    current file is in a separate folder until it is complete; `ros2 bag reindex` finds it there.
+    current file is in a separate folder until it is complete. `ros2 bag reindex` also finds files in that folder.
 
     Args:
         folder: The folder of the bag, which must not exist.

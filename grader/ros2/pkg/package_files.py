@@ -110,7 +110,7 @@ def _write_cmake(wanted: NewPackage, made: _Files) -> None:
 
 
 def _cmake_lists(wanted: NewPackage) -> str:
-    """Return the content of CMakeLists.txt. The parts are in the order that CMake requires."""
+    """Return the content of CMakeLists.txt. The parts of the file are in the order that CMake requires."""
     ament = wanted.build_type == "ament_cmake"
     tools = (["ament_cmake", "ament_cmake_ros"] if wanted.library else ["ament_cmake"]) if ament else []
     filled = {

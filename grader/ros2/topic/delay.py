@@ -37,7 +37,7 @@ class Delays:
         self._news = False
 
     def add(self, now_ns: int, stamp_ns: int) -> None:
-        """Count a message that has arrived. The first message only starts the clock."""
+        """Count a message that has arrived. The first message only starts the measurement."""
         if now_ns == 0:
             if self._delays_ns:
                 print("time has reset, resetting counters", flush=True)

@@ -56,7 +56,10 @@ def to_look_at(source: str) -> int | None:
 
 
 def reported(source: str, error: str, files: dict[str, str] | None = None) -> Reported:
-    """Return the report of a node with this source that ended with this error. `files` are other package files."""
+    """Return the report of a node with this source that ended with this error.
+
+    `files` are the other files of the package.
+    """
     finding = _finding(source, error, files)
     return Reported(finding.diagnosis, None if finding.where is None else finding.where.line, finding.cause)
 

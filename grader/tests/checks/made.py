@@ -264,5 +264,5 @@ def finding(check: str, given: Evidence) -> Finding:
 
 
 def found(kind: Kind[Any], given: Evidence, **values: Param) -> Finding:
-    """Return the finding of a check of this kind. Parameters that are not given have their defaults."""
+    """Return the finding of a check of this kind. Parameters that are not given have their default values."""
     return kind.judge(given, {**kind.defaults(), **values})

@@ -85,7 +85,7 @@ class Done:
 
 
 def environment(folder: Path, shim: Path, fault: Fault) -> dict[str, str]:
-    """Return the variables that inject the fault into a command. `folder` is for the files of the injection."""
+    """Return the variables that inject the fault into a command. The injection stores its files in `folder`."""
     observed = folder / "seen"  # the folder is visible in the rooms, too
     observed.mkdir(exist_ok=True)
     (observed / "sitecustomize.py").write_text(ARMED)

@@ -11,7 +11,7 @@ T = TypeVar("T")
 
 
 class Choices:
-    """Takes decisions from the front of `data`. When no data are left, the decisions are 0 or empty."""
+    """Reads decisions from the beginning of `data`. When no data are left, the decisions are 0 or empty."""
 
     def __init__(self, data: bytes) -> None:
         self._data = data

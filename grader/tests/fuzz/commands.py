@@ -74,7 +74,7 @@ def graded(
 ) -> Report:
     """Return the report. For some inputs, also write the report in every format.
 
-    Only the checks `unjudged` may end with `error`.
+    Only the checks in `unjudged` may end with `error`.
     """
     options = Options(in_cell=False, clock=clock, trials_at_once=1)
     trials = Trials(recording or good())

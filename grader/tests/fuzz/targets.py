@@ -124,7 +124,10 @@ def notebooks(data: bytes) -> None:
 
 
 def recordings(data: bytes) -> None:
-    """Run `regrade` on a recording with one changed file. The first byte selects the file, the second the change."""
+    """Run `regrade` on a recording with one changed file.
+
+    The first byte selects the file, and the second byte selects the change.
+    """
     files = _recording()
     changed = sorted(files)[data[0] % len(files)] if data else ""
     content = data[1:]

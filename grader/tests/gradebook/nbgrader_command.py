@@ -22,7 +22,7 @@ TIMEOUT_S = 1800
 
 
 def nbgrader(*command: str, cwd: Path, **env: str) -> tuple[int, str]:
-    """Run `nbgrader` with these arguments. Return its exit code and both of its output streams."""
+    """Run `nbgrader` with these arguments. Return the exit code and both output streams of the command."""
     server = _server()
     assert server.stdin is not None
     assert server.stdout is not None

@@ -1,4 +1,4 @@
-"""nbgrader refuses folders and notebooks that attack it, and grades all others."""
+"""nbgrader refuses folders and notebooks that attack it, and grades all other submissions."""
 
 from __future__ import annotations
 

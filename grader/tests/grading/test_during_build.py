@@ -109,7 +109,8 @@ class Build:
 
     This replacement installs the predicted files with `more` at the end of the node's file.
 
-    `trees` contains the install tree that the replacement returned, and `ran` says whether a node ran before.
+    `trees` contains the install tree that the replacement returned, and `ran` says whether a node ran before the
+    replacement returned.
     """
 
     trials: Trials

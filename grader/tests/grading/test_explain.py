@@ -1,4 +1,4 @@
-"""Causes are proved by trying a fix. The runs of these tests are invented."""
+"""Causes are proved by trying a fix. The tests use invented runs."""
 
 from __future__ import annotations
 

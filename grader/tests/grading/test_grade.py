@@ -1,4 +1,4 @@
-"""Grade with the real command: the solution, a recording, on a broken machine, and many submissions in parallel."""
+"""Grade the solution with the real command, also on a broken machine and many times in parallel; regrade recordings."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def broken(tmp_path: Path, sitecustomize: str) -> subprocess.CompletedProcess[str]:
-    """Grade on a machine with a fault, which this sitecustomize causes in the grader's own process."""
+    """Grade on a machine with a fault, which the given sitecustomize.py causes in the grader's own process."""
     (tmp_path / "sitecustomize.py").write_text(sitecustomize)
     return grader("check", SOLUTION, "--json", tmp_path / "report.json", env={"PYTHONPATH": python_path(tmp_path)})
 

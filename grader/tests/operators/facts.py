@@ -59,7 +59,7 @@ class Hunk:
     moved: bool = False
 
     def is_at(self, where: Where) -> bool:
-        """Return whether a message about this line points to the change. If lines were removed, any line counts."""
+        """Return whether a message about this line points to the change (any line if lines were removed)."""
         removed = Counter(WORD.findall("\n".join(self.old))) - Counter(WORD.findall("\n".join(self.new)))
         opened_elsewhere = bool(removed) and set(removed) <= set("()[]{}")
         only_removed = not "".join(self.new).replace("pass", "").strip()

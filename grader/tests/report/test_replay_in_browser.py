@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def stop_clock(page: Page) -> None:
-    """Stop the clock of the page. Once stopped, this clock is advanced only by `page.clock.run_for`."""
+    """Stop the clock of the page. After that, the clock advances only when `page.clock.run_for` is called."""
     page.clock.install(time=0)
     page.clock.pause_at(1)
 

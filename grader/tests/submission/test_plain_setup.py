@@ -1,4 +1,4 @@
-"""A setup.py of the usual form is read. A setup.py whose installed files depend on anything else is not read."""
+"""A setup.py of the usual form is read. A setup.py of any other form is not read."""
 
 from __future__ import annotations
 

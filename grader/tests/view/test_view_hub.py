@@ -28,7 +28,7 @@ async def settle() -> None:
 
 
 class System:
-    """A hub whose full state is a number. Each update increases this number."""
+    """A hub whose full state is a number that each update increases."""
 
     def __init__(self) -> None:
         self.number = 0
