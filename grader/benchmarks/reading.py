@@ -70,7 +70,7 @@ def main() -> None:
 
 
 def _read(submission: Path, evidence: Evidence) -> None:
-    """Read everything that a check of the submission reads, in the same steps."""
+    """Read the same data of the submission as a check does, in the same steps."""
     judging = Judging("auto")
     opened = open_submission(submission)
     files = dataclasses.replace(evidence, submission=opened, build=None, runs={})

@@ -4,8 +4,8 @@ Three layouts are supported and can be mixed: one folder or archive per student;
 and a folder with students' clones of the course, each of which contains exercises/EXERCISE.
 
 No student is omitted. Each folder and archive becomes a submission. A submission that cannot be graded contains the
-reason. For a path that cannot be accessed, the functions of os.path return False, but the methods of pathlib raise an
-exception. Therefore, this module uses os.path.
+reason. This module uses os.path, because the functions of os.path return False for a path that cannot be accessed,
+while the methods of pathlib raise an exception.
 """
 
 # ruff: noqa: PTH110, PTH112, PTH114

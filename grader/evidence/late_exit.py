@@ -1,8 +1,8 @@
 """A node that crashed, but whose process took so long to exit that Ctrl-C was sent first.
 
 On a busy machine, a process may need longer to exit after an uncaught exception than a trial in simulated time lasts.
-The same submission must always get the same outcomes. So the outcome depends on the exception, not on whether the
-process exited before or after Ctrl-C.
+The same submission must always get the same outcomes. Therefore, the outcome depends on the exception, and not on
+whether the process exited before or after Ctrl-C.
 """
 
 from __future__ import annotations

@@ -7,13 +7,13 @@ The rules, in the order in which they are applied:
    disturb the trial. If the source contains a sign that the node may follow wall time, the trial starts in wall time
    instead (grader.trial.clues).
 3. A trial in simulated time stops at the first sign that the node follows wall time after all: a thread sleeps,
-   commands arrive while the clock is held, or the node never becomes idle (grader.trial.simulated). Then the trial is
-   repeated in wall time. But if several threads kept the node from becoming idle, this may have happened by chance, so
-   the trial is first repeated once in simulated time.
+   commands arrive while the clock is held, or the node never becomes idle (grader.trial.simulated). After such a sign,
+   the trial is repeated in wall time. If several threads kept the node from becoming idle, this may have happened by
+   chance, so the trial is first repeated once in simulated time.
 4. The trial is also repeated in wall time if a measured value is near the edge of its tolerance, or if the node did not
    stop.
 5. If a trial in wall time fails while other programs use the processors, the trial is repeated while nothing else is
-   graded. A busy machine can make a correct node look wrong, but it cannot make a wrong node look correct. So the
+   graded. A busy machine can make a correct node look wrong, but it cannot make a wrong node look correct, so the
    result of the first trial that passes counts. If no trial of WALL_TRIALS passes, the trial with the least disturbance
    counts.
 """

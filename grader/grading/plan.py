@@ -46,7 +46,7 @@ def plan_of(evidence: Evidence, clock: ClockName, *, choice: ClockChoice, seed: 
 
 
 def executables_of(evidence: Evidence) -> tuple[str, ...]:
-    """Return the executables of this trial: first that of the trial's own node, then those of the additional nodes."""
+    """Return the executables of this trial: the executable of the trial's own node, then those of additional nodes."""
     others = evidence.exercise.beside(evidence.trial.id)
     return evidence.trial.executable, *(spec.executable for spec in others)
 

@@ -41,7 +41,7 @@ def run(desk: Desk, events: Events, workspace: Path | None) -> None:
 
 
 def _await_step(events: Events) -> bool:
-    """Wait for an event that may mean that a step was started. Return False when there are no more events."""
+    """Wait for an event that can mean that a step was started. Return False when there are no more events."""
     return any(happened.key == STEP for happened in events)
 
 

@@ -41,7 +41,7 @@ def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sour
 
     The code also sets up completion for our commands.
 
-    `sourced` is True if the ROS 2 installation is a sourced one, which may have its own rqt_graph.
+    `sourced` is True if the ROS 2 installation is a sourced one, which can have its own rqt_graph.
     """
     lines = [f"# For `source <(grader env)`: ROS 2 Jazzy, in domain {wanted['ROS_DOMAIN_ID']}."]
     lines += [f"export {name}={shlex.quote(value)}" for name, value in wanted.items() if env.get(name) != value]

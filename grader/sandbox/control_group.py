@@ -1,4 +1,4 @@
-"""Control groups: the kernel limits the total resource use of a cell, if the grader may create groups.
+"""Control groups: the kernel limits the total resource use of a cell, if the grader is allowed to create groups.
 
 Root can create control groups nearly everywhere. An ordinary user can create control groups if systemd has delegated a
 part of the tree and the grader runs in that part. The limit of the group is higher by `ABOVE` than the limit in

@@ -1,4 +1,4 @@
-"""The seccomp filter for bubblewrap: the system calls that a cell may not make.
+"""The seccomp filter for bubblewrap: the system calls that are forbidden in a cell.
 
 The filter forbids calls that no node needs and that attackers have used to escape from sandboxes. A list of allowed
 calls (instead of forbidden ones) would break with a new version of Python or Fast DDS. Namespaces, limits and mounts

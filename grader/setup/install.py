@@ -123,7 +123,7 @@ def _uv(*arguments: str) -> float | None:
 
 
 def _may_write(folder: Path) -> bool:
-    """Return whether files can be created in a folder, which may not exist yet."""
+    """Return whether files can be created in a folder, even if the folder does not exist yet."""
     there = next((above for above in [folder, *folder.parents] if above.exists()), folder)
     return os.access(there, os.W_OK)
 

@@ -1,7 +1,7 @@
 """PlainSetup: a setup.py of the usual form, in which everything that affects the installed files is constant.
 
-Most packages have such a setup.py. Such a setup.py is read with `ast` and never run. For any other setup.py, the result
-is None.
+Most packages have a setup.py of this form. A setup.py of this form is read with `ast` and never run. For any other
+setup.py, the result is None.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
 A search for calls to `sleep` does not find `from time import sleep as nap`, `nap = time.sleep`, `partial(time.sleep,
 1)` or `getattr(time, "sleep")`. If a function in another file calls `sleep`, such a search does not find that call
-either. So every mention of one of the functions counts as a use, and names in other files that refer to one of the
-functions are followed.
+either. Therefore, every mention of one of the functions counts as a use, and names in other files that refer to one of
+the functions are followed.
 """
 
 from __future__ import annotations
@@ -186,7 +186,7 @@ def _use(node: ast.AST, file: _File, names: Collection[str]) -> Iterable[Use]:
 
 
 def _is_of_a_module(node: ast.expr) -> bool:
-    """Return whether the expression may be the dictionary of a module."""
+    """Return whether the expression can be the dictionary of a module."""
     return isinstance(node, ast.Call) or getattr(node, "attr", "") == "__dict__"
 
 

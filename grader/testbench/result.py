@@ -68,7 +68,7 @@ class BenchResult:
 class Ended:
     """What is known about a run after its end, before its report (JSON) is read.
 
-    A student's process may have written the report.
+    A student's process could have written the report.
     """
 
     node: str

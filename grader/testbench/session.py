@@ -5,8 +5,8 @@ standard input, then one byte per run. The session writes to standard output: RE
 after each run the exit code of pytest, whether the time limit was exceeded, the duration (s), the report's size, and
 the report. The session does not know whether a run uses the correct node or a broken one.
 
-Between two runs, the session kills all other processes of the cell and empties the disks of the cell. So a run finds no
-trace of earlier runs.
+Between two runs, the session kills all other processes of the cell and empties the disks of the cell. Therefore, a run
+finds no trace of earlier runs.
 """
 
 from __future__ import annotations

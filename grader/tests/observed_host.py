@@ -1,7 +1,7 @@
 """An observed host: a namespace with its own /tmp, home, processes and network, examined before and after a command.
 
-The effects of a submission stay in this host. So an attack can also run without a sandbox: programs that do nothing
-replace bubblewrap and prlimit, usage.py measures nothing, and the command finds no sandbox.
+The effects of a submission stay in this host. In this host, an attack can also run without a sandbox: programs that do
+nothing replace bubblewrap and prlimit, usage.py measures nothing, and the command finds no sandbox.
 
 This file also runs inside the host, as a script. Inside the host, the script offers what an attacker would like to
 reach (services, secrets), runs the command, and reports what is left.

@@ -70,7 +70,7 @@ def lives_in_wall_time(case: Case) -> bool:
 def without_test() -> frozenset[str]:
     """Return at most MOST_OF_GROUP diagnoses of each group, whose ids no test of the checks expects.
 
-    An id of one word may appear in a test for another reason, so its appearance does not count.
+    An id of one word can appear in a test for another reason, so its appearance does not count.
     """
     source = "".join(path.read_text("utf-8") for path in sorted((BASES.parent / "checks").rglob("*.py")))
     chosen: list[str] = []

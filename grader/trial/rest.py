@@ -91,7 +91,7 @@ def not_of_dds(thread: str) -> bool:
 
 
 def receives(thread: str) -> bool:
-    """Return whether a thread of this name may receive messages."""
+    """Return whether a thread of this name can receive messages."""
     return of_dds(thread) and not thread.startswith(_DDS_TIMERS)
 
 

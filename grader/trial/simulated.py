@@ -1,8 +1,9 @@
 """A trial in simulated time: /clock advances only while the node is idle.
 
-The clock is held at 0 until the simulator and the node have discovered each other (the handshake). After that, the
-clock advances in frames of 16 ms. The threads of a node show whether the node follows wall time. Any sign that the node
-follows wall time is called a doubt, and leads to a trial in wall time (grading/clock.py; docs/design.md, decision 3).
+The clock is held at 0 until the simulator and the node have discovered each other (the handshake). After this
+handshake, the clock advances in frames of 16 ms. The threads of a node show whether the node follows wall time. Any
+sign that the node follows wall time is called a doubt, and leads to a trial in wall time (grading/clock.py;
+docs/design.md, decision 3).
 """
 
 from __future__ import annotations
@@ -190,7 +191,7 @@ class SimulatedTrial(Simulation):
                 return
 
     def _take_in(self) -> bool:
-        """Handle everything that has arrived. Return whether the node may react to what was handled."""
+        """Handle everything that has arrived. Return whether the node can react to what was handled."""
         # Plain messages and acknowledgements get no answer, so the node stays idle.
         if not self.may_act():
             return self.take_in() > 0
@@ -242,7 +243,7 @@ class SimulatedTrial(Simulation):
     def _wake(self) -> None:
         """Publish time 0 until each node has woken up twice.
 
-        After that, the simulator and the nodes have discovered each other.
+        When each node has woken up twice, the simulator and the nodes have discovered each other.
         """
         rest = GroupThreads(self.node.pids, not_of_dds)
         try:

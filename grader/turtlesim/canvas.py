@@ -57,7 +57,7 @@ class Canvas:
         self._draw.ellipse((left, top, left + width - 1, top + width - 1), ink)
 
     def color_at(self, x: float, y: float) -> Rgb:
-        """Return the colour at a point (m): the colour of the trail, or else that of the background."""
+        """Return the colour at a point (m): the colour of the trail, or else the colour of the background."""
         if not (0.0 <= x <= SIDE_M and 0.0 <= y <= SIDE_M):
             return self.background
         red, green, blue, drawn = self._pixels[_pixel(x, y)]

@@ -133,8 +133,8 @@ class Turtle:
     def command(self, linear_x: float, linear_y: float | None, angular_z: float) -> None:
         """Set the velocities (m/s, m/s, rad/s), and abort the current rotation.
 
-        If `linear_y` is None, the sideways velocity does not change, as in a turtlesim that is not holonomic. So a
-        turtle that has just stopped being holonomic drifts sideways until its last command times out.
+        If `linear_y` is None, the sideways velocity does not change, as in a turtlesim that is not holonomic. A turtle
+        that has just stopped being holonomic therefore drifts sideways until its last command times out.
         """
         self.abort_rotation()
         self._vx, self._spin = linear_x, angular_z

@@ -1,6 +1,6 @@
 """The trail in a view: strokes that are sharp at any size, and an image of the older trail below them.
 
-The coordinates are integers in tenths of the canvas's pixels, with the y axis pointing down. Such integers are short in
+The coordinates are integers in tenths of the canvas's pixels, with the y axis pointing down. The integers are short in
 JSON and precise enough.
 """
 

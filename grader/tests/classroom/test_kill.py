@@ -93,7 +93,7 @@ def has_workers(pid: int) -> bool:
 
 
 def workers_of(pid: int) -> list[int]:
-    """Return the worker processes. For a moment, the grader may also have child processes that are not workers."""
+    """Return the worker processes. For a moment, the grader can also have child processes that are not workers."""
     found: list[int] = []
     with suppress(OSError):  # the process has ended
         for task in Path(f"/proc/{pid}/task").iterdir():

@@ -142,7 +142,7 @@ def recordings(data: bytes) -> None:
 
 
 def reports(data: bytes) -> None:
-    """Run `class-page` on this report and a valid report. The first byte may select a report with replaced values."""
+    """Run `class-page` on this report and a valid report. The first byte can select a report with replaced values."""
     data = odd_json(_report(), Choices(data[1:])) if data[:1] == b"j" else data
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "anna.json").write_bytes(data)

@@ -206,7 +206,7 @@ def test_nothing_is_predicted_without_ros(monkeypatch: pytest.MonkeyPatch) -> No
 def both_ways(exercise: str, given: Submission) -> list[Any]:
     """Return the important parts of two reports: with a run during the build, and without such a run.
 
-    For the two reports, the same build is used.
+    The two reports use the same build.
     """
     if not bubblewrap.usable():
         pytest.skip("without a sandbox, no node runs during the build")

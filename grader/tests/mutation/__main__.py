@@ -73,8 +73,8 @@ def _unnoticed_by_cases(
 def _materials(*, make: bool) -> dict[str, judging.Material]:
     """Return the cases by name, without those whose recording does not give the expected report.
 
-    Such a recording can occur if the machine was busy while the case was recorded. With `make`, a case whose recording
-    gives another report is recorded again.
+    The report can differ from the expected report if the machine was busy while the case was recorded. With `make`, a
+    case whose recording gives another report is recorded again.
     """
     recorded = recordings(all_cases(), _tell, make=make)
     good, stale = _judged(recorded)

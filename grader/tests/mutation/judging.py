@@ -1,6 +1,6 @@
 """Judge recorded cases again, with the unchanged checks or with one changed file.
 
-A child of this process imports the checks after the fork. So a process contains only one mutant, and all effects
+A child of this process imports the checks after the fork. Each child process contains only one mutant, and all effects
 of the mutant end with the process.
 """
 
@@ -163,7 +163,7 @@ def who_runs(mutant: Mutant, lines: Lines) -> set[str]:
 def requested(mutant: Mutant, lines: Lines, alike: int) -> list[str]:
     """Return some of the cases or tests that run the mutant's lines. Many cases that run the same lines are left out.
 
-    Hundreds of passing cases run the same lines of a check. A mutant may seem to survive although a case that was left
+    Hundreds of passing cases run the same lines of a check. A mutant can seem to survive although a case that was left
     out would notice it. Leaving out cases can never make a mutant seem noticed.
     """
     names = sorted(who_runs(mutant, lines))

@@ -73,9 +73,9 @@ def a_node_that_drives_before_it_is_found() -> int:
 
 
 def who_may_act() -> bool:
-    """Return whether an action may be used before any client exists.
+    """Return whether `may_act` is true before any action client exists.
 
-    Check that the action may be used while a client exists.
+    While an action client exists, `may_act` must be true.
     """
     stage = _stage()
     student = rclpy.create_node("student")

@@ -1,4 +1,4 @@
-"""Only the page with the right address may connect to the live view. Pages of other sites may not connect."""
+"""Only the page with the right address may connect to the live view. Pages of other sites must not connect."""
 
 from __future__ import annotations
 
