@@ -55,7 +55,7 @@ class Worker:
         self.connection: Connection = Connection(ours.detach())
 
     def send(self, task: Task) -> None:
-        """Send a task to the worker, one at a time. If the process has exited, the next `receive` reports it."""
+        """Send a task to the worker, one at a time. If the process has exited, the next `receive` reports that."""
         with suppress(BrokenPipeError, ConnectionResetError):
             self.connection.send(task)
 

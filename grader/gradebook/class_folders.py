@@ -102,8 +102,8 @@ def open_class(folder: Path | None) -> ClassFolders:
 
     The default is the current folder.
 
-    nbgrader_config.py is a program that this function executes. The current folder may belong to a student, so it is
-    used only if it is the folder of a class that this user created.
+    nbgrader_config.py is a program that this function executes. The current folder may belong to a student, so the
+    current folder is used only if it is the folder of a class that this user created.
 
     Raises:
         UsageError: nbgrader_config.py does not exist, or this user did not create the class.

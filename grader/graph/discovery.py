@@ -50,7 +50,7 @@ _UNKNOWN = "_NODE_NAME_UNKNOWN_"
 def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bool = False) -> Iterator[Node]:
     """Create a hidden node without services, and remove it from the graph properly on exit from the context.
 
-    A `patient` node announces itself less often, because it runs for hours.
+    A `patient` node announces itself less often than other nodes, because it runs for hours.
 
     Raises:
         Ros2Error: the node could not be created, for example because the domain id is wrong.

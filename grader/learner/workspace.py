@@ -81,7 +81,7 @@ def work_folder(exercise: Exercise, workspace: Path) -> Path:
 
 
 def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = False) -> Started:
-    """Add the files of the step that are missing in the workspace. With `fresh`, older work is moved away first.
+    """Add the files of the step that are missing in the workspace. With `fresh`, existing work is moved away first.
 
     If the numbers of the step differ for each student, the numbers of `student` are written.
 

@@ -91,7 +91,7 @@ def _encodable(text: str) -> str:
 
 
 def from_json(written: str) -> Report:
-    """Read a report from JSON. Raises UsageError if the text is not a grader report, or has a newer schema."""
+    """Read a report from JSON. Raises UsageError if the text is not a grader report, or has an unknown schema."""
     try:
         data = json.loads(written)
         schema = data["schema"]

@@ -24,7 +24,7 @@ UNREADABLE = "unreadable"
 
 
 def suspicions(graded: Sequence[tuple[Report, int]]) -> list[str]:
-    """Return, for each submission, the reason why an instructor should check it; this is usually an empty string.
+    """Return one text per submission: the reason why an instructor should check the submission, or an empty string.
 
     `graded` contains the report of each submission with the number of consecutive errors.
     """

@@ -1,7 +1,7 @@
 """Landlock: a process denies itself all files except those that it names (landlock(7), Linux 5.13 and later).
 
-Newer kernels can deny more kinds of access. The process that reads students' files has two defences: Landlock and the
-filter in reading_calls.py.
+Later versions of Landlock can deny more kinds of access than the first version. The process that reads students' files
+has two defences: Landlock and the filter in reading_calls.py.
 """
 
 from __future__ import annotations

@@ -24,10 +24,7 @@ FORM = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION in the list c
 
 
 def line(evidence: Evidence) -> Where:
-    """Return the line of setup.py with the exercise's entry point; without one, the line of `console_scripts`.
-
-    Without both, the line that calls setup() is returned.
-    """
+    """Return the first of these lines in setup.py: the exercise's entry point, `console_scripts`, the call to setup()."""
     setup = evidence.setup_py
     if setup is None:
         return Where("setup.py")

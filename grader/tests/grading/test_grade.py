@@ -1,4 +1,4 @@
-"""Grade the solution with the real command, also on a broken machine and many times in parallel; regrade recordings."""
+"""Grade the solution with the real command: from a recording, on a broken machine, and many times in parallel."""
 
 from __future__ import annotations
 

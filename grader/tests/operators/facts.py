@@ -50,7 +50,7 @@ SIGNS = {
 
 @dataclass(frozen=True)
 class Hunk:
-    """Lines of the correct package, and the lines that replace them from line `line` on (`moved`: a whole file)."""
+    """Lines of the correct package, and the lines that replace them from line `line` on (or a `moved` file)."""
 
     file: str
     old: tuple[str, ...]
