@@ -24,7 +24,7 @@ FORM = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION in the list c
 
 
 def line(evidence: Evidence) -> Where:
-    """Return the first of these lines in setup.py: the exercise's entry point, `console_scripts`, the call to setup()."""
+    """Return the first of these lines in setup.py: the entry point, `console_scripts`, the call to setup()."""
     setup = evidence.setup_py
     if setup is None:
         return Where("setup.py")

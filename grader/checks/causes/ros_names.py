@@ -1,4 +1,4 @@
-"""Names in ROS 2 Jazzy that beginners use. The grader suggests a name from these lists for a misspelt name."""
+"""Names in ROS 2 Jazzy that beginners use, which the grader suggests for misspelt names."""
 
 from __future__ import annotations
 

@@ -42,7 +42,10 @@ class LogPosition:
 
 @dataclass(frozen=True, kw_only=True)
 class LogDistance:
-    """The logged distance driven since the start may be at most `lag_s` old and may differ by at most the tolerance."""
+    """The logged distance driven since the start may be at most `lag_s` old.
+
+    The logged distance may differ from the real distance by at most the tolerance.
+    """
 
     format: str = string("a log line with distance in it", about="The format of a line with the number `distance`.")
     tolerance_m: float = number(0.05, above=0, about="The maximum error of the distance.")
