@@ -39,13 +39,15 @@ Event = Progress | Finished | Died
 
 
 class Engine(Protocol):
-    """A context manager that runs tasks. Leaving the context stops all tasks.
+    """A context manager that runs tasks.
 
-    with engine:
-        while engine.has_room():
-            engine.start(task)
-        for event in engine.events(0.5):
-            ...
+    Leaving the context stops all tasks.
+
+        with engine:
+            while engine.has_room():
+                engine.start(task)
+            for event in engine.events(0.5):
+                ...
     """
 
     def __enter__(self) -> Engine:  # noqa: PYI034 - typing.Self is Python 3.11's

@@ -31,9 +31,9 @@ _TASK = re.compile(r"(?:#|<!--)\s*(TODO \d+: .+?)\s*(?:-->)?$", re.MULTILINE)
 class Started:
     """The result of `start`. The paths of files are relative to `folder`.
 
-    `kept` is the folder to which older work was moved (with --fresh). If the step is new to the folder, `lacking` maps
-    each existing package file to the lines of the step's version that the file does not contain, and `tasks` maps each
-    such file to the tasks in the step's version (TODO 1: ...).
+    `kept` is the folder to which older work was moved (with --fresh). `lacking` maps each package file that already
+    existed to the lines of the step's version that the file does not contain. If the step is new to the folder, `tasks`
+    maps each such file to the tasks in the step's version (TODO 1: ...).
     """
 
     folder: Path

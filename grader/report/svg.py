@@ -30,9 +30,11 @@ FARTHEST = 1e5
 
 
 def tag(name: str, *children: str, **attributes: Attribute) -> str:
-    """Return an element. `children` are SVG. Attribute values are escaped, and "_" in attribute names becomes "-".
+    """Return an SVG element. `children` are strings of SVG.
 
-    tag("circle", cx=1, cy=2, stroke_width=0.5)  # <circle cx="1" cy="2" stroke-width="0.5"/>
+    Attribute values are escaped, and "_" in attribute names becomes "-".
+
+        tag("circle", cx=1, cy=2, stroke_width=0.5)  # <circle cx="1" cy="2" stroke-width="0.5"/>
     """
     given = "".join(
         f' {key.rstrip("_").replace("_", "-")}="{_value(value)}"'

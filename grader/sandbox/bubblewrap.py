@@ -132,11 +132,13 @@ def lone_cell(
     user: int | None,
     filter_fd: int | None = None,
 ) -> list[str]:
-    """Return the command that runs `argv` in a cell with a separate network. `user` has the same meaning as in `room`.
+    """Return the command that runs `argv` in a cell with a separate network.
 
-    with call_filter() as filter_fd, cell_user() as user:
-        command = lone_cell(["colcon", "build"], view, env=env, limits=Limits(), user=user, filter_fd=filter_fd)
-        subprocess.run(command, check=True, pass_fds=[filter_fd])
+    `user` has the same meaning as in `room`.
+
+        with call_filter() as filter_fd, cell_user() as user:
+            command = lone_cell(["colcon", "build"], view, env=env, limits=Limits(), user=user, filter_fd=filter_fd)
+            subprocess.run(command, check=True, pass_fds=[filter_fd])
     """
     inner = cell(argv, view, env=env, limits=limits, filter_fd=filter_fd)
     return inner if user is None else room(inner, view, env=env, user=user)

@@ -66,10 +66,12 @@ class ControlGroup:
 
 @contextmanager
 def control_group(limits: Limits) -> Iterator[ControlGroup]:
-    """Yield a new group for a cell with these limits, or an empty group if groups are not possible.
+    """Yield a new group for a cell with these limits.
 
-    with control_group(limits) as group:
-        subprocess.run(group.joined(command), check=True)
+    If groups are not possible, the group is empty.
+
+        with control_group(limits) as group:
+            subprocess.run(group.joined(command), check=True)
     """
     group = _make(limits)
     try:

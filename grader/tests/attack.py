@@ -1,9 +1,11 @@
 """Attacks: submissions that try to harm or cheat the grader, and the expected result of their grading.
 
-grader/tests/hostile/NNN-name/
-  files/           added to the solution of step 03, or replacing its files; for a few lines, use `edit`
-  make.py          make(package): creates files that git cannot store
-  expected.toml    the keys are the fields of `Attack`, below
+Each attack is a folder:
+
+    grader/tests/hostile/NNN-name/
+      files/           added to the solution of step 03, or replacing its files; for a few lines, use `edit`
+      make.py          make(package): creates files that git cannot store
+      expected.toml    the keys are the fields of `Attack`, below
 """
 
 from __future__ import annotations

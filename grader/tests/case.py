@@ -1,9 +1,11 @@
 """Cases: submissions as learners write them, and the expected reports of `grader check`.
 
-grader/tests/cases/NNN-name/
-  files/           copied over the base; without a base, the whole submission
-    make.py          make(folder): creates files that git cannot store (links, names that are not UTF-8, ...)
-  expected.toml    the keys are the fields of `Case`, below
+Each case is a folder:
+
+    grader/tests/cases/NNN-name/
+      files/           copied over the base; without a base, the whole submission
+      make.py          make(folder): creates files that git cannot store (links, names that are not UTF-8, ...)
+      expected.toml    the keys are the fields of `Case`, below
 """
 
 from __future__ import annotations

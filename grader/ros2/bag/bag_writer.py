@@ -38,10 +38,8 @@ _NO_HASH = f"RIHS01_{64 * '0'}"
 class BagWriter:
     """A new bag as a context manager. On exit, the writer writes the remaining messages and the metadata.
 
-    Args:
-        folder: The folder of the bag, which must not exist.
-        storage: "mcap" or "sqlite3".
-        compression: "none", "file", "message" or "storage" (inside the MCAP file).
+    `folder` is the folder of the bag, which must not exist. `storage` is "mcap" or "sqlite3". `compression` is "none",
+    "file", "message" or "storage" (inside the MCAP file).
 
     Raises:
         Ros2Error: the folder cannot be created.
@@ -103,11 +101,8 @@ class BagWriter:
     def write(self, topic: str, kind: str, stamp_ns: int, data: bytes) -> None:
         """Write a message.
 
-        Args:
-            topic: A topic that has been added.
-            kind: The type of the topic.
-            stamp_ns: The time at which the message arrived (ns since the epoch).
-            data: The message as it was sent (CDR).
+        `topic` is a topic that has been added, and `kind` is the type of the topic. `stamp_ns` is the time at which the
+        message arrived (ns since the epoch). `data` is the message as it was sent (CDR).
 
         Raises:
             OSError: the file cannot be written.

@@ -28,12 +28,9 @@ class SplitWriter:
     The metadata is written after each file, so that all complete files can be read if the recorder is killed. The
     current file is in a separate folder until it is complete. `ros2 bag reindex` also finds files in that folder.
 
-    Args:
-        folder: The folder of the bag, which must not exist.
-        storage: "mcap" or "sqlite3".
-        compression: As for BagWriter.
-        most_bytes: The maximum total size of the messages in a file (bytes). 0 for no limit.
-        most_s: The maximum duration of the messages in a file (s). 0 for no limit.
+    `folder`, `storage` and `compression` have the same meaning as for BagWriter. `most_bytes` is the maximum total size
+    of the messages in a file (bytes), and `most_s` is the maximum duration of the messages in a file (s). The value 0
+    means no limit.
 
     Raises:
         Ros2Error: the folder cannot be created.
