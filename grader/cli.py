@@ -219,7 +219,9 @@ def main() -> None:
             sys.exit(3)
         reported = f"grader: internal error of the grader, not of your work: {type(error).__name__}: {error}"
         typer.secho(
-            f"{reported}\nPut GRADER_DEBUG=1 before the command to see where it happened. Please report it.", err=True
+            f"{reported}\nPut GRADER_DEBUG=1 before the command to see where the error happened. "
+            "Please report the error.",
+            err=True,
         )
         sys.exit(3)
 

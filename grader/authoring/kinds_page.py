@@ -41,7 +41,7 @@ UNITS = {
 STAGES = {
     "source": (
         "Judged from the files",
-        "These checks read the submission's files. These checks do not build or run the submission.",
+        "These checks read the submission's files, and do not build or run the submission.",
     ),
     "build": ("Judged from the build", "These checks read what `colcon build` printed and installed."),
     "trial": ("Judged from the trial", "These checks read the recording of a trial: messages, trajectory, graph, log."),

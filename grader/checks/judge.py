@@ -185,8 +185,8 @@ def unreadable(how: str) -> Finding:
     observed = f"The submission could not be read: {shorten(how, 150)}."
     expected = "The grader can read the submitted files and the data that the node sends."
     cause = (
-        "Very large, deeply nested or damaged content can cause this. If this does not describe your submission, "
-        "please report it."
+        "Very large, deeply nested or damaged content can cause this. If your submission "
+        "contains nothing of this kind, please report this as a bug of the grader."
     )
     return failed(observed, expected, Cause("unreadable", cause))
 
@@ -201,7 +201,10 @@ def in_words(error: Exception) -> str:
 def _overwhelmed(how: str) -> Finding:
     observed = f"The trial could not be finished: the node made the simulator fail ({shorten(how, 150)})."
     expected = "The simulator keeps running while the node publishes and calls services at a reasonable rate."
-    cause = "The node sends without a pause, or sends invalid data. If your node does neither, please report this."
+    cause = (
+        "The node sends without a pause, or sends invalid data. If your node does neither, "
+        "please report this as a bug of the grader."
+    )
     return failed(observed, expected, Cause("overwhelmed", cause))
 
 

@@ -42,8 +42,10 @@ def grade(
     submissions: Annotated[
         list[Path],
         typer.Argument(
-            help="A folder with one folder or archive (.zip, .tar.gz) per student, nbgrader's submitted/, or a "
-            "folder of classroom clones."
+            help=(
+                "A folder with one folder or archive (.zip, .tar.gz) per student, nbgrader's submitted/, "
+                "or a folder of clones of the students' repositories."
+            )
         ),
     ],
     exercise: Annotated[

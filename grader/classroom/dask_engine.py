@@ -159,8 +159,8 @@ class DaskEngine:
             self._threads = dict(self._client.nthreads())
         except Exception as error:
             message = (
-                f"The connection to Dask's scheduler was lost ({error}). The results so far are kept. "
-                "The same command continues."
+                f"The connection to Dask's scheduler was lost ({error}). The results so far are kept. Run "
+                f"the same command again to continue."
             )
             raise MachineError(message) from error
         if self._threads:

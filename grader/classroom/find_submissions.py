@@ -90,8 +90,8 @@ def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
         if not known:
             message = (
                 f"Which exercise is {shown(str(each.path))} for? Name the exercise with --exercise, one of: "
-                f"{', '.join(catalogue())}. (In nbgrader's submitted/STUDENT/EXERCISE, it is the name "
-                "of the folder.)"
+                f"{', '.join(catalogue())}. (In nbgrader's submitted/STUDENT/EXERCISE, the last folder names the "
+                "exercise.)"
             )
             raise UsageError(message)
         for exercise in known:

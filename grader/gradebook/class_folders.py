@@ -119,8 +119,8 @@ def open_class(folder: Path | None) -> ClassFolders:
         raise UsageError(message)
     if folder is None and not _is_known(found.resolve()):
         message = (
-            f"{found.resolve() / CONFIG} is a program, but `grader class new` did not create this folder for you. If "
-            f"it is yours, name the folder: --course {shlex.quote(str(found.resolve()))}"
+            f"{found.resolve() / CONFIG} is a program, but `grader class new` did not create this "
+            f"folder for you. If you trust this program, name the folder: --course {shlex.quote(str(found.resolve()))}"
         )
         raise UsageError(message)
     try:

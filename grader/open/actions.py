@@ -88,7 +88,7 @@ class Actions:
         current = steps.current(self.workspace)
         name = request.get("executable")
         if current is None or name not in executables(current[0]):
-            message = "This step does not have the program."
+            message = "This step has no program with this name."
             raise UsageError(message)
         await self.programs.start_node(current[0].id, str(name))
         return {}

@@ -62,10 +62,12 @@ def _output(outcome: Outcome) -> str:
     finding = outcome.finding
     if outcome.status is Status.PASSED and not outcome.hidden:
         return ""
-    note = "Advice only: it is worth no points." if outcome.advice else ""
+    note = "This check is advice, and is worth no points." if outcome.advice else ""
     where = f"Where: {finding.where}" if finding.where else ""
     expected = f"Expected: {finding.expected}" if finding.expected else ""
-    error = "This could not be judged. Your instructor can see that." if outcome.status is Status.ERROR else ""
+    error = (
+        "This check could not be judged. Your instructor can see this, too." if outcome.status is Status.ERROR else ""
+    )
     return "\n".join(
         printable(text) for text in (note, error, finding.observed, expected, cause_sentence(outcome), where) if text
     )

@@ -98,9 +98,9 @@ def report_of(
     )
 
 
-PASSES = "After this was changed in a copy, the check passes."
-FURTHER = "After this was changed in a copy, the node gets further."
-REFUTED = "The supposed cause was changed in a copy, but the check still failed."
+PASSES = "With a fix for this cause, a copy of the submission passes the check."
+FURTHER = "With a fix for this cause, the node gets further in a copy of the submission."
+REFUTED = "The supposed cause was fixed in a copy of the submission, but the check still failed."
 
 
 def _with_try(outcome: Outcome, evidence: Evidence) -> Outcome:

@@ -132,7 +132,12 @@ def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None)
         yield Line("set-up", f"made for {made_for}, which is not sourced", "broken", todo)
     else:
         observed = f"made for {made_for}, and {now} is sourced and used"
-        yield Line("set-up", observed, "advice", "nothing, if the lines below are ok; else make demo, with it sourced")
+        yield Line(
+            "set-up",
+            observed,
+            "advice",
+            "nothing, if the lines below are ok; otherwise source this ROS 2, and type: make demo",
+        )
 
 
 def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:

@@ -29,9 +29,9 @@ def refusal(headers: Mapping[str, str], *, live: bool) -> str | None:
         return f"This page is only served to {' and '.join(NAMES)}."
     origin = headers.get("origin")
     if origin is None and live:
-        return "The request has no Origin header: only the page may connect."
+        return "The request has no Origin header: only the page is allowed to connect."
     if origin is not None and origin != f"http://{host}":
-        return "Pages from other sites may not connect."
+        return "Pages from other sites are not allowed to connect."
     return None
 
 

@@ -33,7 +33,7 @@ STOPS = frozenset({"KeyboardInterrupt", "ExternalShutdownException"})
 RCLPY_ERRORS = frozenset({"InvalidNodeNameException", "InvalidTopicNameException", "NotInitializedException"})
 
 MEANINGS = {
-    "AssertionError": "An assertion failed: something that the code or a message field requires was not true.",
+    "AssertionError": "An assertion failed: a condition that the code or a message field requires was not true.",
     "AttributeError": "The object has no attribute or method with that name. Compare the name letter by letter.",
     "EOFError": "input() waits for the keyboard, but the grader does not type. A node must not ask for input.",
     "ImportError": "That name cannot be imported from this module. Compare the name letter by letter.",

@@ -107,8 +107,8 @@ def timed_loop(code: TestCode) -> Cause | None:
             )
             if wall and not any(isinstance(each, ast.Break | ast.Return | ast.Raise) for each in _below(node.body)):
                 text = (
-                    "On a slow computer, less happens in this time. Advance the node's clock, or end the loop when the "
-                    "message has arrived, and use the time only as a deadline."
+                    "On a slow computer, the node does less in this time. Advance the node's clock, or end the loop "
+                    "when the message has arrived, and use the time only as a deadline."
                 )
                 return Cause("sleeps-by-luck", text, Where(module.file, node.lineno))
     return None

@@ -182,7 +182,7 @@ def _of_none(scene: CrashScene, name: str) -> Cause | None:
     if name == "executor":
         return _no_object(scene)
     known = [holder for holder in holders if holder]
-    what = f"{shorten(known[0])} is None here, so it" if len(known) == 1 else "The value is None here, which"
+    what = f"{shorten(known[0])} is None here, so it" if len(known) == 1 else "The value is None here, so it"
     return Cause(
         "attribute-missing", f"{what} has no attribute {shorten(name)}. A function without return returns None."
     )

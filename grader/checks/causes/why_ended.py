@@ -79,7 +79,7 @@ def why_no_node(evidence: Evidence) -> Cause:
             if isinstance(node, ast.ClassDef) and not code.calls(node.name) and _is_node(node):
                 text = f"The class {node.name} is defined but never called. Call the class to create the node."
                 return Cause("node-not-made", text, Where(module.file, node.lineno))
-    text = "The program may wait or loop forever before it creates the node, or it may never create one."
+    text = "The program may wait or loop forever before it creates the node, or it may never create a node."
     return Cause("no-node", text, evidence.place("init"))
 
 

@@ -39,7 +39,7 @@ def why_field(scene: CrashScene) -> Cause | None:
         kind = "a string" if wanted == "str" else "True or False"
         return Cause("field-type", f"The field {field} must be {kind}.")
     if wanted not in FLOAT:
-        return Cause("field-type", f"The field {field} is a {wanted} with its own fields. Set those.")
+        return Cause("field-type", f"The field {field} is a {wanted} with its own fields. Set these fields.")
     value = _assigned(scene, field)
     resolved = value and _resolved(scene, value)
     cause = _why_no_float(field, resolved)

@@ -32,7 +32,7 @@ def never_activated(evidence: Evidence) -> Cause | None:
             ]:
                 methods = {each.name: each.lineno for each in node.body if isinstance(each, ast.FunctionDef)}
                 name = next((each for each in TRANSITIONS if each in methods), None)
-                text = "A lifecycle node does nothing until it is activated, and nothing activates this one."
+                text = "A lifecycle node does nothing until it is activated, and nothing activates this node."
                 more = f" So {name} is never called." if name else ""
                 return Cause(
                     "method-never-called", text + more, Where(module.file, methods.get(name or "", node.lineno))

@@ -76,10 +76,10 @@ def _never_drives(evidence: Evidence, left: list[Track]) -> Cause:
     poses = sorted({each.topic for each in subscriptions if each.topic.endswith("/pose")} - {OWN_POSE})
     wanted = [f"/{track.turtle}/pose" for track in left]
     if set(poses) & set(wanted):
-        return Cause("never-drives", "All commands that arrived had only zeros.", evidence.place("publish"))
+        return Cause("never-drives", "All commands that arrived contained only zeros.", evidence.place("publish"))
     text = "The node does not subscribe to the pose of any target."
     if poses:
-        text = f"The node subscribes to {shorten(poses[0])}, but to the pose of no target: {a_list(wanted)}."
+        text = f"The node subscribes to {shorten(poses[0])}, but not to the pose of a target: {a_list(wanted)}."
     return Cause("never-drives", text, evidence.place("create_subscription"))
 
 
@@ -100,7 +100,7 @@ def _stands_still(evidence: Evidence, left: list[Track]) -> Cause:
             why = why_unasked(evidence, CATCH)
             if not asked:
                 return why
-        text = f"It stands beside {shorten(near.turtle)}."
+        text = f"The turtle stands beside {shorten(near.turtle)}."
         return Cause("stands-still", text, evidence.place("call_async", "publish"))
     text = "The turtle stood still at the end. After a catch, the node must choose the next nearest target."
     return Cause("stands-still", text, evidence.place("call_async", "publish"))

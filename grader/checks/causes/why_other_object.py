@@ -31,7 +31,7 @@ def subscription_for_publisher(scene: CrashScene) -> Cause | None:
     calls = scene.evidence.code.calls
     if calls("create_publisher") or len(calls("create_subscription")) != 1:
         return None
-    text = "A subscription only receives messages. Use create_publisher to send them."
+    text = "A subscription only receives messages. Use create_publisher to send messages."
     return Cause("subscription-instead", text, calls("create_subscription")[0].where)
 
 

@@ -186,7 +186,10 @@ def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
     steps = [later - earlier for earlier, later in pairwise(arrivals)]
     if not any(steps):
         # This trial runs none of the student's code, so the machine is at fault.
-        message = "No message of that type was recorded, so there is no rate to compare with. Try again."
+        message = (
+            "No message of that type was recorded, so there is no rate with which the answer can be "
+            "compared. Try again."
+        )
         raise MachineError(message)
     truth = len(steps) / sum(steps)
     given = _given(evidence, params.answer, "a number, without quotation marks", float)
@@ -231,7 +234,9 @@ def _compare(evidence: Evidence, name: str, given: Answer, truth: Collection[str
     where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
     observed = f"{name} is {_shown(given)}: {difference}."
     diagnosis: Diagnosis = "wrong-list" if surplus and missing else "list-too-long" if surplus else "list-incomplete"
-    return failed(observed, "The list has every right item and no others.", Cause(diagnosis, cause.strip(), where))
+    return failed(
+        observed, ("The list contains all right items, and no other items."), Cause(diagnosis, cause.strip(), where)
+    )
 
 
 def _wrong(evidence: Evidence, name: str, given: Answer, why: Cause) -> Finding:

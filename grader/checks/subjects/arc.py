@@ -79,7 +79,9 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
     if params.color is not None and _pieces(evidence, chosen) > 1:
         color = ", ".join(map(str, params.color))
-        observed = f"The turtle drew with the colour {color}, then with another one, and then with the first one again."
+        observed = (
+            f"The turtle drew with the colour {color}, then with another colour, and then with the first colour again."
+        )
         text = "The node starts again after its last arc. In its last state, the node must send only zeros."
         return failed(observed, expected, Cause("drives-on", text, evidence.place("publish")))
     points = np.append(np.flatnonzero(chosen)[0], np.flatnonzero(chosen) + 1)
@@ -90,9 +92,11 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
     round_, size = Band.at_most(params.residual_m), Band.around(params.radius_m, params.radius_tolerance_m)
     if not round_.holds(fitted.rms):
         off = f"it deviates by {max(fitted.rms, 0.01):.2f} m (RMS) from the best circle"
-        text = "The command or the pen changes during this piece."
+        text = "The command or the pen changes during this part of the path."
         cause = Cause("not-round", text, where)
-        return failed(f"This piece is not one arc: {off}.", expected, cause, near_edge=round_.near(fitted.rms))
+        return failed(
+            f"This part of the path is not one arc: {off}.", expected, cause, near_edge=round_.near(fitted.rms)
+        )
     near = round_.near(fitted.rms) or size.near(fitted.radius)
     if not size.holds(fitted.radius):
         text = "The radius is linear.x divided by angular.z."
@@ -195,7 +199,7 @@ def _nothing(evidence: Evidence, params: Arc, expected: str) -> Finding:
         color = ", ".join(map(str, params.color))
         return failed(f"Nothing was drawn in the colour {color}.", expected, Cause("not-in-colour", text, where))
     cause = waits_in_callback(evidence) or Cause("not-moving", where=where)
-    return failed("The turtle did not drive in that time.", expected, cause)
+    return failed("The turtle did not drive in the time that this check judges.", expected, cause)
 
 
 def _speed(evidence: Evidence, chosen: Steps) -> float:

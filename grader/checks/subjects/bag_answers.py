@@ -99,7 +99,7 @@ def _why(quantity: str, value: float, band: Band) -> Cause:
     if quantity == "radius" and band.holds(value / 2.0):
         return Cause("diameter", "This is the diameter, twice the radius.")
     return Cause(
-        "wrong-answer", "`ros2 bag info` and your own program show the value. Is the answer about an earlier bag?"
+        "wrong-answer", "`ros2 bag info` and your own program show the right value. Is the answer about an earlier bag?"
     )
 
 

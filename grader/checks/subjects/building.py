@@ -32,7 +32,7 @@ UNREAD_SETUP = "return ast.literal_eval(output)"
 NO_FILE = re.compile(r"can't copy '?(?P<file>[^':]*)'?: doesn't exist")
 IGNORE_MARKERS = (IGNORE_MARKER, "AMENT_IGNORE", "CATKIN_IGNORE")
 """Files with these names make colcon ignore a ROS 2 package."""
-IGNORED = "colcon builds no package in a folder with such a file. Without the file, it finds this package."
+IGNORED = "colcon ignores a folder that contains such a file. Delete the file, so that colcon finds the package."
 EXPECTED = "`colcon build` succeeds and installs the package."
 
 

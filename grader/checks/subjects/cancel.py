@@ -120,7 +120,10 @@ def says_whether_active(evidence: Evidence, params: SaysWhetherActive) -> Findin
         if active is not None and said is not active:
             state = "a goal" if active else "no goal"
             observed = f"The turtle followed {state} at {call.t_s:.1f} s, but success was {str(said).lower()}."
-            text = "Set success in the callback of the service, before the goal is cancelled: was there a goal?"
+            text = (
+                "Set success in the callback of the service, before the goal is cancelled: it is true if "
+                "a goal was active."
+            )
             return failed(observed, expected, Cause("wrong-response", text, evidence.place("create_service")))
     return passed("success says whether a goal was active.")
 

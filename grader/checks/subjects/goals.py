@@ -51,7 +51,8 @@ def sends_goals(evidence: Evidence, params: SendsGoals) -> Finding:
     expected = f"Goal {first + 1} of the node is a heading of {headings[0]:g} degrees, and the turtle reaches it."
     if amount > 1:
         expected = (
-            f"{amount} goals, starting at {headings[0]:g} degrees, in steps of {params.turn_deg:g}, each one reached."
+            f"The turtle reaches {amount} goals, the first at {headings[0]:g} degrees, and each next goal "
+            f"{params.turn_deg:g} degrees further to the left."
         )
     if not goals:
         return no_goal(evidence, expected)
@@ -119,7 +120,7 @@ def _no_more(evidence: Evidence, goals: list[Goal], expected: str) -> Finding:
 
 def _no_result(evidence: Evidence) -> Cause:
     text = (
-        "The response to a goal only says that it was accepted. get_result_async of the goal handle requests the "
+        "The first response only says that the goal was accepted. get_result_async of the goal handle requests the "
         "result, which arrives when the goal ends."
     )
     return Cause("result-not-awaited", text, evidence.place("get_result_async", *SENDS))
@@ -146,7 +147,7 @@ def _other_heading(
         f"The goal sent at {goal.t_s:.1f} s has theta={theta:.2f} rad, which is {math.degrees(theta):.0f} degrees."
     )
     if abs(theta) > LARGE_RAD and abs(theta - heading) < 1.0:
-        text = "The field theta is in radians. math.radians converts degrees."
+        text = "The field theta is in radians. math.radians converts degrees to radians."
         return failed(observed, expected, Cause("degrees", text, where), near_edge=near_edge)
     if abs(normalize(theta + math.radians(heading))) <= SAME_RAD:
         text = "Angles increase to the left, which is counter-clockwise."

@@ -73,14 +73,18 @@ def _silent(evidence: Evidence, expected: str) -> Finding:
     why = why_nothing(evidence, LEVELS)
     if why is not None:
         return failed(observed, expected, why)
-    cause = "create_timer is never called." if not code.calls("create_timer") else "The line may never be reached."
+    cause = (
+        "create_timer is never called."
+        if not code.calls("create_timer")
+        else "The line that logs may never be reached."
+    )
     return failed(observed, expected, Cause("never-logs", cause, evidence.place(*LEVELS)))
 
 
 def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expected: str) -> Finding:
     line = logged[-1]
     observed = f'The last log line is "{shorten(line, 90)}".'
-    why = Cause("log-format", "Compare the line letter by letter: capital letters, spaces and dots count.")
+    why = Cause("log-format", "Compare the line letter by letter: capital letters, spaces and dots matter.")
     pattern = student_log.Format(params.format).pattern()
     if re.search(r"\{[\w.:]+\}", line):
         text = "The line contains the braces themselves. Only an f-string replaces braces by a value."

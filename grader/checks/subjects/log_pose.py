@@ -180,7 +180,9 @@ def _overwritten(evidence: Evidence) -> Cause | None:
                 whole = isinstance(kept.value, ast.Name)
                 reads = [node.lineno for node in steps if _reads(node, f"{name}." if whole else name)]
                 if name.startswith("self.") and reads and kept.lineno < min(reads):
-                    text = f"Line {kept.lineno} replaces {shorten(name)} before the step from it is calculated."
+                    text = (
+                        f"Line {kept.lineno} replaces {shorten(name)} before the step from the old value is calculated."
+                    )
                     return Cause("distance-zero", text, Where(module.file, kept.lineno))
     return None
 

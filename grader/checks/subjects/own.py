@@ -36,7 +36,9 @@ def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
         )
         expected = "Every student has their own numbers."
         step = spec.step[:2]
-        cause = f"`grader start {step} --student {shorten(by)} --fresh` draws yours and keeps a copy of your work."
+        cause = (
+            f"`grader start {step} --student {shorten(by)} --fresh` draws your numbers and keeps a copy of your work."
+        )
         return failed(observed, expected, Cause("numbers-of-another", cause, Where(spec.file)))
     wanted = draw_numbers(spec, found.student)
     if found != wanted:

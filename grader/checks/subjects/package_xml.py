@@ -116,7 +116,10 @@ def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
     late = [name for name in missing if name in manifest.other_depends]
     if late:
         observed = f"{FILE} declares {a_list(late)} only for building or testing."
-        cause = "<build_depend> and <test_depend> do not count when the node runs. <depend> covers everything."
+        cause = (
+            "<build_depend> and <test_depend> do not count when the node runs. <depend> covers "
+            "building, testing and running."
+        )
         where = _line(evidence, rf">\s*{re.escape(late[0])}\s*<")
         return failed(observed, expected, Cause("depend-kind", cause, where))
     observed = f"{FILE} does not declare {a_list(missing)}."
@@ -157,7 +160,7 @@ def _why_not_declared(
         return Cause(
             "depend-in-setup-py", f"install_requires in setup.py is for pip packages. ROS 2 reads {FILE}.", where
         )
-    cause = "On a computer without this package, nothing would install it together with yours."
+    cause = "On another computer, rosdep installs only the packages that package.xml declares."
     if name in imported:
         cause = f"{imported[name]} imports the package. {cause}"
     elif imported:

@@ -46,7 +46,7 @@ def declares(evidence: Evidence, params: Declares) -> Finding:
     if found is None:
         return _undeclared(evidence, name, expected)
     if found["type"] != DOUBLE:
-        text = "A number without a decimal point is an integer, and stays one. Write 2.0 for 2."
+        text = "A number without a decimal point is an integer, so the parameter is an integer. Write 2.0 instead of 2."
         observed = f"The parameter {name} is not a float."
         return failed(observed, expected, Cause("parameter-type", text, where))
     if not found["description"].strip():

@@ -54,7 +54,10 @@ class CircleParams:
     radius_m: float = number(
         above=0,
         at_most=5.5,
-        about="The radius. The centre lies this far to the left of the start (clockwise: to the right).",
+        about=(
+            "The radius. The centre is this far to the left of the start, or to the right if the "
+            "direction is clockwise."
+        ),
     )
     radius_tolerance_m: float = number(0.05, above=0, about="The maximum error of the radius.")
     centre_tolerance_m: float = number(0.05, above=0, about="The maximum error of the centre.")
@@ -160,7 +163,10 @@ def _measured(evidence: Evidence, params: CircleParams, trajectory: Trajectory, 
     if not place.holds(centre):
         observed = f"The circle has the right size, but it is {centre:.2f} m away from where it should be."
         cause = (
-            "The first commands differ from the others, so the turtle left its start position before the circle began."
+            (
+                "The first commands differ from the later commands, so the turtle left its start "
+                "position before the circle began."
+            )
             if _steady(evidence) is None
             else ""
         )
@@ -243,7 +249,10 @@ def _replaced(evidence: Evidence) -> Cause | None:
     if not driving or any(after[id(each)].linear[0] or after[id(each)].t_s - each.t_s > AT_ONCE_S for each in driving):
         return None
     publish = evidence.code.calls("publish")
-    text = "Some commands drive, but each of them is replaced at once: the turtle follows only the last command."
+    text = (
+        "Some commands would move the turtle, but another command follows each of them at once, "
+        "and the turtle follows only the last command."
+    )
     return Cause("not-moving", text, publish[-1].where if publish else _line(evidence))
 
 

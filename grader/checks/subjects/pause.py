@@ -36,15 +36,17 @@ class Pause:
     from_s: float = number(at_least=0, about="The start of the pause, on the trial's clock.")
     until_s: float = number(above=0, about="The end of the pause.")
     within_s: float = number(0.5, above=0, about="The maximum time to stop, and to continue.")
-    goes_on: float = number(1.0, at_least=0, at_most=1, about="Whether the turtle must continue afterwards: 1 or 0.")
+    goes_on: float = number(
+        1.0, at_least=0, at_most=1, about="1 if the turtle must continue after the pause, and 0 if it must not."
+    )
 
 
 def pause(evidence: Evidence, params: Pause) -> Finding:
     """The turtle moves, and then stops and continues within the allowed times."""
     trajectory = evidence.trajectory
     within = Band.at_most(params.within_s)
-    expected = f"The turtle stands still within {params.within_s:g} s after {params.from_s:g} s"
-    expected += f", and continues after {params.until_s:g} s." if params.goes_on else "."
+    expected = f"At {params.from_s:g} s, the turtle has {params.within_s:g} s to stop"
+    expected += f"; at {params.until_s:g} s, it continues." if params.goes_on else "."
     where = evidence.place("create_service")
     if _moved(trajectory, params.from_s - BEFORE_S, params.from_s) is None:
         crash = crash_of(evidence)

@@ -57,7 +57,7 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
         cause = "NaN is the result of an undefined computation. Which computation returns NaN?"
         return failed(f'{name} printed "{shorten(lines[-1], 80)}".', expected, Cause("not-a-number", cause, where))
     if found is None:
-        cause = "Compare the line letter by letter: names, spaces and the digits after the decimal point count."
+        cause = "Compare the line letter by letter: names, spaces and the digits after the decimal point matter."
         return failed(f'{name} printed "{shorten(lines[-1], 80)}".', expected, Cause("print-format", cause, where))
     given = {key: float(value) for key, value in found.groupdict().items()}
     wrong = [key for key in params.values if not abs(given[key] - truth[key]) <= _within(bag)[key]]
@@ -101,7 +101,7 @@ def _why(key: str, given: dict[str, float], bag: BagInput) -> Cause:
         if abs(value - rate * count / (count - 1)) <= HUNDREDTH:
             return Cause(
                 "rate-off-by-one",
-                "Count / duration is too high: the number of intervals is one less than the number of messages.",
+                "The number of messages divided by the duration is too high: n messages have only n - 1 intervals.",
             )
         if abs(value - 1.0 / rate) <= HUNDREDTH:
             return Cause(

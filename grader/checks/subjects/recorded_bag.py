@@ -119,7 +119,7 @@ def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:
         return failed("The path in the bag is not a circle.", expected, Cause("not-round", cause, where))
     driven = abs(turns_about(x, y, circle.x, circle.y))
     if not Band.around(params.radius_m, params.radius_m * params.tolerance_percent / 100.0).holds(circle.radius):
-        cause = "The radius is speed / turning speed. Compare with your numbers."
+        cause = "The radius is speed / turning speed. Compare the result with your numbers."
         observed = f"The circle in the bag has a radius of {circle.radius:.2f} m."
         return failed(observed, expected, Cause("wrong-radius", cause, where))
     if not driven >= params.turns - 0.01:
@@ -129,7 +129,7 @@ def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:
     if params.speed_m_s and not Band.around(
         params.speed_m_s, params.speed_m_s * params.speed_tolerance_percent / 100.0
     ).holds(speed):
-        cause = "The speed is linear.x of the commands. Compare with your numbers."
+        cause = "The speed is linear.x of the commands. Compare the speed with your numbers."
         expected = f"{expected[:-1]}, at {params.speed_m_s:g} m/s."
         return failed(f"The turtle drives at {speed:.2f} m/s in the bag.", expected, Cause("wrong-speed", cause, where))
     return passed(f"The bag shows {driven:.1f} turns on a circle with a radius of {circle.radius:.2f} m.")

@@ -52,7 +52,7 @@ class PlacesDiffer:
     """The id of another trial in which the same node ran, and the prefix of its turtles' names."""
 
     other: str = string("the id of a trial", about="Another trial of the same node.")
-    name: str = string("the beginning of a name", default="target", about="What the names of the turtles begin with.")
+    name: str = string("the beginning of a name", default="target", about="The prefix of the names of the turtles.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,7 +68,9 @@ class Removes:
     """The trial calls `service` with a turtle's name, and the names of the remaining turtles arrive on `topic`."""
 
     service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
-    type: str = string("a service type, as in turtlesim/srv/Kill", about="Its type. The request has the field name.")
+    type: str = string(
+        "a service type, as in turtlesim/srv/Kill", about="The type of the service. The request has the field `name`."
+    )
     topic: str = string(
         "the full name of a topic", start="/", about="The topic with the names of the remaining turtles."
     )
@@ -100,7 +102,7 @@ def spawns(evidence: Evidence, params: Spawns) -> Finding:
         observed = f"The node spawned {count(len(there), 'turtle')}: {a_list([shorten(name) for name in there])}."
         text = ""
         if len(there) < len(calls):
-            text = "turtlesim refused a name that another turtle has."
+            text = "turtlesim refused a name because another turtle already has it."
         elif len(there) > len(wanted):
             text = "Count the requests when you send them, because the responses arrive later."
         return failed(observed, expected, Cause("target-count", text, where))
@@ -216,7 +218,10 @@ def _wrong_names(evidence: Evidence, message: Announcement, expected: str) -> Fi
 
 def removes(evidence: Evidence, params: Removes) -> Finding:
     """Exactly the turtles that the trial caught were removed. Calls with unknown names changed nothing."""
-    expected = f"When {params.service} is called, the node removes this turtle with /kill, and no other."
+    expected = (
+        f"When {params.service} is called, the node removes the turtle that the request names, "
+        f"and no other turtle, with /kill."
+    )
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     recording = evidence.recording
     for call in calls:
@@ -279,7 +284,7 @@ PLACES_DIFFER = Kind(
     "The places are random",
     PlacesDiffer,
     places_differ,
-    about="The turtles are at other places than in another trial of the same node.",
+    about="The turtles are at other places than in the other trial of the same node.",
 )
 ANNOUNCES = Kind(
     "announces_targets",
@@ -295,5 +300,5 @@ REMOVES = Kind(
     "The node removes caught turtles",
     Removes,
     removes,
-    about="The node removes each turtle whose name a `[[trial.call]]` has in its field `name`, and no other turtle.",
+    about="The node removes each turtle that a `[[trial.call]]` names in its field `name`, and no other turtle.",
 )

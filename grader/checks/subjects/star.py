@@ -124,7 +124,9 @@ STAR = Kind(
     "The turtle draws a star",
     Star,
     star,
-    about="The turtle drives straight sides, turns between the sides by goals, ends at its start, and stands still.",
+    about=(
+        "The turtle drives straight sides, goals turn it between the sides, and it ends at its start and stands still."
+    ),
     drives=True,
     requested=requested_star,
     # No point of the star is further from its start than the length of a side, and the walls have a margin anyway.

@@ -51,7 +51,7 @@ def declared(evidence: Evidence, _: NoParams) -> Finding:
         return failed(observed, expected, Cause("tests-require" if old else "pytest-undeclared", cause, where))
     depends = () if manifest is None else (*manifest.run_depends, *manifest.other_depends)
     if TEST_DEPEND not in depends:
-        cause = "On a computer without pytest, nothing would install pytest for your tests."
+        cause = "On another computer, rosdep installs only the packages that package.xml declares."
         observed = f"package.xml does not declare {TEST_DEPEND}."
         return failed(observed, expected, Cause("pytest-undeclared", cause, Where("package.xml")))
     return passed("colcon test runs the tests with pytest.")

@@ -32,7 +32,7 @@ function lacking({ file, lines }) {
   block.append(code);
   const box = document.createElement("div");
   box.className = "box";
-  box.append(paragraph(`This step needs more lines in ${file}. Add these to your file:`), block);
+  box.append(paragraph(`This step needs more lines in ${file}. Add these lines to your file:`), block);
   return box;
 }
 

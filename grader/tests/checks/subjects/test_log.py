@@ -48,7 +48,7 @@ def test_lines_in_the_format_are_enough_whatever_else_is_logged() -> None:
             "Hello: 0",
             HELLO,
             'The last log line is "Hello: 0".',
-            "Compare the line letter by letter: capital letters, spaces and dots count.",
+            "Compare the line letter by letter: capital letters, spaces and dots matter.",
         ),
         (
             "Hello",
