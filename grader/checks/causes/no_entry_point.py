@@ -51,7 +51,7 @@ def no_entry_point(evidence: Evidence) -> Finding:
         if guess is not None:
             where = next((Where("setup.py", point.line) for point in points if point.name == guess), line(evidence))
             text = "Compare the two names letter by letter. The name of an entry point is the part before the = sign."
-            observed = f"There is no executable {executable}, but there is an executable {shorten(guess)}."
+            observed = f"There is no executable {executable}, but there is {shorten(guess)}."
             why = Cause("entry-point-name", text, where).fixed_by(at(where, guess, executable))
             return failed(observed, expected, why)
         cause = _missing(evidence, points)

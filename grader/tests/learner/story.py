@@ -162,7 +162,7 @@ def walk(learner: Learner, steps: list[str]) -> None:
             screen.expect("Not passed")
             screen.expect(f"{following}: ")
             if following == FIRST_TO_COPY:
-                screen.expect("This step needs more lines in package.xml. Add these to your file")
+                screen.expect("This step needs more lines in package.xml. Add these lines to your file")
             screen.expect("Watching")
     if steps[-1] == LAST:
         screen.send("n")

@@ -123,8 +123,9 @@ def test_start_lists_lines_that_a_later_step_needs_in_package_files(home: Path) 
         "package.xml": ("<depend>geometry_msgs</depend>", "<depend>turtlesim</depend>"),
         "setup.py": ('"draw_circle = my_robot_controller.draw_circle:main",',),
     }
-    assert 'This step needs more lines in setup.py. Add these to your file:\n    "draw_circle' in steps.begin_message(
-        begun
+    assert (
+        'This step needs more lines in setup.py. Add these lines to your file:\n    "draw_circle'
+        in steps.begin_message(begun)
     )
     assert steps.start("03", None, fresh=True).started.lacking == {}
 
