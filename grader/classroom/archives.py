@@ -1,41 +1,29 @@
 """Unpack a student's archive into a temporary folder.
 
-The script unpack.py unpacks the archive, and this module limits the resources of the script.
+The process that reads students' files reads the archive (unpack.py), and this module writes the result.
 """
 
 from __future__ import annotations
 
-import json
+import errno
 import os
-import subprocess
 import tempfile
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
-from grader.common.interpreter import interpreter
-from grader.errors import DiskError
-from grader.submission import tree
+from grader.classroom.unpack import Member, NotUnpackedError, read_archive
+from grader.errors import DiskError, TooLargeError
+from grader.submission import reader
+from grader.submission.tree import shown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
 ENDINGS = (".zip", ".tar.gz", ".tgz", ".tar")
 OTHER_ENDINGS = (".7z", ".rar", ".tar.xz", ".tar.bz2", ".tar.zst", ".gz", ".xz", ".bz2")
 """Archive formats that are not supported, although students hand them in."""
-MOST_PACKED = 100 * 1024 * 1024
-_SCRIPT = Path(__file__).with_name("unpack.py")
-_MIB = 1024 * 1024
-_CPU_S = 20
-_TIMEOUT_S = 120.0
-_LIMITS = ("prlimit", f"--cpu={_CPU_S}", f"--as={1024 * _MIB}", f"--fsize={128 * _MIB}", "--core=0", "--")
-
-
-class NotUnpackedError(Exception):
-    """The student's archive cannot be unpacked.
-
-    The message completes a sentence that begins with the name of the archive.
-    """
+OF_THE_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS)
 
 
 def stem(name: str) -> str | None:
@@ -57,46 +45,48 @@ def unpacked(archive: Path) -> Iterator[Path]:
     if not archive.name.lower().endswith(ENDINGS):
         message = "is not a supported archive: hand in a .zip or a .tar.gz"
         raise NotUnpackedError(message)
+    members = _read(archive)
     with tempfile.TemporaryDirectory(prefix="grader-unpacked-") as named:
-        folder = os.path.realpath(named)
-        with _open(archive) as file:
-            done = _run(file, folder)
-        why = _why(done)
-        if why is not None:
-            raise NotUnpackedError(why)
-        yield Path(folder)
+        folder = Path(os.path.realpath(named))
+        _write_all(members, folder)
+        del members
+        yield folder
 
 
-def _open(archive: Path) -> IO[bytes]:
+def _read(archive: Path) -> tuple[Member, ...]:
     try:
-        file = tree.open_file(archive, at=archive)
+        return reader.read(read_archive, archive)
+    except TooLargeError as error:
+        message = f"could not be unpacked within {reader.CPU_S} s and {reader.MEMORY // 1024**3} GiB of memory"
+        raise NotUnpackedError(message) from error
+
+
+def _write_all(members: Iterable[Member], folder: Path) -> None:
+    try:
+        for member in members:
+            _write(member, folder)
     except OSError as error:
-        raise NotUnpackedError(tree.reason(error, archive.name)) from error
-    if os.fstat(file.fileno()).st_size <= MOST_PACKED:
-        return file
-    file.close()
-    message = f"is larger than {MOST_PACKED // _MIB} MiB"
-    raise NotUnpackedError(message)
+        if error.errno in OF_THE_DISK:
+            message = (
+                f"A submission could not be unpacked: {error.strerror}. Free some space in {tempfile.gettempdir()} and "
+                "try again."
+            )
+            raise DiskError(message) from error
+        message = f"is damaged, or contains a name that no disk accepts ({error.strerror})"
+        raise NotUnpackedError(message) from error
+    except ValueError as error:  # a NUL in a name
+        message = f"is damaged, or contains a name that no disk accepts ({error})"
+        raise NotUnpackedError(message) from error
 
 
-def _run(archive: IO[bytes], folder: str) -> subprocess.CompletedProcess[bytes] | None:
-    """Run the script in a separate process, which alone is stopped if an archive takes too much time or memory."""
-    start = interpreter("-S", str(_SCRIPT), "/dev/stdin", folder)
+def _write(member: Member, folder: Path) -> None:
+    """Write a file, or make a folder. As with unzip and tar, a file of the same name is replaced."""
+    target = folder.joinpath(*member.parts)
     try:
-        return subprocess.run(
-            [*_LIMITS, *start.argv], env=start.env, stdin=archive, capture_output=True, timeout=_TIMEOUT_S, check=False
-        )
-    except subprocess.TimeoutExpired:
-        return None
-
-
-def _why(done: subprocess.CompletedProcess[bytes] | None) -> str | None:
-    if done is None or done.returncode < 0 or not done.stdout.endswith(b"\n"):
-        return f"could not be unpacked within {_CPU_S} s and 1 GiB of memory"
-    answer: str | None = json.loads(done.stdout)["why"]
-    if done.returncode != 0:
-        message = (
-            f"A submission could not be unpacked: {answer}. Free some space in {tempfile.gettempdir()} and try again."
-        )
-        raise DiskError(message)
-    return answer
+        (target if member.content is None else target.parent).mkdir(parents=True, exist_ok=True)
+        if member.content is not None:
+            target.write_bytes(member.content)
+            target.chmod(0o755 if member.executable else 0o644)
+    except (FileExistsError, NotADirectoryError, IsADirectoryError) as error:
+        message = f"contains {shown('/'.join(member.parts))} both as a file and as a folder"
+        raise NotUnpackedError(message) from error

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from grader.classroom import archives
+from grader.classroom import archives, unpack
 from grader.errors import DiskError, MachineError, UsageError
 from grader.submission import reader, tree
 from grader.submission.package import ANSWERS, Submission, open_answers, open_submission
@@ -51,7 +51,7 @@ def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused
             except UsageError as error:
                 # Students read this, so it must not contain a path of this machine.
                 return Refused(str(error).replace(shown(str(folder)), shown(found.name)))
-    except archives.NotUnpackedError as error:
+    except unpack.NotUnpackedError as error:
         return Refused(f"{shown(found.path.name)} {error}.")
     except DiskError:
         raise
@@ -86,7 +86,7 @@ def _of_archive(archive: Path) -> str:
     try:
         with tree.open_file(archive, at=archive) as file:
             # If the archive is too large to be unpacked, hashing this part of it is enough.
-            while file.tell() <= archives.MOST_PACKED and (data := file.read(1024 * 1024)):
+            while file.tell() <= unpack.MOST_PACKED and (data := file.read(1024 * 1024)):
                 whole.update(data)
     except (OSError, ValueError) as error:
         whole.update(f"cannot be read: {error}".encode())  # `read` reports this error

@@ -1,41 +1,52 @@
-"""Unpack an archive that a student handed in: `python -I -S unpack.py ARCHIVE FOLDER`.
+"""Read an archive that a student handed in, in the process that reads students' files (submission/reader.py).
 
-archives.py runs this script in a separate process with limits. The script uses only the standard library, creates only
-plain files and folders inside the given folder, and never exceeds the limits below. The script prints JSON: {"why":
-null} on success; otherwise, "why" completes a sentence that begins with the name of the archive. The script exits with
-code 3 if the disk fails.
+The result contains only plain files and folders, with checked paths, within the limits below. archives.py writes them
+to the disk.
 """
 
 from __future__ import annotations
 
-import errno
 import gzip
 import io
-import json
 import os
 import stat
-import sys
 import tarfile
 import zipfile
 import zlib
+from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import IO, TYPE_CHECKING
+
+from grader.errors import UnreadableError
+from grader.submission import tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+MOST_PACKED = 100 * 1024 * 1024
+"""The maximum size of an archive (bytes)."""
 MOST_BYTES = 96 * 1024 * 1024
 """The maximum unpacked size (bytes): 1.5 times the size limit of a package, with space for build/ and install/."""
 MOST_ENTRIES = 20_000
 MOST_DEPTH = 40
 MOST_PATH_BYTES = 1000
 CHUNK = 256 * 1024
-DISK_FAILED = 3
-OF_THE_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS)
 
 
-class RefusedError(Exception):
-    """The archive cannot be unpacked. The message states why."""
+class NotUnpackedError(UnreadableError):
+    """The student's archive cannot be unpacked.
+
+    The message completes a sentence that begins with the name of the archive.
+    """
+
+
+@dataclass(frozen=True)
+class Member:
+    """A file of an archive, or a folder if `content` is None. `parts` are the names in its path."""
+
+    parts: tuple[str, ...]
+    content: bytes | None = None
+    executable: bool = False
 
 
 class Capped(io.RawIOBase):
@@ -49,11 +60,11 @@ class Capped(io.RawIOBase):
         return True
 
     def read(self, size: int = -1) -> bytes:
-        """Read some bytes. Raises RefusedError if the limit is exceeded."""
+        """Read some bytes. Raises NotUnpackedError if the limit is exceeded."""
         data = self._stream.read(min(size, CHUNK) if size >= 0 else CHUNK)
         self._left -= len(data)
         if self._left < 0:
-            raise RefusedError(_too_much())
+            raise NotUnpackedError(_too_much())
         return data
 
 
@@ -61,20 +72,67 @@ def _too_much() -> str:
     return f"unpacks to more than the {MOST_BYTES // 1024 // 1024} MiB that a submission may have"
 
 
-def unpack(archive: Path, folder: Path) -> None:
-    """Unpack into an empty folder. Raises RefusedError if the archive is refused, or OSError if the disk fails."""
-    with archive.open("rb") as file:
-        members = _zip(file) if zipfile.is_zipfile(file) else _tar(file)
-        left = MOST_BYTES
-        for number, (name, mode, content) in enumerate(members, 1):
-            if number > MOST_ENTRIES:
-                message = f"contains more than {MOST_ENTRIES} entries"
-                raise RefusedError(message)
-            target = folder.joinpath(*_parts(name))
-            if content is None:
-                _make_folder(target, folder)
-            else:
-                left -= _write(content, target, folder, mode, left)
+def read_archive(archive: Path) -> tuple[Member, ...]:
+    """Return the files and folders in an archive. The absolute path of the archive must not contain a link.
+
+    Raises:
+        NotUnpackedError: the archive cannot be unpacked, or is larger than a submission may be.
+    """
+    with _open(archive) as file:
+        try:
+            return tuple(_members(file))
+        except NotUnpackedError:
+            raise
+        except MemoryError as error:
+            message = "needs more memory to unpack than a submission may take"
+            raise NotUnpackedError(message) from error
+        except (zipfile.BadZipFile, tarfile.TarError, zlib.error, EOFError, gzip.BadGzipFile) as error:
+            message = f"is not a .zip or .tar.gz, or is damaged ({_shown(str(error))[:200]})"
+            raise NotUnpackedError(message) from error
+        except (NotImplementedError, RuntimeError, UnicodeError) as error:
+            message = f"is compressed with a method that is not supported ({_shown(str(error))[:200]})"
+            raise NotUnpackedError(message) from error
+        except Exception as error:
+            # A damaged archive can make the modules raise other errors too.
+            detail = f"{type(error).__name__}: {_shown(str(error))[:200]}"
+            message = f"is not a .zip or .tar.gz, or is damaged ({detail})"
+            raise NotUnpackedError(message) from error
+
+
+def _open(archive: Path) -> IO[bytes]:
+    try:
+        file = tree.open_file(archive, at=archive)
+    except OSError as error:
+        raise NotUnpackedError(tree.reason(error, archive.name)) from error
+    except ValueError as error:
+        message = f"could not be read ({_shown(str(error))})"
+        raise NotUnpackedError(message) from error
+    if os.fstat(file.fileno()).st_size <= MOST_PACKED:
+        return file
+    file.close()
+    message = f"is larger than {MOST_PACKED // 1024 // 1024} MiB"
+    raise NotUnpackedError(message)
+
+
+def _members(file: IO[bytes]) -> Iterator[Member]:
+    left = MOST_BYTES
+    for number, (name, mode, content) in enumerate(_zip(file) if zipfile.is_zipfile(file) else _tar(file), 1):
+        if number > MOST_ENTRIES:
+            message = f"contains more than {MOST_ENTRIES} entries"
+            raise NotUnpackedError(message)
+        parts = _parts(name)
+        data = None if content is None else _content(content, left)
+        left -= len(data or b"")
+        yield Member(parts, data, executable=bool(mode & stat.S_IXUSR))
+
+
+def _content(content: IO[bytes], most: int) -> bytes:
+    data = bytearray()
+    while chunk := content.read(CHUNK):
+        data += chunk
+        if len(data) > most:
+            raise NotUnpackedError(_too_much())
+    return bytes(data)
 
 
 def _zip(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
@@ -92,7 +150,7 @@ def _zip(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
             elif stat.S_IFMT(mode) in (0, stat.S_IFREG):
                 if info.flag_bits & 1:
                     message = "is locked with a password"
-                    raise RefusedError(message)
+                    raise NotUnpackedError(message)
                 with packed.open(info) as content:
                     yield name, mode, content
 
@@ -117,69 +175,12 @@ def _parts(name: str) -> tuple[str, ...]:
     path = PurePosixPath(name)
     if path.is_absolute() or ".." in path.parts:
         message = f"contains a path that leads out of it: {_shown(name)}"
-        raise RefusedError(message)
+        raise NotUnpackedError(message)
     if len(path.parts) > MOST_DEPTH or len(os.fsencode(name)) > MOST_PATH_BYTES:
         message = f"contains a path that is too long: {_shown(name[:60])}..."
-        raise RefusedError(message)
+        raise NotUnpackedError(message)
     return path.parts
 
 
 def _shown(text: str) -> str:
     return "".join(char if char.isprintable() else "?" for char in text)
-
-
-def _make_folder(target: Path, folder: Path) -> None:
-    try:
-        target.mkdir(parents=True, exist_ok=True)
-    except (FileExistsError, NotADirectoryError) as error:
-        raise RefusedError(_both(target, folder)) from error
-
-
-def _both(target: Path, folder: Path) -> str:
-    return f"contains {_shown(str(target.relative_to(folder)))} both as a file and as a folder"
-
-
-def _write(content: IO[bytes], target: Path, folder: Path, mode: int, most: int) -> int:
-    """Write a file and return its size. As with unzip and tar, a file of the same name is replaced."""
-    _make_folder(target.parent, folder)
-    if target.is_dir():
-        raise RefusedError(_both(target, folder))
-    size = 0
-    with target.open("wb") as file:
-        while data := content.read(CHUNK):
-            size += len(data)
-            if size > most:
-                raise RefusedError(_too_much())
-            file.write(data)
-    target.chmod(0o755 if mode & stat.S_IXUSR else 0o644)
-    return size
-
-
-def main(archive: str, folder: str) -> int:
-    """Unpack the archive and print whether that was possible."""
-    why = None
-    try:
-        unpack(Path(archive), Path(folder))
-    except RefusedError as error:
-        why = str(error)
-    except (zipfile.BadZipFile, tarfile.TarError, zlib.error, EOFError, gzip.BadGzipFile) as error:
-        why = f"is not a .zip or .tar.gz, or is damaged ({_shown(str(error))[:200]})"
-    except (NotImplementedError, RuntimeError, UnicodeError) as error:
-        why = f"is compressed with a method that is not supported ({_shown(str(error))[:200]})"
-    except MemoryError:
-        why = "needs more memory to unpack than a submission may take"
-    except OSError as error:
-        detail = _shown(str(error.strerror or error))[:200]
-        if error.errno in OF_THE_DISK and error.filename != archive:
-            print(json.dumps({"why": detail}))
-            return DISK_FAILED
-        why = f"is damaged, or contains a name that no disk accepts ({detail})"
-    except Exception as error:
-        # A damaged archive can make the modules raise other errors too.
-        why = f"is not a .zip or .tar.gz, or is damaged ({type(error).__name__}: {_shown(str(error))[:200]})"
-    print(json.dumps({"why": why}))
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]))

@@ -30,6 +30,7 @@ from grader.sandbox.limits import NODE_LIMITS
 from grader.setup import bootstrap, machine
 from grader.setup.node_test import why_not_heard
 from grader.setup.user_limits import shares
+from grader.submission import reader
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -67,6 +68,7 @@ def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] 
     lines.append(sandbox_line)
     if confined:
         lines.append(look_at_limits())
+    lines.append(look_at_reading())
     try:
         ros = find_ros(env)
     except MachineError as error:
@@ -233,6 +235,18 @@ def look_at_limits() -> Line:
     return Line(
         "limits",
         "the grader counts a sandbox's memory ten times per second, since the system allows it no control groups",
+    )
+
+
+def look_at_reading() -> Line:
+    """Return a line about the files that are open to the process that reads submissions."""
+    if reader.is_confined():
+        return Line("reading", "the process that reads submissions can open no other files")
+    return Line(
+        "reading",
+        "the process that reads submissions can open all files of this user",
+        "advice",
+        "use a kernel with Landlock (Linux 5.13 or later), or allow user namespaces, to grade other people's work",
     )
 
 

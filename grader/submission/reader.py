@@ -14,6 +14,7 @@ import pickle
 import resource
 import select
 import signal
+import tempfile
 import time
 import traceback
 from contextlib import suppress
@@ -28,6 +29,7 @@ from grader.common.system_errors import refusal
 from grader.errors import GraderError, MachineError, TooLargeError, UnreadableError
 from grader.sandbox.landlock import allow_only_reading
 from grader.sandbox.limits import NO_CORE_DUMP
+from grader.sandbox.own_mounts import keep_only
 from grader.sandbox.reading_calls import forbid_all_but_reading
 from grader.submission.program_files import paths_in, program_files
 
@@ -63,8 +65,8 @@ class _Child:
 def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> T:
     """Call the function in a child process and return its result, which may contain our dataclasses and built-in types.
 
-    If the kernel has Landlock, the function can open only `program_files` and the files and folders that are arguments
-    of the function (as instances of Path).
+    The function can open only `program_files` and the files and folders that are arguments of the function (as
+    instances of Path), if the machine has Landlock or lets this user create a mount namespace.
 
     Raises:
         TooLargeError: the function took too much time or memory.
@@ -90,6 +92,20 @@ def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> 
             os.kill(child, signal.SIGKILL)
             _ended(child)
     return _value(answer, status)  # type: ignore[no-any-return]
+
+
+def is_confined() -> bool:
+    """Return whether a child process of `read` can open no files except those that it was called with."""
+    with tempfile.NamedTemporaryFile() as file:
+        return not read(_can_open, file.name)
+
+
+def _can_open(path: str) -> bool:
+    try:
+        Path(path).open("rb").close()
+    except OSError:
+        return False
+    return True
 
 
 def _fork() -> int:
@@ -119,7 +135,8 @@ def _run(sends: int, readable: tuple[Path, ...], function: Callable[[], object])
             signal.signal(number, signal.SIG_DFL)
         _close_all_but(sends)
         _limit()
-        allow_only_reading(readable)
+        if not allow_only_reading(readable):
+            keep_only(readable)
         forbid_all_but_reading()
         with open(sends, "wb") as pipe:
             pipe.write(_answer(function))

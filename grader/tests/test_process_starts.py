@@ -126,8 +126,8 @@ def is_made_by_the_door(call: ast.Call, tree: ast.Module) -> bool:
         if isinstance(node.value, ast.Call) and ast.unparse(node.value.func) in DOORS
     }
     command = ast.unparse(call.args[0]) if call.args else ""
-    match = re.fullmatch(r"(\w+)\.argv(?:\[0\])?|\[\*_LIMITS, \*(\w+)\.argv\]", command)
-    return match is not None and (match[1] or match[2]) in made
+    match = re.fullmatch(r"(\w+)\.argv(?:\[0\])?", command)
+    return match is not None and match[1] in made
 
 
 def test_every_process_start_is_known_or_made_by_the_door() -> None:

@@ -45,15 +45,14 @@ BEHIND_THE_DOOR = {
     ("predicted", "predict"): "trials",
     ("rebuild", "_with_texts"): "rebuild",
     ("scores", "_scores_in"): "scores",
-    ("unpack", "_tar"): "archives: a separate process with limits",
-    ("unpack", "_zip"): "archives: a separate process with limits",
+    ("unpack", "_tar"): "archives",
+    ("unpack", "_zip"): "archives",
     ("result", "run_of"): "tests",
     ("runner", "_described"): "runner",
     ("runner", "_entry_points"): "runner",
 }
 """Other functions that read a submission, and the module that calls `read` for them."""
 OURS = {
-    ("archives", "_why"): "the output of unpack.py",
     ("bridge", "main"): "a request of the relay",
     ("cell_calls", "_returned"): "the output of a child process, in the cell of student code",
     ("cell_calls", "main"): "a request of calling.py, in the cell",

@@ -16,8 +16,8 @@ import jsonschema  # type: ignore[import-untyped]
 import pytest
 import yaml
 
+from grader.classroom.archives import unpacked
 from grader.classroom.gradescope_archive import TEMPLATES, build_archive
-from grader.classroom.unpack import unpack
 from grader.errors import UsageError
 from grader.sandbox import bubblewrap
 from grader.tests.case import copy_solution
@@ -95,8 +95,8 @@ def test_gradescopes_archive_grades_a_submission(tmp_path: Path) -> None:
         pytest.skip("there is no sandbox here")
     root = tmp_path / "autograder"
     build_archive(STEP, tmp_path / "autograder.zip", None)
-    (root / "source").mkdir(parents=True)
-    unpack(tmp_path / "autograder.zip", root / "source")
+    with unpacked(tmp_path / "autograder.zip") as folder:
+        shutil.copytree(folder, root / "source")
     # On Gradescope, setup.sh creates this.
     (root / "source" / "course" / ".venv").symlink_to(BIN.parent)
     copy_solution(STEP, root / "submission" / "my_robot_controller")

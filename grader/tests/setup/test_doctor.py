@@ -17,6 +17,7 @@ from grader.ros.installation import Ros, find_ros
 from grader.sandbox import bubblewrap
 from grader.setup import bootstrap, doctor, machine, node_test
 from grader.setup.doctor import Line
+from grader.submission import reader
 from grader.tests.both_worlds import REAL_TURTLESIM, SOURCED_ENV
 
 OURS = bootstrap.Stamp(str(bootstrap.ROOT), "wheels", "/usr/bin/python3", [3, 11, 2], bootstrap.digest(), [], {})
@@ -49,9 +50,17 @@ def bare(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
 def test_all_is_well_on_a_machine_that_runs_these_tests() -> None:
     lines = doctor.run_doctor(USERS)
     assert [line for line in lines if line.state == "broken"] == []
-    expected = {"system", "Python", "set-up", "colcon", "sandbox", "ROS 2", "turtlesim", "a node"}
+    expected = {"system", "Python", "set-up", "colcon", "sandbox", "reading", "ROS 2", "turtlesim", "a node"}
     assert {*expected, *([] if REAL_TURTLESIM else ["g++"])} <= set(states(lines))
     assert doctor.exit_code(lines) == 0
+
+
+def test_a_reading_process_without_confinement_is_reported(bare: pytest.MonkeyPatch) -> None:
+    assert doctor.look_at_reading().state == "ok"
+    bare.setattr(reader, "is_confined", lambda: False)
+    line = doctor.look_at_reading()
+    assert line.state == "advice"
+    assert "Landlock" in line.todo
 
 
 def test_one_broken_line_is_exit_code_3() -> None:

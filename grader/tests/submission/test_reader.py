@@ -23,10 +23,12 @@ import pytest
 
 from grader.checks.outcome import Finding, Status
 from grader.errors import MachineError, TooLargeError, UnreadableError, UsageError
+from grader.sandbox import bubblewrap
 from grader.submission import reader
 from grader.submission.reader import read
 from grader.submission.where import Where
 from grader.tests.case import ROOT
+from grader.tests.observed_host import USER
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -249,11 +251,30 @@ def test_it_can_read_and_start_threads(tmp_path: Path) -> None:
 def content(file: Path, *_: object) -> str:
     try:
         return file.read_text()
-    except PermissionError as error:
+    except OSError as error:
         return str(error.strerror)
 
 
-@pytest.mark.skipif(not landlocked(), reason="this kernel has no Landlock")
+def content_of(path: str, *_: object) -> str:
+    return content(Path(path))
+
+
+def without_landlock(_: object) -> bool:
+    return False
+
+
+@pytest.fixture(params=["Landlock", "its own mounts"])
+def _each_confinement(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Use Landlock, or what replaces it on a kernel without Landlock."""
+    if request.param != "Landlock":
+        monkeypatch.setattr(reader, "allow_only_reading", without_landlock)
+        if not bubblewrap.usable():
+            pytest.skip("this user cannot create namespaces")
+    elif not landlocked():
+        pytest.skip("this kernel has no Landlock")
+
+
+@pytest.mark.usefixtures("_each_confinement")
 def test_it_can_read_only_what_it_was_called_with(tmp_path: Path) -> None:
     for name in ("theirs", "others"):
         (tmp_path / name).mkdir()
@@ -264,10 +285,58 @@ def test_it_can_read_only_what_it_was_called_with(tmp_path: Path) -> None:
     assert read(content, theirs / "a.txt") == "theirs"
     assert read(content, tmp_path / "way" / "a.txt") == "theirs"
     assert read(lambda *_: content(theirs / "a.txt"), [theirs]) == "theirs"
-    assert read(lambda _: content(others / "a.txt"), theirs) == "Permission denied"
-    assert read(lambda _: content(theirs / "link"), theirs) == "Permission denied"
-    assert read(lambda: content(Path("/etc/passwd"))) == "Permission denied"
-    assert read(lambda: content(Path(f"/proc/{os.getppid()}/environ"))) == "Permission denied"
+    for path in (others / "a.txt", theirs / "link", Path("/etc/passwd"), Path(f"/proc/{os.getpid()}/environ")):
+        assert read(content_of, str(path), theirs) in ("Permission denied", "No such file or directory")
+    assert reader.is_confined()
+
+
+@pytest.mark.usefixtures("_each_confinement")
+def test_it_reads_a_relative_path_from_the_current_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "a.txt").write_text("theirs")
+    (tmp_path / "b.txt").write_text("others")
+    monkeypatch.chdir(tmp_path)
+    assert read(content, Path("a/a.txt")) == "theirs"
+    assert read(lambda _: content(Path("b.txt")), Path("a")) in ("Permission denied", "No such file or directory")
+
+
+@pytest.mark.usefixtures("_each_confinement")
+def test_it_changes_nothing_even_without_the_filter(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reader, "forbid_all_but_reading", bool)
+
+    def attempt(folder: Path) -> str:
+        try:
+            (folder / "new").touch()
+        except OSError as error:
+            return str(error.strerror)
+        return ""
+
+    assert read(attempt, tmp_path) in ("Permission denied", "Read-only file system")
+    assert list(tmp_path.iterdir()) == []
+
+
+ORDINARY = """
+from pathlib import Path
+from grader.submission import reader
+reader.allow_only_reading = lambda _: False
+print(reader.is_confined(), reader.read(Path.read_text, Path("/etc/hostname")) == Path("/etc/hostname").read_text())
+"""
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="the other tests already run as an ordinary user")
+def test_an_ordinary_users_own_mounts_hide_other_files() -> None:
+    if not bubblewrap.usable():
+        pytest.skip("this user cannot create namespaces")
+    become = ["setpriv", f"--reuid={USER}", f"--regid={USER}", "--clear-groups", "--inh-caps=-all", "--"]
+    command = [*become, sys.executable, "-c", ORDINARY]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
+    assert done.stdout == "True True\n", done.stderr
+
+
+def test_without_any_confinement_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reader, "allow_only_reading", without_landlock)
+    monkeypatch.setattr(reader, "keep_only", without_landlock)
+    assert not reader.is_confined()
 
 
 def test_it_has_no_terminal() -> None:
