@@ -6,6 +6,7 @@ import pytest
 
 from grader.classroom.roster import read_owners, read_roster
 from grader.errors import UsageError
+from grader.tests.classroom.a_class import STEP, grade
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -65,3 +66,12 @@ def test_a_file_that_is_not_a_roster_is_a_usage_error(file: Path, data: bytes, w
 def test_a_file_that_cannot_be_read_is_a_usage_error(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="cannot be read: Is a directory"):
         read_owners(tmp_path)
+
+
+def test_a_name_that_is_not_in_the_roster_changes_no_terminal(tmp_path: Path, file: Path) -> None:
+    (tmp_path / "class" / "eve\x1b]0;owned\x07\u202e").mkdir(parents=True)
+    file.write_text("submission,student\nann,ann\n")
+    done = grade(tmp_path / "class", "--exercise", STEP, "--out", tmp_path / "out", "--roster", file)
+    (line,) = [line for line in (done.stdout + done.stderr).splitlines() if "Not in the roster" in line]
+    assert "eve" in line
+    assert all(char.isprintable() for char in line)

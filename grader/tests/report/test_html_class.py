@@ -136,6 +136,17 @@ def test_a_hostile_name_adds_no_element_and_no_link(folder: Path) -> None:
     assert not [name for _, attributes in tags.elements for name in attributes if name.startswith("on")]
 
 
+def test_no_name_of_an_exercise_turns_the_text_around(folder: Path) -> None:
+    """Nobody checks the exercise in a report file, and U+202E reverses the text after it."""
+    for status in ("failed", "error"):
+        odd = replace(report(status, submission=f"class/{status}/step"), exercise="03-\u202eelcric\x1b[31m")
+        (folder / f"{status}.json").write_text(to_json(odd), "utf-8")
+    texts = Tags(class_page(read_class(folder))).texts
+    visible = "".join(text for name, parts in texts.items() if name not in ("script", "style") for text in parts)
+    assert visible.count("03-?elcric") >= 4
+    assert not {"\u202e", "\x1b"} & set(visible)
+
+
 def test_a_folder_without_reports_is_a_usage_error(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="There is no report below"):
         read_class(tmp_path)
