@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import importlib
+import math
 import os
 import signal
 import sys
 import time
-from contextlib import contextmanager
+from collections import Counter
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +18,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 
+from grader.graph.announcements import participant_ports, passed_on
 from grader.ros.failure import Ros2Error
 from grader.ros.installation import FASTDDS_PROFILE
 
@@ -24,12 +27,12 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
-QUIET_S = 0.2
-"""The graph has settled if nothing new has arrived for this long."""
+QUIET_S = 0.1
+"""The graph has settled if nothing new has arrived for this long. Only time counts in which this process could run."""
 DEADLINE_S = 4.0
-"""The maximum time to wait for participants that have open ports but send nothing, such as a stopped process. If a
-node does not use our profile and its answer is lost, it announces itself again after 3 s (leaseAnnouncement), and
-then sends its endpoints."""
+"""The maximum time to wait for participants that have open ports but send nothing, such as a stopped process. If the
+answer of a node is lost that does not use our profile, the node announces itself again after 3 s (leaseAnnouncement),
+and then sends its endpoints."""
 NOTHING_THERE_S = 0.5
 """The time to listen if the number of participants is unknown, as in the real `ros2`."""
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
@@ -55,22 +58,25 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
     Raises:
         Ros2Error: the node could not be created, for example because the domain id is wrong.
     """
-    _check_domain()
-    _leave_shared_memory_out(PATIENT_PROFILE if patient else LOOPBACK_PROFILE)
+    domain = _domain()
+    profile = PATIENT_PROFILE if patient else LOOPBACK_PROFILE
+    _leave_shared_memory_out(profile)
     _leave_generator_out()
+    announced = passed_on(domain) if os.environ.get(_PROFILE) == str(profile) else nullcontext()
     # No log file is needed to look at the graph. Python handles the signals, since rclpy's handlers would shut down
     # the context in the middle of a verb.
     arguments = ["--ros-args", "--disable-external-lib-logs"]
     try:
-        rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
-        node = rclpy.create_node(
-            name or f"{PREFIX}_{os.getpid()}",
-            start_parameter_services=False,
-            parameter_overrides=[
-                Parameter("start_type_description_service", value=False),
-                Parameter("use_sim_time", value=use_sim_time),
-            ],
-        )
+        with announced:
+            rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
+            node = rclpy.create_node(
+                name or f"{PREFIX}_{os.getpid()}",
+                start_parameter_services=False,
+                parameter_overrides=[
+                    Parameter("start_type_description_service", value=False),
+                    Parameter("use_sim_time", value=use_sim_time),
+                ],
+            )
     except Exception as error:
         rclpy.try_shutdown()
         lines = str(error).strip().splitlines() or [type(error).__name__]
@@ -113,12 +119,13 @@ def _leave_generator_out() -> None:
         del sys.modules["em"]
 
 
-def _check_domain() -> None:
-    """Raise Ros2Error if the domain id is invalid, because Fast DDS would terminate the process."""
+def _domain() -> int:
+    """Return the domain id. Raise Ros2Error if it is invalid, because Fast DDS would terminate the process."""
     text = os.environ.get("ROS_DOMAIN_ID", "") or "0"
     if not text.isdecimal() or int(text) > HIGHEST_DOMAIN:
         message = f"ROS_DOMAIN_ID is '{text}'; a whole number from 0 to {HIGHEST_DOMAIN} was expected"
         raise Ros2Error(message)
+    return int(text)
 
 
 class Settling:
@@ -126,33 +133,39 @@ class Settling:
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self._begun = self._changed = time.monotonic()
-        self._observed: object = None
+        self._begun = self._read = time.monotonic()
+        self._quiet_s = 0.0
+        self._graph: Counter[object] = Counter()
 
-    def observe(self) -> None:
-        """Read the graph, and record whether it has changed since it was last read."""
-        graph = _graph(self._node)
-        if graph != self._observed:
-            self._observed, self._changed = graph, time.monotonic()
+    def observe(self, due_s: float = math.inf) -> None:
+        """Read the graph, and record whether anything is new since it was last read.
+
+        At most `due_s` of the time since then count as quiet. On a busy machine a short wait takes longer than it
+        should, and the other processes have to wait, too.
+        """
+        graph, now = _graph(self._node), time.monotonic()
+        self._quiet_s = 0.0 if graph - self._graph else self._quiet_s + min(due_s, now - self._read)
+        self._graph, self._read = graph, now
 
     def settle(self, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> bool:
-        """Wait until nothing new has arrived for 0.2 s and all participants on this machine have sent their data.
+        """Wait until nothing new has arrived for 0.1 s and all participants on this machine have sent their data.
 
         The wait ends earlier if `enough` returns true. `deadline_s` is the longest wait; None means the default.
         Returns False if the deadline passes first.
         """
         begun = time.monotonic()
         most = deadline_s if deadline_s is not None else DEADLINE_S
+        self.observe()
         while True:
-            self.observe()
             now = time.monotonic()
             if enough():
                 return True
-            if now - self._changed >= QUIET_S and _complete(self._node, now - self._begun, deadline_s):
+            if self._quiet_s >= QUIET_S and _complete(self._node, now - self._begun, deadline_s):
                 return True
             if now - begun >= most:
                 return False
             time.sleep(_POLL_S)
+            self.observe(_POLL_S)
 
 
 def settle(node: Node, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> bool:
@@ -186,11 +199,14 @@ def nap(duration_s: float) -> None:
         time.sleep(duration_s)
 
 
-def _graph(node: Node) -> object:
-    """Return everything that can change while the graph is being discovered."""
-    topics = node.get_topic_names_and_types()
-    counts = [(name, node.count_publishers(name), node.count_subscribers(name)) for name, _ in topics]
-    return (sorted(node.get_node_names_and_namespaces()), topics, counts, node.get_service_names_and_types())
+def _graph(node: Node) -> Counter[object]:
+    """Count everything that can appear while the graph is being discovered."""
+    graph: Counter[object] = Counter(node.get_node_names_and_namespaces())
+    for name, types in node.get_topic_names_and_types():
+        graph.update({(name, *types): 1, (name, "publishers"): node.count_publishers(name)})
+        graph.update({(name, "subscriptions"): node.count_subscribers(name)})
+    graph.update((name, "service", *types) for name, types in node.get_service_names_and_types())
+    return graph
 
 
 def _complete(node: Node, waited_s: float, named_s: float | None = None) -> bool:
@@ -199,7 +215,7 @@ def _complete(node: Node, waited_s: float, named_s: float | None = None) -> bool
     Participants on other machines cannot be counted. If the user set `named_s`, the function waits this long for
     participants on other machines.
     """
-    expected = _participants(node.context.get_domain_id())
+    expected = len(participant_ports(node.context.get_domain_id()))
     endpoints: list[Any] = []
     for name, _ in node.get_topic_names_and_types():
         endpoints += node.get_publishers_info_by_topic(name)
@@ -207,23 +223,6 @@ def _complete(node: Node, waited_s: float, named_s: float | None = None) -> bool
     ids = {bytes(endpoint.endpoint_gid[:12]) for endpoint in endpoints}
     if any(endpoint.node_name == _UNKNOWN for endpoint in endpoints):
         return False
-    if expected is None or not _this_machine_only():
-        return waited_s >= (NOTHING_THERE_S if named_s is None else named_s) and len(ids) >= (expected or 0)
+    if not expected or not _this_machine_only():
+        return waited_s >= (NOTHING_THERE_S if named_s is None else named_s) and len(ids) >= expected
     return len(ids) >= expected
-
-
-def _participants(domain: int) -> int | None:
-    """Count the DDS participants on this machine in a domain by their open ports; None if counting them is impossible.
-
-    The ports follow DDSI-RTPS, 9.6.1.1: metatraffic unicast = 7400 + 250 * domain + 10 + 2 * participant.
-    """
-    first = 7400 + 250 * domain
-    ports: set[int] = set()
-    for table in ("/proc/net/udp", "/proc/net/udp6"):
-        try:
-            rows = Path(table).read_text("ascii").splitlines()[1:]
-        except OSError:
-            continue
-        ports.update(int(row.split()[1].rpartition(":")[2], 16) - first for row in rows)
-    found = {port for port in ports if 10 <= port < 250 and port % 2 == 0}
-    return len(found) or None

@@ -16,6 +16,7 @@ import grader.graph
 import grader.trial
 from grader.common.interpreter import interpreter
 from grader.errors import MachineError
+from grader.graph import announcements
 from grader.open.dds_ports import reserve
 from grader.open.dds_relay import Relay
 from grader.ros import installation
@@ -106,7 +107,7 @@ def environment(ros: Ros, domain: int, overlays: Sequence[Path] = ()) -> dict[st
     env = installation.environment(ros, home=bubblewrap.HOME, overlays=overlays, domain=domain)
     # The profile has the settings of LOCALHOST, but without shared memory, which the cell does not share.
     reach = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT", "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILE)}
-    return {**env, **reach}
+    return {**env, **reach, announcements.PORT: "0"}
 
 
 @contextmanager

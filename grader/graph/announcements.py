@@ -1,0 +1,73 @@
+"""Announce a new participant to the others on this machine, as soon as it can receive their answers.
+
+Fast DDS 2.14 sends the first announcement of a participant before the participant listens for answers. The others
+answer only the first announcement, and at once. If the answer is lost, the participant discovers them when they
+announce themselves again, which is after up to 3 s. So our participants announce themselves to a socket of their own
+process, and `pass_on` sends the announcement to the others when the participant listens.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import socket
+from contextlib import contextmanager, suppress
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+PORT = "GRADER_ANNOUNCEMENT_PORT"
+"""The environment variable in the profiles loopback.xml and loopback_patient.xml with the port to which a participant
+announces itself; 0 means the ports of all participants of the domain."""
+_LARGEST = 1 << 16
+_WAIT_S = 1.0
+
+
+@contextmanager
+def passed_on(domain: int) -> Iterator[None]:
+    """Create the participant in this context; at the end, its announcement is sent to the others."""
+    held = _held()
+    list(_received(held))  # the announcements of earlier participants of this process
+    yield
+    select.select([held], [], [], _WAIT_S)
+    announcements = list(_received(held))
+    for port in participant_ports(domain):
+        for announcement in announcements:
+            with suppress(OSError):
+                held.sendto(announcement, ("127.0.0.1", port))
+
+
+def _received(held: socket.socket) -> Iterator[bytes]:
+    with suppress(BlockingIOError):
+        while True:
+            yield held.recv(_LARGEST)
+
+
+@cache
+def _held() -> socket.socket:
+    """Return the socket to which the participants of this process announce themselves.
+
+    Fast DDS reads a profile only once in a process, so the socket stays open until the process exits.
+    """
+    held = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    held.bind(("127.0.0.1", 0))
+    held.settimeout(0)
+    os.environ[PORT] = str(held.getsockname()[1])
+    return held
+
+
+def participant_ports(domain: int) -> set[int]:
+    """Return the ports on this machine at which participants of a domain receive announcements.
+
+    The ports follow DDSI-RTPS, 9.6.1.1: metatraffic unicast = 7400 + 250 * domain + 10 + 2 * participant.
+    """
+    first = 7400 + 250 * domain
+    ports: set[int] = set()
+    for table in ("/proc/net/udp", "/proc/net/udp6"):
+        with suppress(OSError):
+            rows = Path(table).read_text("ascii").splitlines()[1:]
+            ports.update(int(row.split()[1].rpartition(":")[2], 16) for row in rows)
+    return {port for port in ports if 10 <= port - first < 250 and port % 2 == 0}
