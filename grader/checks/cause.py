@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 class Cause:
     """A diagnosis id, the cause in words (empty if the observation is enough), and the place in the code to look at.
 
-    `fix` is the smallest change that would fix the mistake, if known. The grader tries this change but never shows it
+    `fix` is the smallest change that would fix the mistake, if known. The grader tests this change but never shows it
     to a student.
     """
 

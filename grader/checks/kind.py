@@ -1,7 +1,7 @@
 """A kind is a type of check, with the parameters that exercise.toml may set.
 
 The parameters of a kind are a dataclass next to the check function. The functions `number`, `string`, `strings` and
-`choice` create the fields of this dataclass with their defaults and allowed values. Therefore, the author of a new
+`choice` create the fields of the dataclass with their defaults and allowed values. Therefore, the author of a new
 exercise writes no Python code.
 """
 

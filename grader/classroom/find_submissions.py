@@ -103,7 +103,7 @@ def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
 def _one_of(alike: Sequence[Found]) -> Found:
     """Return a student's only submission for an exercise.
 
-    If the student handed in several submissions, return one that states why none of them is graded.
+    If the student handed in several submissions, return a submission that states why none of the submissions is graded.
     """
     if len(alike) == 1:
         return alike[0]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 Result = Literal["passes", "further", "refuted"]
-"""The result of a tried change: the check passes, the check fails later for another reason, or the cause is refuted."""
+"""The result of testing a change: the check passes, fails later for another reason, or the cause is refuted."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Tries:
 
     `behind` counts the causes that appeared only after other causes had been fixed.
 
-    `stopped` says why some changes were not tried. `stopped` is empty if all changes were tried.
+    `stopped` says why some changes were not tested. `stopped` is empty if all changes were tested.
     """
 
     made: tuple[Try, ...] = ()

@@ -1,7 +1,7 @@
 """Read the parts of a submission that nbgrader needs, in the reading process (submission/reader.py).
 
 nbgrader follows links, copies files of any size, and parses any notebook in its own process. The grader's steps pass
-nbgrader only the results of these functions: a notebook of limited size and depth, and a valid time.
+nbgrader only the results of the functions in this module: a notebook of limited size and depth, and a valid time.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Prove causes: change a copy of the submission at the place that a failed check names, and run the copy.
 
-Each fix stays in the copy while the next cause is tried, which also reveals mistakes that were hidden by other
+Each fix stays in the copy while the next cause is tested, which also reveals mistakes that were hidden by other
 mistakes. Like the submission itself, the copy is built and run in the sandbox. The copy always runs in simulated time.
 """
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 MOST_TRIES = 6
 MOST_F = 1.5
-"""The maximum time for all tries of a submission, relative to the time for a build and the run of a bare node."""
+"""The maximum time for testing changes to a submission, relative to the time for a build and a run of a bare node."""
 BARE_NODE_S = 0.35
 """The time that a minimal process with one node needs to start and exit (s)."""
 ENOUGH = f"only {MOST_TRIES} changes are tried"
@@ -45,7 +45,7 @@ def explain(
 ) -> Tries:
     """Try to fix the causes of the failed outcomes. `build_s` is the duration of the build (s).
 
-    `give_up` is called before each change is tested. Once `give_up` returns true, no more changes are tried.
+    `give_up` is called before each change is tested. Once `give_up` returns true, no more changes are tested.
     """
     return _Explaining(evidence, outcomes, MOST_F * (build_s + BARE_NODE_S), regrade, give_up).run()
 

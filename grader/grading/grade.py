@@ -78,7 +78,7 @@ def grade(
 
 
 def can_be_explained(graded: Graded) -> bool:
-    """Return whether a failed check in simulated time has a cause with a fix that can be tried."""
+    """Return whether a failed check in simulated time has a cause with a fix that can be tested."""
     report = graded.report
     return report.clock != "wall" and any(outcome.finding.fix for outcome in report.with_status(Status.FAILED))
 
@@ -109,7 +109,7 @@ def explained(
     def in_simulated_time(plan: Plan, *rest: Any, **more: Any) -> Trial:  # noqa: ANN401 - the arguments of Trial
         """Create a trial in simulated time.
 
-        If the corrected node seems to follow wall time, the try is inconclusive.
+        If the corrected node seems to follow wall time, the test of the fix is inconclusive.
         """
         if plan.clock == "wall":
             raise MachineError("A try is made in simulated time only.")  # noqa: EM101

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 class Actions:
     """The actions of a page. Each action returns data for JSON, or raises GraderError with a message for the page.
 
-    `tell` sends a command of grading.py to the process that grades.
+    `tell` sends a command that grading.py defines to the process that grades.
     """
 
     tell: Callable[[str], object]

@@ -73,7 +73,7 @@ def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
 
 
 def _prove(desk: Desk, events: Events, watched: Watched) -> None:
-    """While no event waits, try fixes for the causes in the verdict, and show the results."""
+    """While no event waits, test fixes for the causes in the verdict, and show the results."""
     proved = watched.prove(desk.tell, events.waiting)
     if proved is not None:
         desk.judged(proved.report)

@@ -24,7 +24,9 @@ Answer = str | float | tuple[str, ...]
 
 @dataclass(frozen=True)
 class Answers:
-    """The table [answers], by id: strings, numbers and lists of strings. Other types, empty answers and 0 are left out.
+    """The table [answers], by id: strings, numbers and lists of strings.
+
+    Values of other types, empty answers and 0 are left out.
 
     `lines` are the line numbers of the answers, counted from 1. `problem` is the reason why the file cannot be read.
     """

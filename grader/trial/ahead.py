@@ -1,4 +1,4 @@
-"""The trials of one submission. The trials start during the build, and those in simulated time run in parallel.
+"""The trials of one submission. The trials start during the build, and all trials in simulated time run in parallel.
 
 The trials start one after the other, so that most of a processor is left for the build, for which all trials wait.
 Simulated time does not depend on the speed of the machine, so parallel trials do not affect each other. A trial in wall
@@ -91,7 +91,7 @@ class Ahead:
             pool.shutdown()
 
     def start(self, name: str, trial: Trial) -> None:
-        """Start the simulator and the launcher of this trial as soon as those of the previous trials are ready.
+        """Start the simulator and the launcher of this trial when the programs of the previous trials are ready.
 
         If the start fails, the trial's `run` raises the error.
         """

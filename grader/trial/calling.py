@@ -43,7 +43,7 @@ def make_calls(
     executable: str = "",
     in_cell: bool,
 ) -> bytes:
-    """Call the function, or else the executable, and return the output of the cell (see called.read_called).
+    """Call the function, or run the executable, and return the output of the cell (see called.read_called).
 
     `tree` is the install tree of the package (a tar stream). `files` maps paths to the files that are added in the
     current folder of the program.

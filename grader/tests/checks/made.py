@@ -159,7 +159,7 @@ def node(*changes: tuple[str, str]) -> Submission:
 def every(
     period_s: float, linear: float, angular: float, until_s: float = DURATION_S, first_s: float | None = None
 ) -> list[Timed]:
-    """Return the same command, repeated with this period on whole frames.
+    """Return the same command at each multiple of this period, rounded to whole frames.
 
     The first command comes one period after the start.
     """

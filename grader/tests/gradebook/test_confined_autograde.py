@@ -1,4 +1,4 @@
-"""Autograde's kernels see their submission, the course and ROS 2, and no other part of the machine."""
+"""A kernel of autograde sees its submission, the course and ROS 2, and no other part of the machine."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Scores that the grader has not confirmed do not count. The tests use the real nbgrader and false scores."""
+"""Scores that the grader has not confirmed do not count. The tests use the real nbgrader and forged scores."""
 
 from __future__ import annotations
 

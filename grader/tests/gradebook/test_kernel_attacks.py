@@ -1,4 +1,4 @@
-"""Kernels that attack nbgrader are stopped with a reason. nbgrader needs little memory and can save the notebook."""
+"""nbgrader stops kernels that attack it, reports the reason, needs little memory, and can save the notebook."""
 
 from __future__ import annotations
 

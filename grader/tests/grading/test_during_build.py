@@ -228,7 +228,7 @@ def both_ways(exercise: str, given: Submission) -> list[Any]:
 
 
 def test_a_setup_py_that_changes_the_node_gets_the_report_of_the_changed_node() -> None:
-    """The arguments of setup() can run code, which is not run for the prediction."""
+    """The arguments of setup() can contain code, and the prediction does not run this code."""
     given = open_submission(ROOT / "solutions" / STEP)
     setup_py = given.files["setup.py"].decode()
     change = f'open("{NODE}", "a").write("\\nraise RuntimeError(7)\\n")'

@@ -47,7 +47,7 @@ def right(id_: str) -> Outcome:
 def tries(
     source: str, judged: Callable[[str], Sequence[Outcome]], build_s: float = LONG_S
 ) -> tuple[Tries, dict[str, Outcome]]:
-    """Return the changes that were tried for this source code, and the reported outcomes.
+    """Return the changes that were tested for this source code, and the reported outcomes.
 
     `judged` is a function that returns invented outcomes for given source code.
     """

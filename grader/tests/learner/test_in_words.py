@@ -1,4 +1,4 @@
-"""The sentence about how a learner's file differs from the solution."""
+"""The sentence that says how a learner's file differs from the solution."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 Only code that makes decisions is changed. Code for messages is not changed: strings, a choice between two strings,
 printed numbers. Declarations, the parameters of a kind of check with their defaults, the `strict` of zip, and the code
-that finds values near a limit, which chooses the clock, are not changed either. grader/tests/checks has tests for this
+that chooses the clock because a value is near a limit are not changed either. grader/tests/checks has tests for this
 code.
 """
 
@@ -132,14 +132,14 @@ def _changes(node: cst.CSTNode) -> Iterator[Change]:
 
 
 def _places(call: cst.Call, index: int | None) -> Iterator[cst.BaseExpression]:
-    """Return those arguments of a call that state a place in the source, by this index or by the keyword `where`."""
+    """Yield the arguments that state a place in the source: the argument at this index, and the keyword `where`."""
     for number, argument in enumerate(call.args):
         if number == index if argument.keyword is None else argument.keyword.value == "where":
             yield argument.value
 
 
 def _is_words(assignment: cst.Assign) -> bool:
-    """Return whether a variable contains text, or the distance from a limit, which only affects the clock."""
+    """Return whether a variable contains text, or a distance from a limit that affects only the choice of the clock."""
     return _is_nearness(assignment) or _is_text(assignment.value) or _chooses_text(assignment.value)
 
 

@@ -43,7 +43,7 @@ SEPARATORS = (",", ";", "\t", "|")
 
 
 def begins_like_a_formula(cell: str) -> bool:
-    """Return whether a spreadsheet can run the cell as a formula after removing spaces, quotes and character width."""
+    """Return whether a spreadsheet might run the cell as a formula, even if the cell begins with spaces or quotes."""
     return unicodedata.normalize("NFKC", cell).lstrip(' \t\r\n"`').startswith(("=", "+", "-", "@", "\N{MINUS SIGN}"))
 
 

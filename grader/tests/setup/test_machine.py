@@ -34,7 +34,7 @@ def closed() -> Iterator[Path]:
 
 
 def fake_python(folder: Path, name: str, version: tuple[int, int, int], path: str | None = None) -> None:
-    """Create a program that answers the probe like an interpreter."""
+    """Create a program that describes itself as an interpreter when the set-up runs it."""
     folder.mkdir(parents=True, exist_ok=True)
     answer = {"path": path or str(folder / name), "version": version, "cpython": True, "venv": True, "headers": True}
     (folder / name).write_text(f"#!/bin/sh\necho '{json.dumps(answer)}'\n")

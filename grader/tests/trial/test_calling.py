@@ -30,7 +30,10 @@ def ros() -> Ros:
 
 
 def tree_of(ros: Ros, path: str, source: str) -> bytes:
-    """Return an install tree with one file. A module's `path` begins with "python/", a program's with "lib/"."""
+    """Return an install tree with one file, a module or a program.
+
+    The `path` of a module begins with "python/", and the `path` of a program begins with "lib/".
+    """
     home = bubblewrap.WORKSPACE
     python = environment(ros, home=home, overlays=[home / PACKAGE])["PYTHONPATH"].split(":")[0]
     place = path.replace("python/", python.removeprefix(f"{home}/{PACKAGE}/") + f"/{PACKAGE}/")

@@ -33,7 +33,7 @@ def drive(late: int, seconds: float = 36.0) -> tuple[list[Point], list[Leg]]:
 
 
 def off_the_square(place: Point, corners: list[Point]) -> float:
-    """Return the distance to the nearest side of a square that is parallel to the axes (m)."""
+    """Return the distance to the nearest side of a square whose sides are parallel to the axes (m)."""
     (left, bottom), (right, top) = corners[0], corners[2]
     x, y = min(max(place[0], left), right), min(max(place[1], bottom), top)
     inside = min(x - left, right - x, y - bottom, top - y)
