@@ -92,7 +92,10 @@ def grade_found(
             say(f"Ignored, because these are neither folders nor archives: {a_list(beside)}.")
         unlisted = [shown_name(each.student) for each in found if roster and each.student not in roster]
         if unlisted:
-            say(f"Not in the roster, so judged with the numbers of their own names: {a_list(unlisted)}.")
+            say(
+                "These submissions are not in the roster, so the names of their folders determine their numbers: "
+                f"{a_list(unlisted)}."
+            )
         graded: list[Result] = []
         if todo:
             engine = _engine(request, local=local)

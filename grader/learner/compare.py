@@ -36,7 +36,7 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
     root = progress.workspace_of(folder)
     if not progress.load(root).step(exercise.id).passed:
         message = (
-            f"You can see the solution of {exercise.id} after yours has passed. Until then, `grader hint "
+            f"You can see the solution of {exercise.id} after your own solution has passed. Until then, `grader hint "
             f"{exercise.id}` helps."
         )
         raise UsageError(message)

@@ -66,6 +66,6 @@ def shell(domain: Domain = None) -> None:
 
     with progress() as tell:
         wanted = shells.users_environment(domain, tell)
-    print(f"This shell has ROS 2, in {who_hears(wanted)}. Type exit to leave it.")
+    print(f"This shell has ROS 2, in {who_hears(wanted)}. Type exit to leave this shell.")
     sys.stdout.flush()
     shells.open_shell(wanted)

@@ -44,7 +44,7 @@ def waits_in_callback(evidence: Evidence) -> Cause | None:
                 text = (
                     "A callback waits for a response. While the callback waits, rclpy.spin cannot receive the "
                     "response. "
-                    "Use the method that ends in _async, and add_done_callback for what comes next."
+                    "Use the method whose name ends in _async, and pass the next step to add_done_callback."
                 )
                 return Cause("waits-in-callback", text, Where(module.file, getattr(node, "lineno", None)))
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr not in reached:

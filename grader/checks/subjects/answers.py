@@ -96,7 +96,7 @@ class GraphQuestion:
     """
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
-    find: str = choice("topic", "type", "node", about="The question asks for this property of each endpoint.")
+    find: str = choice("topic", "type", "node", about="The property of each endpoint that the question asks for.")
     among: str = choice("publisher", "subscription", "all", about="The kind of endpoint that counts.")
     node: str = string("a node's full name", start="/", default="", about="Only endpoints of this node count.")
     type_starts: str = string(

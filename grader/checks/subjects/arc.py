@@ -158,7 +158,7 @@ def _expected(params: Arc) -> str:
     angle = f" of {params.angle_deg:g} degrees" if params.angle_deg else ""
     speed = f" at {params.speed_m_s:g} m/s" if params.speed_m_s else ""
     color = f", drawn in the colour {', '.join(map(str, params.color))}" if params.color else ""
-    return f"An arc{angle} with a radius of {params.radius_m:g} m, {params.direction}{speed}{color}."
+    return f"The turtle drives an arc{angle} with a radius of {params.radius_m:g} m, {params.direction}{speed}{color}."
 
 
 def _chosen(evidence: Evidence, params: Arc) -> Steps:

@@ -75,7 +75,10 @@ def lobes_of(trajectory: Trajectory) -> list[Lobe]:
 
 def eight(evidence: Evidence, params: Eight) -> Finding:
     """The turtle drives a figure eight."""
-    expected = f"A figure eight: a full circle of radius {params.radius_m:.1f} m to one side, then one to the other."
+    expected = (
+        f"The turtle drives a figure eight: a full circle of radius {params.radius_m:.1f} m to one side, then a full "
+        "circle to the other side."
+    )
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
     trajectory = evidence.trajectory
     still = not_driven(evidence, expected, where)

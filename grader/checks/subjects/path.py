@@ -80,7 +80,9 @@ def expected_centre(start: Pose, params: CircleParams) -> tuple[float, float]:
 def circle(evidence: Evidence, params: CircleParams) -> Finding:
     """The turtle drives the circle: it is round, with the right direction, size, place and number of turns."""
     turns = "1 turn" if params.turns == 1.0 else f"{params.turns:g} turns"
-    expected = f"A circle of radius {params.radius_m:.1f} m, {params.direction}, at least {turns}."
+    expected = (
+        f"The turtle drives a circle of radius {params.radius_m:.1f} m, {params.direction}, for at least {turns}."
+    )
     moved = moved_otherwise(evidence, expected)
     if moved is not None:
         return moved

@@ -45,8 +45,8 @@ def pause(evidence: Evidence, params: Pause) -> Finding:
     """The turtle moves, and then stops and continues within the allowed times."""
     trajectory = evidence.trajectory
     within = Band.at_most(params.within_s)
-    expected = f"At {params.from_s:g} s, the turtle has {params.within_s:g} s to stop"
-    expected += f"; at {params.until_s:g} s, it continues." if params.goes_on else "."
+    expected = f"At {params.from_s:g} s, the turtle has {params.within_s:g} s to stop."
+    expected += f" At {params.until_s:g} s, the turtle continues." if params.goes_on else ""
     where = evidence.place("create_service")
     if _moved(trajectory, params.from_s - BEFORE_S, params.from_s) is None:
         crash = crash_of(evidence)

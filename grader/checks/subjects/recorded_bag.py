@@ -66,7 +66,7 @@ def readable(evidence: Evidence, params: InBag) -> Finding:
         cause = "Delete the folder, and record again."
         return failed(f"{params.bag} cannot be read: {bag.detail}.", expected, Cause("bag-damaged", cause, where))
     if not sum(bag.counts.values()):
-        cause = "The recording ended before anything arrived, or nothing was published during it."
+        cause = "The recording ended before anything arrived, or no node published anything during the recording."
         return failed(f"The bag {params.bag} is empty.", expected, Cause("bag-empty", cause, where))
     return passed(f"The bag contains {sum(bag.counts.values())} messages.")
 
@@ -88,7 +88,7 @@ def topic_in_bag(evidence: Evidence, params: TopicInBag) -> Finding:
         observed = f"{params.topic} has the type {shorten(bag.types[params.topic])} in the bag."
         return failed(observed, expected, Cause("wrong-type", "", where))
     if not bag.counts.get(params.topic):
-        cause = "The topics to record are the last words of the command. Each topic begins with a slash."
+        cause = "The command ends with the topics to record. Each topic begins with a slash."
         return failed(f"The bag contains {a_list(held)}.", expected, Cause("bag-topic", cause, where))
     return passed(f"The bag contains {a_list(held)}.")
 

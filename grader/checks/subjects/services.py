@@ -45,7 +45,8 @@ def calls_service(evidence: Evidence, params: CallsService) -> Finding:
     """The node called the simulator service with these fields."""
     request = ", ".join(f"{name}={_value(value)}" for name, value in params.fields)
     after = params.after.strip()
-    expected = f"The node calls {params.service} with {request}" + (f", after it has called {after}." if after else ".")
+    expected = f"The node calls {params.service} with {request}."
+    expected += f" Before that, the node calls {after}." if after else ""
     made = [call for call in calls_of(evidence) if not call.by_trial]
     calls = [call for call in made if call.service == params.service]
     right = [

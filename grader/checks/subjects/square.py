@@ -89,7 +89,10 @@ def _heading(trajectory: Trajectory, begin: int, end: int) -> float:
 
 def square(evidence: Evidence, params: Square) -> Finding:
     """The turtle drives a square."""
-    expected = f"Four straight sides of {params.side_m:.1f} m, with a turn of 90 degrees on the spot after each side."
+    expected = (
+        f"The turtle drives four straight sides of {params.side_m:.1f} m, and turns by 90 degrees on the spot after "
+        "each side."
+    )
     where = evidence.place("publish")
     trajectory = evidence.trajectory
     still = not_driven(evidence, expected, where)

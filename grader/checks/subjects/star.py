@@ -43,8 +43,8 @@ def star(evidence: Evidence, params: Star) -> Finding:
     """The turtle draws a star: velocity commands drive the turtle along the sides, and action goals turn it."""
     amount = int(params.sides)
     expected = (
-        f"{amount} straight sides of {params.side_m:g} m, the first with a heading of {params.heading_deg:g} degrees, "
-        f"each {params.corner_deg:g} degrees further to the left."
+        f"The turtle drives {amount} straight sides of {params.side_m:g} m: the first with a heading of "
+        f"{params.heading_deg:g} degrees, and each next side {params.corner_deg:g} degrees further to the left."
     )
     where, trajectory = evidence.place("publish"), evidence.trajectory
     others = [name for name in evidence.recording.interventions if name in (MOVING | ALWAYS) - {BY_GOALS}]
@@ -82,8 +82,8 @@ def _measured(evidence: Evidence, params: Star, sides: Sides, expected: str) -> 
         text = "The length of a side is speed times time. The time is the number of timer calls times the timer period."
         if length > params.side_m and all(command.linear[0] for command in evidence.commands):
             text = (
-                "No command with zeros ends a side, so the turtle continues. Publish a command with zeros after each "
-                "side."
+                "The node sends no command with zeros at the end of a side, so the turtle continues. Publish a command "
+                "with zeros after each side."
             )
         return failed(observed, expected, Cause("side-length", text, where), near_edge=near)
     for index, heading in enumerate(sides.headings[:amount]):

@@ -235,7 +235,7 @@ def test_the_status_after_the_last_step_names_no_next_step() -> None:
 def test_the_solution_shows_only_files_that_the_learner_had_to_write(home: Path) -> None:
     steps.start("01", None)
     said = Console(width=100, record=True, file=io.StringIO())
-    with pytest.raises(UsageError, match="after yours has passed"):
+    with pytest.raises(UsageError, match="after your own solution has passed"):
         print_solution("01", None, said)
     passed(FIRST)
     (home / "ros2_ws/src/my_robot_controller/package.xml").write_text("grown in later steps")

@@ -113,7 +113,7 @@ def test_a_failed_check_has_observed_expected_why_and_where() -> None:
     start = text.index("✗ The turtle drives a circle  0/25\n")
     assert text[start:].splitlines()[1:5] == [
         "    seen: The radius of the circle is 2.2 m.",
-        "    expected: A circle of radius 2.0 m, counter-clockwise, at least 1 turn.",
+        "    expected: The turtle drives a circle of radius 2.0 m, counter-clockwise, for at least 1 turn.",
         "    likely: The radius is linear.x divided by angular.z: 2.2 / 1.0 = 2.2 m.",
         "    where: my_robot_controller/draw_circle.py:15",
     ]

@@ -99,7 +99,7 @@ def test_a_trajectory_that_is_not_round_is_explained_by_the_commands_or_by_the_e
 def test_two_turns_may_be_requested() -> None:
     short = found_by(CIRCLE, evidence(SHAPES["good"]()), radius_m=2.0, turns=2.0)
     assert (short.diagnosis, short.observed) == ("too-short", "The turtle drove 1.51 of a turn.")
-    assert short.expected == "A circle of radius 2.0 m, counter-clockwise, at least 2 turns."
+    assert short.expected == "The turtle drives a circle of radius 2.0 m, counter-clockwise, for at least 2 turns."
 
 
 def test_commands_that_differ_ask_for_no_size() -> None:
