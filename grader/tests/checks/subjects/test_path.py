@@ -23,7 +23,7 @@ def circle(shape: str) -> Finding:
 def test_a_circle_is_a_circle_whatever_the_rhythm(shape: str) -> None:
     found = circle(shape)
     assert (found.status, found.diagnosis) == (Status.PASSED, None)
-    assert found.observed == "The turtle drove a circle of radius 2.0 m, counter-clockwise, at least 1 turn."
+    assert found.observed == "The turtle drove a circle of radius 2.0 m, counter-clockwise, for at least 1 turn."
 
 
 @pytest.mark.parametrize(
