@@ -72,6 +72,6 @@ def test_a_name_that_is_not_in_the_roster_changes_no_terminal(tmp_path: Path, fi
     (tmp_path / "class" / "eve\x1b]0;owned\x07\u202e").mkdir(parents=True)
     file.write_text("submission,student\nann,ann\n")
     done = grade(tmp_path / "class", "--exercise", STEP, "--out", tmp_path / "out", "--roster", file)
-    (line,) = [line for line in (done.stdout + done.stderr).splitlines() if "Not in the roster" in line]
+    (line,) = [line for line in (done.stdout + done.stderr).splitlines() if "not in the roster" in line]
     assert "eve" in line
     assert all(char.isprintable() for char in line)
