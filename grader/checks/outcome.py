@@ -44,7 +44,7 @@ class Finding:
     fix: tuple[Edit, ...] = field(default=(), compare=False)
     """The change that would fix the mistake. The grader tries this change but never shows it to a student."""
     tried: str = ""
-    """A sentence about the result of trying the change."""
+    """A sentence about the result of testing the change."""
     change: str = ""
     """The change as a unified diff if it has proved the cause. The change is only for instructors, because it is a part
     of the solution."""

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 CONNECT_S = 10.0
 WORKERS_S = 60.0
-"""The maximum time to wait for the first worker, or for a new one after all workers are gone (s)."""
+"""The maximum time to wait for the first worker, or for a new worker after all workers are gone (s)."""
 LOOK_S = 1.0
 """The interval between checks for available workers (s)."""
 

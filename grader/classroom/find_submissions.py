@@ -45,7 +45,7 @@ class Found:
     """An absolute path without links. If a path contains a link, a student has replaced a folder by this link, so the
     path is not read."""
     refused: str = ""
-    """Why the submission cannot be graded, if this is already known."""
+    """The reason why the submission cannot be graded, if the reason is already known."""
 
     @property
     def name(self) -> str:

@@ -76,9 +76,9 @@ class Evidence:
     """The results of the trials that were run, by their ids."""
     fault: Fault | None = None
     tries: Tries = field(default_factory=Tries)
-    """The results of trying to fix the causes."""
+    """The results of testing changes that would fix the causes."""
     trial_id: str = ""
-    """The id of the trial that this evidence presents; empty for the first trial of the exercise."""
+    """The id of the trial that this evidence is about; empty for the first trial of the exercise."""
 
     def __getstate__(self) -> dict[str, Any]:
         """Return only the fields. Cached values are not sent to another process."""
@@ -86,7 +86,7 @@ class Evidence:
 
     @property
     def trial(self) -> TrialSpec:
-        """The trial that this evidence presents."""
+        """The trial that this evidence is about."""
         return self.exercise.trial(self.trial_id) if self.trial_id else self.exercise.trials[0]
 
     @property

@@ -167,7 +167,7 @@ def _checks(
 
 
 def _without_presets(tables: list[Table], trials: tuple[str, ...]) -> list[Table]:
-    """Return the tables without a preset.
+    """Return the tables that have no key `preset`.
 
     A table that still has the key `preset` is invalid, and is recorded as a mistake.
     """

@@ -72,7 +72,7 @@ def _is_visible(char: str) -> bool:
 
 
 def draw_numbers(spec: NumbersSpec, student: str) -> OwnNumbers:
-    """Return the numbers of a student.
+    """Return a student's individual numbers.
 
     The numbers are the same on every machine and for every spelling of the student's id (see `normal_id`).
     """

@@ -31,7 +31,7 @@ def graded_folder(exercise: Exercise, submitted: Path, together: Path) -> Path:
 
     Raises:
         UnreadableError: the submission cannot be read.
-        MachineError: `together` cannot be written.
+        MachineError: the folder `together` cannot be written.
     """
     if together.exists():
         shutil.rmtree(together)

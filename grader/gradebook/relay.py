@@ -169,7 +169,7 @@ def run(order: Order, info: Mapping[str, Any]) -> str:
             env=dict(order.env),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            # Otherwise, a student's output could control the instructor's terminal.
+            # A student's output on the instructor's terminal could control this terminal.
             stderr=subprocess.DEVNULL,
             pass_fds=() if filter_fd is None else (filter_fd,),
         )

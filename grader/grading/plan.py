@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import ClockName
 
 USUAL_RADIUS_M = 2.0
-"""A random start leaves room for a circle of this radius (m), unless a check needs a different one."""
+"""A random start leaves room for a circle of this radius (m), unless a check needs a different radius."""
 DEFAULT_SEED = 1
 """The seed for scenarios with random values, if the user gives none."""
 

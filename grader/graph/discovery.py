@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 QUIET_S = 0.1
-"""The graph has settled if nothing new has arrived for this long. Only time counts in which this process could run."""
+"""The graph has settled if nothing new arrives for this long. Time in which this process cannot run is not counted."""
 DEADLINE_S = 4.0
 """The maximum time to wait for participants that have open ports but send nothing, such as a stopped process. If the
-answer of a node is lost that does not use our profile, the node announces itself again after 3 s (leaseAnnouncement),
+answer of a node that does not use our profile is lost, the node announces itself again after 3 s (leaseAnnouncement),
 and then sends its endpoints."""
 NOTHING_THERE_S = 0.5
 """The time to listen if the number of participants is unknown, as in the real `ros2`."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 CONFINED = "GRADER_CONFINED"
-"""Set in a kernel that runs inside a sandbox cell (grader.sandbox), where another sandbox cell cannot be started."""
+"""The variable that is set in a kernel inside a sandbox cell, where another sandbox cell cannot be started."""
 
 
 def grading() -> bool:

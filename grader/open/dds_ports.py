@@ -25,7 +25,7 @@ OTHERS = 64
 _TRIED = 64
 OWN = 4
 """The number of participants in a cell that other nodes can reach. A program has one participant for each context, and
-a node that it starts as a child process has another one."""
+a node that the program starts as a child process has another participant."""
 
 
 def participant_ports(domain: int, number: int) -> tuple[int, int]:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 KEPT = 200
 """The maximum number of lines of a program's output that are kept."""
 LONGEST = 500
-"""The maximum length of these lines in characters."""
+"""The maximum length of a line of a program's output (characters)."""
 ENDS_S = 8.0
 """The maximum time for a program to exit after Ctrl-C (s) before it is killed."""
 READY_S = 30.0
@@ -101,7 +101,7 @@ class Program:
     async def _read(self, process: asyncio.subprocess.Process) -> None:
         assert process.stdout is not None
         while chunk := await process.stdout.read(65536):
-            # Join a line that arrives in two pieces, and truncate a very long one.
+            # Join a line that arrives in two pieces, and truncate a very long line.
             first, *rest = chunk.decode("utf-8", "replace").split("\n")
             if self.lines:
                 self.lines[-1] = (self.lines[-1] + first)[:LONGEST]

@@ -119,7 +119,7 @@ def cell(
     command += ["--size", str(limits.disk), "--tmpfs", "/dev/shm", "--remount-ro", "/dev", "--remount-ro", "/"]
     command += [] if info_fd is None else ["--info-fd", str(info_fd)]
     command += [] if filter_fd is None else ["--seccomp", str(filter_fd)]
-    # Set inside the cell, so that the limit counts only processes of this cell.
+    # Set the limits inside the cell, so that they count only processes of this cell.
     return [*command, *_environment(env), "--chdir", str(cwd), "--", *limited(argv, limits, in_cell=True)]
 
 

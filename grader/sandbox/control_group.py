@@ -45,7 +45,7 @@ class ControlGroup:
     folders: tuple[Path, ...] = ()
 
     def __bool__(self) -> bool:
-        """Whether groups are possible."""
+        """Whether control groups are possible."""
         return bool(self.folders)
 
     def joined(self, argv: Sequence[str]) -> list[str]:
@@ -110,7 +110,7 @@ def _parents() -> list[Path]:
     """Return the folders in which a group can be created: one for both controllers, one per controller, or none."""
     own = dict(_own())
     if all(name in own for name in CONTROLLERS):
-        # In a container, the path may be that of the host. In this case, the group is the root of the container's tree.
+        # In a container, this may be a path of the host. In this case, the group is the root of the container's tree.
         places = [(TREE / name / own[name].lstrip("/"), TREE / name) for name in CONTROLLERS]
         return [next((place for place in both if os.access(place, os.W_OK)), both[0]) for both in places]
     own_group = TREE / own.get("", "/").lstrip("/")

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 EVERY_S = 0.1
 LAUNCHERS = 16
-"""In addition to the student's processes, this number is allowed: bubblewrap and other processes that start a cell.
+"""The number of processes that may exist in addition to the student's processes, such as bubblewrap.
 
 In a cell, the kernel counts processes too and refuses new ones before this number is reached.
 """

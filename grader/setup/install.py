@@ -31,7 +31,7 @@ _MOST_LINES = 40
 _RETRIES = 2
 """The number of failed name look-ups after which the installer is stopped. pip would continue for ten more seconds."""
 _FIRST = frozenset({"uv", "setuptools"})
-"""The packages that pip installs, although it is slower: uv, and setuptools, which uv needs to build empy."""
+"""The packages that pip installs, although pip is slower than uv: uv, and setuptools, which uv needs to build empy."""
 _UNKNOWN = (
     "The packages could not be installed; the installer's messages are above. HTTPS_PROXY sets a proxy, and pip's "
     f"configuration sets a mirror; {setup_errors.AGAIN}."

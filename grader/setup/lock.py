@@ -68,7 +68,7 @@ def parse(text: str) -> dict[str, list[Entry]]:
     An entry that several parts need is returned for each part.
 
     Raises:
-        UsageError: a line is outside a part or an entry.
+        UsageError: a line does not belong to a part or an entry.
     """
     sections: list[tuple[list[str], list[Entry]]] = []
     for line in text.splitlines(keepends=True):

@@ -42,7 +42,7 @@ T = TypeVar("T")
 CPU_S = 10
 TIMEOUT_S = 120.0
 MEMORY = 1024 * 1024 * 1024
-"""The address space of the child, in addition to that of the grader (bytes)."""
+"""The maximum address space that the child may use in addition to the address space of the grader (bytes)."""
 MOST_ANSWER = 256 * 1024 * 1024
 """The maximum size of a result (bytes). The result consists mostly of the files of a submission."""
 _CHUNK = 1024 * 1024

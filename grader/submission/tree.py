@@ -239,7 +239,7 @@ def _has_room(tree: Tree, path: str, size: int) -> bool:
 
 
 def _read_file(tree: Tree, folder: int, entry: Entry, path: str) -> None:
-    # O_NONBLOCK keeps this from blocking if a pipe has replaced the file since the listing.
+    # With O_NONBLOCK, opening does not block if a pipe has replaced the file since the listing.
     flags = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
     try:
         descriptor = os.open(entry.name, flags, dir_fd=folder)

@@ -40,7 +40,7 @@ START_S = 120.0
 """The maximum time for the imports, on a crowded machine (s)."""
 _QUESTION = struct.Struct("<cHqdd")
 READY = b"ready\n"
-"""The session writes this when it is ready to run tests (see session.py)."""
+"""The session writes this line when it is ready to run tests (see session.py)."""
 _HEADER = struct.Struct("<i?dI")
 _LENGTH = struct.Struct("<H")
 _DISKS = ("/ws", "/tmp", "/dev/shm")

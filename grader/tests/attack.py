@@ -51,7 +51,7 @@ class Attack:
     points: float = -1.0
     """The exact points. If below 0, the points are not checked, because the node may be partly right."""
     most: float = 100.0
-    """The maximum of points."""
+    """The maximum number of points."""
     says: str = ""
     file: str = ""
     process: str = ""

@@ -40,7 +40,7 @@ class Case:
 
     name: str
     why: str
-    """How the submission differs from a usual one, for readers of the tests."""
+    """How the submission differs from a usual submission, for readers of the tests."""
     result: str
     """One of the keys of EXIT_CODES."""
     folder: Path = CASES

@@ -37,7 +37,7 @@ def own_domain() -> int:
     default_domain()
     domain = _free() if len(_own) < MOST else None
     if domain is None:
-        # No domain is free. The default domain is better than that of another process.
+        # No domain is free. The default domain is better than the domain of another process.
         domain = _own.pop(0) if _own else default_domain()
     _own.append(domain)
     return domain

@@ -84,7 +84,7 @@ NAMED = {
     ("underlay", "_build"): "an argument of cmake, which starts it in our own folder",
     ("underlay", "_key_of_sources"): "part of a key",
 }
-"""Functions that use an interpreter's path other than as the argument `python` of interpreter(), and the reason."""
+"""Maps a function that uses an interpreter's path, but not as an argument of interpreter(), to the reason."""
 
 
 def sources() -> Iterator[tuple[Path, ast.Module]]:

@@ -51,7 +51,7 @@ BEHIND_THE_DOOR = {
     ("runner", "_described"): "runner",
     ("runner", "_entry_points"): "runner",
 }
-"""Other functions that read a submission, and the module that calls `read` for them."""
+"""Maps each other function that reads a submission to the module that calls `read` for this function."""
 OURS = {
     ("bridge", "main"): "a request of the relay",
     ("cell_calls", "_returned"): "the output of a child process, in the cell of student code",

@@ -49,11 +49,11 @@ On a crowded machine, CPU time alone does not show this, because the simulator a
 For comparison, a node that makes three requests per pose makes 190 per second.
 """
 MESSAGES_HZ = 1000
-"""The same kind of limit, but for messages from nodes other than the simulator (Hz)."""
+"""If nodes other than the simulator send more messages than this (Hz), the node caused all stalls."""
 STARTED = 0.4
 STARTED_LEAST = 1.2
-"""The node also caused all stalls if the processes that it started could use the machine alone: together, they were
-ready to run for at least the fraction STARTED of the time of all processors, and for at least STARTED_LEAST times the
+"""The node caused all stalls if the processes that it started could use the machine alone: together, they were ready
+to run for at least the fraction STARTED of the time of all processors, and for at least STARTED_LEAST times the
 length of the trial. A single process cannot reach these limits."""
 SIMULATORS = ("/pose", "/color_sensor")
 """The endings of the topics on which the simulator publishes, for each turtle and in each frame."""

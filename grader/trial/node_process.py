@@ -166,7 +166,7 @@ class NodeProcess:
     def start(self, order: dict[str, object], tree: bytes) -> None:
         """Send the launcher the install tree and the data about the node that it must run."""
         assert self._process.stdin is not None
-        # Do not start this earlier, because a launcher may wait for minutes, and watching it takes 1 % of a core.
+        # Do not start the guard earlier: a launcher may wait for minutes, and watching it takes 1 % of a core.
         self._guard = Guard(self._process.pid, self._limits, self._over)
         try:
             self._process.stdin.write(json.dumps(order).encode() + b"\n" + tree)

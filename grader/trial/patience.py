@@ -13,8 +13,8 @@ ASLEEP_S = 20.0
 WORKED_S = 20.0
 """The maximum CPU time that a node may use before it waits for its clock (s)."""
 HANDSHAKE_S = 100.0
-"""On a crowded machine, this is the time limit for both the sleeping and the working (s). The limit for the whole trial
-is slightly higher (trial.py)."""
+"""The time limit on a crowded machine for the time that a node sleeps and works (s). The limit for the whole trial is
+slightly higher (trial.py)."""
 TICK_CPU_S = 1.0
 """If a node works longer than this on one frame, it counts as never idle (s of CPU time)."""
 TICK_S = 30.0

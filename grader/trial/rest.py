@@ -151,7 +151,7 @@ class Threads:
         """
         try:
             return tuple([os.pread(schedstat, 64, 0) for _, schedstat in self._files.values()])
-        except ProcessLookupError:  # some or all threads have exited, so the result must differ from every look
+        except ProcessLookupError:  # a thread has exited, so the result must differ from every observation
             return ()
 
     def main_asleep(self) -> bool:

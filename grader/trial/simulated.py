@@ -38,8 +38,8 @@ leave no gap of this length for many seconds."""
 WAKE_S = 1.0
 """The maximum time to wait until the node notices /clock (s). A node that uses create_rate never wakes up at time 0."""
 MOST_CPU = 2.0
-"""If the CPU time of a node exceeds this multiple of the trial's duration, the node is too slow in wall time, too. Wall
-time decides."""
+"""If the CPU time of a node exceeds this multiple of the trial's duration, the node is also too slow in wall time, so a
+trial in wall time decides."""
 GRAPH_EVERY = 31
 """The number of frames between two checks of the graph and of the DDS events: half a second."""
 OWN_EVERY = 5
@@ -175,7 +175,7 @@ class SimulatedTrial(Simulation):
     def _settle(self) -> None:
         """Let the node and the simulator respond to each other until both are idle."""
         patience = TickPatience(self._node, time.monotonic())
-        time.sleep(_POLL_S)  # the clock has just advanced, and a look is useless before the node wakes up
+        time.sleep(_POLL_S)  # the clock has just advanced, and the node must first wake up
         while True:
             if not self._rest(patience):
                 if patience.several_worked():

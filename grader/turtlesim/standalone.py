@@ -37,7 +37,7 @@ _NO_WINDOW = (
     "This turtlesim has no window. To see the turtle, stop it with Ctrl-C and start it with --view (a page in the "
     "browser) or --view terminal."
 )
-"""Printed only on a terminal. If the output goes to a pipe, it is the same as the output of the real turtlesim."""
+"""This text is printed only on a terminal. In a pipe, the output is the same as the output of the real turtlesim."""
 
 
 class Feed(Protocol):

@@ -51,7 +51,7 @@ class Door:
         self._codes: set[str] = set()
 
     def code(self) -> str:
-        """Return a new code."""
+        """Return a new code, with which one page can connect once."""
         made = secrets.token_urlsafe(16)
         self._codes.add(made)
         return made

@@ -42,8 +42,8 @@ if TYPE_CHECKING:
 FEWEST = 3
 """With fewer commands there is at most one interval, which is not enough for a rate."""
 TRUSTED = 0.5
-"""If the machine stalled in a wall-time trial, the other intervals are judged if their share of all intervals is at
-least this."""
+"""If the machine stalled in a trial in wall time, the intervals without a stall are judged if they are at least this
+fraction of all intervals."""
 SAME = 0.1
 """A number in the source code explains a measured interval if they differ by less than this share."""
 

@@ -28,7 +28,7 @@ ORDINALS = ("first", "second", "third", "fourth")
 STRAIGHT_RAD_M = 0.2
 """A part that bends by at most this many radians per metre (a radius of 5 m) counts as straight."""
 CURVED_SHARE = 0.1
-"""If more than this fraction of the trajectory is curved, it is not a square."""
+"""If more than this fraction of the trajectory is curved, the trajectory is not a square."""
 SHORT_M = 0.05
 """A straight part that is shorter than this is not a side."""
 

@@ -111,7 +111,7 @@ def remapping(rules: Iterable[str]) -> dict[str, str]:
     """Return the new name of each topic, given rules such as "/pose:=/old_pose".
 
     Raises:
-        Ros2Error: a rule does not have this form.
+        Ros2Error: a rule does not have the form OLD:=NEW.
     """
     found = {}
     for rule in rules:

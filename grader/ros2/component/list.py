@@ -26,7 +26,7 @@ def run(args: argparse.Namespace) -> int:
     """Print the containers.
 
     Raises:
-        Ros2Error: the container does not exist, or its components were requested.
+        Ros2Error: the container does not exist, or the user requested a list of components, which is not supported.
     """
     graph = look(args)
     names = sorted(set(graph.node_names()))

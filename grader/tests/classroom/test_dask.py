@@ -54,7 +54,7 @@ class Cluster:
         return child
 
     def close(self) -> None:
-        # A nanny that is starting a worker ignores SIGTERM.
+        # Dask's nanny process ignores SIGTERM while it starts a worker.
         for process in reversed(self.processes):
             with suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)

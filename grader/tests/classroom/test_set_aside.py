@@ -148,7 +148,7 @@ def test_a_class_of_odd_submissions_is_graded_completely(tmp_path: Path) -> None
     assert done.returncode == 0, done.stderr
     found = rows(tmp_path / "grades")
     submitted = [path for path in (tmp_path / "class").iterdir() if not path.is_symlink()]
-    assert len(found) == len(submitted) - 1  # two of them belong to the same student
+    assert len(found) == len(submitted) - 1  # two submissions belong to the same student
     assert {row["points"] for row in found[:-1]} == {"0"}
     assert (found[-1]["submission"], found[-1]["points"]) == ("zoe", "100")
     assert "Traceback" not in done.stderr

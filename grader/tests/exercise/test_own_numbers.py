@@ -68,7 +68,7 @@ def test_any_id_survives_the_file(student: str) -> None:
     try:
         student.encode()
     except UnicodeEncodeError:
-        return  # (neither a file nor a terminal can contain it)
+        return  # neither a file nor a terminal can contain this id
     numbers = draw_numbers(SPEC, student)
     assert from_toml(SPEC, to_toml(numbers).encode()) == numbers
 

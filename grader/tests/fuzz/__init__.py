@@ -3,6 +3,6 @@
     python -m grader.tests.fuzz TARGET --minutes N      with atheris, which searches for new paths through the code
     python -m pytest grader/tests/fuzz                  a few hundred inputs per target, always the same ones
 
-A target processes bytes as a command would. A finding is an exception that is not a GraderError, a submission that
-ends with `error`, or a run that takes too much time or memory.
+A fuzz target processes bytes as a command would. A finding is an exception that is not a GraderError, a submission
+that ends with `error`, or a run that takes too much time or memory.
 """

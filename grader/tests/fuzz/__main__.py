@@ -14,7 +14,7 @@ from pathlib import Path
 from grader.tests.fuzz import inline
 
 SECONDS, MEBIBYTES = 20, 3072
-"""The limit for one input."""
+"""The limits on time and memory for one input."""
 
 
 def main() -> None:

@@ -22,7 +22,7 @@ NAMES = (
 )
 MODES = (0o755, 0o644, 0, 0o111, 0o444, 0o7777)
 MOST = 40
-"""The number of entries."""
+"""The number of entries in an invented folder."""
 
 
 def fill(folder: Path, choices: Choices) -> None:

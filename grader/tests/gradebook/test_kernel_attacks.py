@@ -158,7 +158,7 @@ def test_cells_that_sleep_have_one_time_limit_together(tmp_path: Path) -> None:
 
 
 def test_a_kernel_can_only_write_to_its_own_disks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    # Use another folder than the kernels of other tests.
+    # Use a folder that no kernel of another test uses.
     with tempfile.TemporaryDirectory(prefix="k") as own:
         monkeypatch.setattr(tempfile, "tempdir", own)
         assert_writes_only_to_own_disks(tmp_path)

@@ -141,7 +141,7 @@ def test_a_wrong_topic_is_proved_by_a_run_in_the_cell(tmp_path: Path) -> None:
     options = Options(bubblewrap.usable(), clock="simulated", explain=True)
     graded = grade(exercise(), open_submission(make_submission(case, tmp_path / "in")), options)
     topic = next(outcome for outcome in graded.report.outcomes if outcome.id == "topic").finding
-    # The machine is so slow that there is no time for a try. The report must say so.
+    # The machine is so slow that there is no time for testing a change. The report must say so.
     assert topic.tried == PASSES or graded.evidence.tries.stopped == TOO_LONG
     assert "/turtle1/cmd_vel" not in topic.cause + topic.tried
 

@@ -76,7 +76,7 @@ class _Made:
         if executable in LONGEST:
             self.trials.both.wait(HANG_S)
         elif executable == "draw_square":
-            time.sleep(0.1)  # the last one to end, unless a caller does not wait for it
+            time.sleep(0.1)  # the last trial to end, unless a caller does not wait for it
         self.trials.ended.append(self.clock)
         return replace(good(), clock=self.clock)
 

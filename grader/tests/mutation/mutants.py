@@ -35,7 +35,7 @@ LEFT_OUT = {
     mutators.operator_arg_removal,
     mutators.operator_match,
 }
-"""The text of a finding does not change its diagnosis, and other tests check it. One match can cover several lines."""
+"""The text of a finding does not change its diagnosis; other tests check the text. A match can cover several lines."""
 IDS = frozenset(DIAGNOSES)
 """Strings that are not only text for readers."""
 WORDS = frozenset({"shorten", "a_list", "count", "shown"})

@@ -180,7 +180,7 @@ def test_what_grader_env_prints_is_understood(tmp_path: Path, name: str) -> None
         give_up(name, name)
     env = {**SOURCED_ENV, "PATH": f"{BIN}:{PATH}", "HOME": str(tmp_path)}
     env["XDG_CACHE_HOME"] = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
-    underlay.ensure(HERE)  # otherwise, the output would contain the progress of the build
+    underlay.ensure(HERE)  # without this, the output would contain the progress of the build
     what = "source <(grader env --domain 57) && echo $ROS_DISTRO $ROS_DOMAIN_ID"
     done = subprocess.run([name, "-c", what], cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
     used = f"Using the ROS 2 that is sourced in this terminal: {HERE.prefix} (ROS domain 57, "

@@ -146,7 +146,7 @@ def test_where_ros2cli_is_installed_its_ros2_is_used(first: bool, still: World, 
 )
 def test_ctrl_c_ends_a_verb_quietly(command: str, ready: str | None, still: World) -> None:
     running = still.start(command, ready)
-    if ready is None:  # it prints nothing, but it runs when its node is in the graph
+    if ready is None:  # the verb prints nothing, but it runs when its node is in the graph
         while "_ros2cli" not in still.run("ros2 node list -a").stdout.replace("\n/_ros2cli_x", ""):
             assert running.process.poll() is None
     assert running.stop() == 2

@@ -61,7 +61,7 @@ def test_neither_drives_the_others_turtle(users: list[World]) -> None:
     # The last command is valid for one second, after which the turtle has moved.
     assert one.run(WHERE).stdout != START
     assert other.run(WHERE).stdout == START
-    # With the same domain, they would share the turtle.
+    # With the same domain, the two users would share the turtle.
     assert other.run(DRIVE.replace("2.0", "-2.0"), ROS_DOMAIN_ID=one.env["ROS_DOMAIN_ID"]).code == 0
     assert other.run(WHERE).stdout == START
 

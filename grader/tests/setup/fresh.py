@@ -34,7 +34,7 @@ class Clone:
     within: tuple[str, ...] = ()
     """A prefix of each command, for another user or another view of the disks."""
     settings: tuple[tuple[str, str], ...] = ()
-    """Additional variables."""
+    """Additional environment variables."""
 
     def run(self, command: str, *, ends: int = 0, cwd: Path | None = None, **environment: str) -> str:
         """Run a line of bash. Return its output.

@@ -134,7 +134,7 @@ def resolved(wanted: list[Requirement]) -> set[str]:
 @pytest.mark.parametrize("sourced", [pytest.param(False, marks=of_the_wheels), True], ids=["wheels", "sourced"])
 @pytest.mark.parametrize("parts", bootstrap.PARTS.values(), ids=list(bootstrap.PARTS))
 def test_each_set_up_has_all_that_its_packages_need(parts: list[str], *, sourced: bool) -> None:
-    # Check this Python. test_resolved.py checks the others with uv, which needs the network.
+    # Check this Python. test_resolved.py checks the other versions with uv, which needs the network.
     chosen = [part for part in parts if not (sourced and part == "ros")]
     needed = resolved([need for need in named_by_the_project(chosen) if not need.marker or need.marker.evaluate()])
     assert len(needed) > 70

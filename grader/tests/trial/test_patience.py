@@ -47,12 +47,12 @@ def waited(*, asleep: float, wrote: bool = False, share: float = 0.0) -> float:
 @pytest.mark.parametrize(
     ("least_s", "most_s", "asleep", "wrote", "share"),
     [
-        (20.0, 21.0, 1.0, False, 0.0),  # it sleeps, or waits for something that never happens
+        (20.0, 21.0, 1.0, False, 0.0),  # the node sleeps, or waits for something that never happens
         (20.0, 25.0, 0.9, False, 0.05),  # a loop that polls from time to time
-        (20.0, 21.0, 0.0, False, 1.0),  # it always works and has a processor for itself
-        (80.0, 81.0, 0.0, False, 0.25),  # with a quarter of a processor, it may use as much CPU time
+        (20.0, 21.0, 0.0, False, 1.0),  # the node always works and has a processor for itself
+        (80.0, 81.0, 0.0, False, 0.25),  # with a quarter of a processor, the node may use as much CPU time
         (100.0, 101.0, 0.0, False, 0.05),
-        (80.0, 81.0, 1.0, True, 0.25),  # it sleeps because we read its output too slowly
+        (80.0, 81.0, 1.0, True, 0.25),  # the node sleeps because we read its output too slowly
         (100.0, 101.0, 1.0, True, 0.05),
     ],
 )
