@@ -29,7 +29,7 @@ class CancelsGoal:
     """The service by which the trial requests that the node cancel its goal within `within_s` (s)."""
 
     service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
-    type: str = string("a service type, as in std_srvs/srv/Trigger", about="Its type.")
+    type: str = string("a service type, as in std_srvs/srv/Trigger", about="The type of the service.")
     within_s: float = number(0.5, above=0, about="The maximum time until the goal is cancelled.")
 
 

@@ -102,7 +102,7 @@ class AnswersCall:
     """The node's response to a call by the trial: the `nth` call to the service, counted from 1."""
 
     service: str = string("the full name of a service", start="/", about="The service.")
-    type: str = string("a service type, as in std_srvs/srv/SetBool", about="Its type.")
+    type: str = string("a service type, as in std_srvs/srv/SetBool", about="The type of the service.")
     nth: float = number(1, at_least=1, about="Which call of this service in the trial is judged; 1 is the first.")
     within_s: float = number(1.0, above=0, about="The maximum time until the response.")
     fields: tuple[tuple[str, Any], ...] = table(about="The relevant fields of the response, with their values.")

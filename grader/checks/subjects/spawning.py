@@ -59,7 +59,9 @@ class PlacesDiffer:
 class Announces:
     """The topic with the names of the remaining turtles, and the time between two messages (s)."""
 
-    topic: str = string("the full name of a topic", start="/", about="The topic.")
+    topic: str = string(
+        "the full name of a topic", start="/", about="The topic on which the node announces the turtles."
+    )
     period_s: float = number(0.5, above=0, about="The time between two messages.")
 
 
