@@ -46,6 +46,7 @@ from grader.tests.grading_here import Builds
 from grader.tests.gradings import GRADER
 from grader.tests.operators.facts import Facts
 from grader.tests.operators.made import OPERATORS, Made, bases, make
+from grader.tests.operators.sentences import false_sentences
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -102,7 +103,7 @@ class Judged:
     @property
     def contradicted(self) -> list[str]:
         """The statements of the report that contradict a fact."""
-        return [sentence for outcome in self.failed for sentence in self.facts.false(outcome)]
+        return [sentence for outcome in self.failed for sentence in false_sentences(self.facts, outcome)]
 
     def marks(self) -> dict[str, bool]:
         """Return whether each of the statements that the benchmark counts is true for this package."""

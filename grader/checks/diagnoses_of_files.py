@@ -74,6 +74,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "python-2-print": "print has no parentheses, as in Python 2",
         "colon-missing": "a colon is missing at the end of a line",
         "comma-missing": "a comma is missing",
+        "comma-for-dot": "a comma is written in place of a dot",
         "bracket-open": "a bracket is never closed",
         "bracket-extra": "there is one closing bracket too many, or it is of the wrong kind",
         "quote-open": "a quotation mark is missing",

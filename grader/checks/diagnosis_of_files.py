@@ -67,6 +67,7 @@ DiagnosisOfFiles = Literal[
     "python-2-print",
     "colon-missing",
     "comma-missing",
+    "comma-for-dot",
     "bracket-open",
     "bracket-extra",
     "quote-open",

@@ -42,7 +42,6 @@ SHOWN_BY_TESTS = {
     "square-gap": "checks/subjects/test_square.py",
     "too-soon": "checks/subjects/test_square.py",
     "unreadable": "checks/test_judge.py",
-    "wrong-centre": "checks/subjects/test_path.py",
 }
 """Maps a diagnosis to the test that shows it. Only a hostile submission or a class can cause these diagnoses."""
 HEAD = """\

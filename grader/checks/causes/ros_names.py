@@ -31,6 +31,8 @@ MODULE_OF = {
     "glob": "glob",
 }
 """Maps a class to the module that it is usually imported from."""
+SHARED_NAMES = frozenset({"Pose", "Color", "Empty", "setup", "find_packages", "glob"})
+"""The names in `MODULE_OF` that other packages have too, such as geometry_msgs with another Pose."""
 
 MODULES = (
     "rclpy",

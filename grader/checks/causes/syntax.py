@@ -6,9 +6,10 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.edit import at
+from grader.checks.edit import applied, at
 from grader.checks.outcome import Finding, failed
 from grader.common.words import shorten
+from grader.submission.code import read_module
 from grader.submission.package_xml import line_of
 from grader.submission.where import Where
 
@@ -81,10 +82,6 @@ OTHER_LANGUAGES = (
     (r"\s*else\s+if\b.*", "Python spells else if as one word: elif."),
     (r".*(?:\+\+|--)\s*;?\s*", "Python has no ++ and no --. Write += 1 or -= 1."),
     (r"\s*(?:def|class|if|for|while)\b.*\{\s*", "In Python, a block begins with a colon, not with a brace."),
-    (
-        r"\s*(?:from|import)\s+\w+(?:,\w+)+\s+import\b.*",
-        "In a module name, write a dot, not a comma.",
-    ),
     (r"\s*//.*", "In Python, a comment begins with #."),
     (
         r".*=\s*new\s+\w+.*",
@@ -93,8 +90,18 @@ OTHER_LANGUAGES = (
     (r"\s*else\s*:.*", "An else needs an if, for, while or try before it, with the same indentation."),
 )
 """(pattern of a line that Python cannot read, cause): syntax of other languages, and an else without an if."""
+GAP = re.compile(r"""(?P<left>[\w.]+|"[^"]*"|'[^']*')(?=\s+(?P<right>[\w.]+|"[^"]*"|'[^']*'))""")
+"""Two values with only space between them. The match ends before the space."""
 NO_SPACE = re.compile(r"\s*(?P<keyword>def|class)(?P<rest>\w+\s*[(:].*)")
 """A line in which the keyword `def` or `class` is not followed by a space."""
+COMMA_FOR_DOT = (
+    (r"\s*(?:from|import)\s+\w+(?:,\w+)+\s+import\b.*", "In a module name, write a dot, not a comma."),
+    (
+        r"\s*(?P<left>[\w.]+)\s*,\s*(?P<right>\w+)[\w.]*\s*(?:[-+*/%@&|^]|//|\*\*|<<|>>)=.*",
+        "A comma separates {left} from {right}. Write a dot: {left}.{right}.",
+    ),
+)
+"""(pattern of a line that Python cannot read, cause): a comma in place of a dot."""
 CONFLICT = r"^(<<<<<<<|=======|>>>>>>>)"
 OTHERWISE = "The mistake is often at the end of the previous line: a bracket, a colon or the indentation."
 
@@ -117,9 +124,9 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
         fix = at(place, glued["keyword"] + glued["rest"], f"{glued['keyword']} {glued['rest']}")
         return Cause("syntax-error", f"A space is missing after {glued['keyword']}.", place).fixed_by(fix)
     line = _line(unreadable, data)
-    foreign = next((text for pattern, text in OTHER_LANGUAGES if re.fullmatch(pattern, line)), None)
-    if foreign is not None and re.search(r"invalid syntax|expected ':'", unreadable.message):
-        return Cause("syntax-error", foreign)
+    other_syntax = _other_syntax(line, unreadable.message)
+    if other_syntax is not None:
+        return other_syntax
     empty = NO_BODY.search(unreadable.message)
     if empty is not None and (OUTSIDE.match(line) or (unreadable.line or 0) > int(empty["line"]) + 1):
         text = f"Nothing is indented below line {empty['line']}, so this line has no body. Write at least pass."
@@ -131,7 +138,41 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
     for pattern, diagnosis, text in CAUSES:
         if re.search(pattern, unreadable.message):
             return Cause(diagnosis, text).fixed_by(_fix(diagnosis, file, unreadable, data))
-    return Cause("syntax-error", OTHERWISE)
+    return _no_comma(file, unreadable, data) or Cause("syntax-error", OTHERWISE)
+
+
+def _no_comma(file: str, unreadable: Unreadable, data: bytes) -> Cause | None:
+    """Return the cause if Python can read the line after one comma is inserted between two values, else None."""
+    line, place = _line(unreadable, data), Where(file, unreadable.line)
+    for gap in GAP.finditer(line):
+        before = line[: gap.end()]
+        if sum(map(before.count, "([{")) <= sum(map(before.count, ")]}")):
+            continue
+        edits = at(place, line, f"{before},{line[gap.end() :]}")
+        changed = applied({file: data}, edits)
+        if changed is not None and _reads_further(file, changed[file], unreadable):
+            text = f"A comma is missing between {shorten(gap['left'])} and {shorten(gap['right'])}."
+            return Cause("comma-missing", text, place).fixed_by(edits)
+    return None
+
+
+def _reads_further(file: str, data: bytes, unreadable: Unreadable) -> bool:
+    """Return whether Python can read the file, or stops only at a later line."""
+    again = read_module(file, data).unreadable
+    return again is None or (again.line or 0) > (unreadable.line or 0)
+
+
+def _other_syntax(line: str, message: str) -> Cause | None:
+    """Return the cause if the line has a comma in place of a dot, or the syntax of another language, else None."""
+    for pattern, text in COMMA_FOR_DOT:
+        comma = re.fullmatch(pattern, line)
+        if comma is not None:
+            return Cause(
+                "comma-for-dot", text.format(**{key: shorten(word) for key, word in comma.groupdict().items()})
+            )
+    foreign = next((text for pattern, text in OTHER_LANGUAGES if re.fullmatch(pattern, line)), None)
+    usual = re.search(r"invalid syntax|expected ':'", message)
+    return Cause("syntax-error", foreign) if foreign is not None and usual else None
 
 
 def _fix(diagnosis: Diagnosis, file: str, unreadable: Unreadable, data: bytes) -> tuple[Edit, ...]:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
+from grader.checks.causes.comma_for_dot import comma_for_dot
 from grader.checks.causes.crash_scene import attributes_set, methods
-from grader.checks.causes.why_not_set import comma_for_dot
 from grader.checks.causes.why_other_object import message_for_class
 from grader.checks.causes.why_parameters import too_few, too_many
 from grader.checks.edit import at
@@ -143,7 +143,8 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
             "parameter-itself", "get_parameter returns the parameter itself. The value of the parameter is in .value."
         )
     if "Expected QoSProfile or int" in text:
-        return Cause("queue-size", "The last argument is the queue size, a whole number.")
+        quotes = " without quotation marks" if "'str'" in text else ""
+        return Cause("queue-size", f"The last argument is the queue size, a whole number{quotes}.")
     return None
 
 

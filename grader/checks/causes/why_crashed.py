@@ -41,7 +41,22 @@ TOPIC_RULES = {
 
 def _why_no_topic(scene: CrashScene) -> Cause:
     rules = (rule for words, rule in TOPIC_RULES.items() if words in scene.crash.message)
-    return Cause("topic-name-invalid", next(rules, scene.crash.meaning))
+    text, given = next(rules, scene.crash.meaning), _topic_given(scene)
+    if given is None:
+        return Cause("topic-name-invalid", text)
+    name, line = given
+    space = ", with a space" if " " in name else ""
+    return Cause("topic-name-invalid", f'{text} The name here is "{shorten(name)}"{space}.', scene.at(line))
+
+
+def _topic_given(scene: CrashScene) -> tuple[str, int] | None:
+    """Return the name of the topic, service or action on the line of the crash, if it is a constant, else None."""
+    for maker in ("create_publisher", "create_subscription", "create_client", "create_service", "ActionClient"):
+        for call in scene.calls_on_line(maker):
+            for given in (*call.args, *(keyword.value for keyword in call.keywords)):
+                if isinstance(given, ast.Constant) and isinstance(given.value, str):
+                    return given.value, given.lineno
+    return None
 
 
 def _why_no_init(scene: CrashScene) -> Cause:

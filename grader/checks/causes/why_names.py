@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
+from grader.checks.causes.comma_for_dot import comma_for_dot
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
 from grader.checks.edit import Edit, at
 from grader.common.words import nearest, shorten
@@ -49,7 +50,8 @@ def why_no_name(scene: CrashScene) -> Cause | None:
         return None
     name = match["name"]
     return (
-        _of_self(scene, name)
+        comma_for_dot(scene, name)
+        or _of_self(scene, name)
         or _of_string(scene, name)
         or _of_import(scene, name)
         or _bound_elsewhere(scene, name)
@@ -219,8 +221,16 @@ def why_unbound(scene: CrashScene) -> Cause:
     if name in _imported(scene) and local:
         text = f"Line {local[0]} gives {name} another value, so in this function {name} is no longer the module."
         return Cause("local-name", text, scene.at(local[0]))
+    other = [(line, each.name) for line, each in stores if each is not None and each is not scene.function]
+    if own is not None and other and _only_raised(scene, name):
+        line, function = min(other)
+        text = (
+            f"Line {line} sets {name} without self, so {name} is a local variable of {function}. "
+            f"To keep a value between calls, write self.{name} everywhere."
+        )
+        return Cause("missing-self", text, scene.at(line))
     outside = any(function is None for _, function in stores)
-    if local and local[0] > scene.line and not outside:
+    if local and local[0] > scene.line and not outside and not _only_raised(scene, name):
         inner = next((each for each in scene.functions(name) if each.lineno == local[0]), None)
         if own is not None and inner is not None and inner.args.args[:1] and inner.args.args[0].arg == "self":
             text = (
@@ -233,3 +243,13 @@ def why_unbound(scene: CrashScene) -> Cause:
         "A variable that a function assigns to is local to that function. "
         "Store a value in self if later calls need the value.",
     )
+
+
+def _only_raised(scene: CrashScene, name: str) -> bool:
+    """Return whether the function of the crash only changes the variable, with an operator such as +=."""
+    inside = list(ast.walk(scene.function)) if scene.function is not None else []
+    raised = {id(node.target) for node in inside if isinstance(node, ast.AugAssign)}
+    stored = [
+        node for node in inside if isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Store)
+    ]
+    return bool(stored) and all(id(node) in raised for node in stored)

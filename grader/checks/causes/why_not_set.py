@@ -31,18 +31,6 @@ def compared_field(evidence: Evidence, field: str) -> Cause | None:
     return None
 
 
-def comma_for_dot(scene: CrashScene) -> Cause | None:
-    """Return the cause if the line assigns to a tuple that begins with self, as in `self,timer = ...`, else None."""
-    for node in scene.on_line:
-        target = node.targets[0] if isinstance(node, ast.Assign) else None
-        if isinstance(target, ast.Tuple) and len(target.elts) > 1 and dotted(target.elts[0]) == "self":
-            name = ast.unparse(target.elts[1])
-            return Cause(
-                "missing-self", f"A comma separates self from {name}. The name of the attribute is self.{name}."
-            )
-    return None
-
-
 def compared(scene: CrashScene, name: str) -> Cause | None:
     """Return the cause if the line of the crash is only a comparison of this attribute with ==, else None."""
     for node in scene.on_line:

@@ -23,6 +23,7 @@ from grader.evidence.arrivals import measure_arrivals
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
+    from grader.checks.diagnosis import Diagnosis
     from grader.evidence.evidence import Evidence
 
 LOG_LINE = Subject("log line", "info")
@@ -146,6 +147,7 @@ def log_counter(evidence: Evidence, params: Counter) -> Finding:
         observed = f"The number is always {numbers[0]:.0f}."
         why = (
             _thrown_away(evidence)
+            or _sign_for_sum(evidence, "counter-stuck")
             or _set_again(evidence)
             or Cause("counter-stuck", "Store the counter as an attribute of self and increase it in every call.", where)
         )
@@ -153,9 +155,8 @@ def log_counter(evidence: Evidence, params: Counter) -> Finding:
     if any(step != 1.0 for step in steps):
         at = next(index for index, step in enumerate(steps) if step != 1.0)
         observed = f"The number after {numbers[at]:.0f} is {numbers[at + 1]:.0f}."
-        return failed(
-            observed, expected, Cause("counter-step", "Each number must be one more than the previous number.", where)
-        )
+        step = Cause("counter-step", "Each number must be one more than the previous number.", where)
+        return failed(observed, expected, _sign_for_sum(evidence, "counter-step") or step)
     if numbers[0] != params.first:
         observed = f"The first number is {numbers[0]:.0f}."
         cause = (
@@ -175,6 +176,18 @@ def _thrown_away(evidence: Evidence) -> Cause | None:
                 text = f"This line calculates {shorten(ast.unparse(node.value), 40)} but does not store the result."
                 where = Where(module.file, node.lineno)
                 return Cause("counter-stuck", text, where).fixed_by(at(where, " + ", " += "))
+    return None
+
+
+def _sign_for_sum(evidence: Evidence, diagnosis: Diagnosis) -> Cause | None:
+    """Return the cause if a method has =+ in place of +=, else None."""
+    for module in evidence.code.modules:
+        methods = (node for node in module.nodes if isinstance(node, ast.FunctionDef) and node.name != "__init__")
+        for node in (node for method in methods for node in ast.walk(method) if isinstance(node, ast.Assign)):
+            if isinstance(node.value, ast.UnaryOp) and isinstance(node.value.op, ast.UAdd):
+                target, where = shorten(ast.unparse(node.targets[0]), 40), Where(module.file, node.lineno)
+                text = f"=+ sets {target} to {shorten(ast.unparse(node.value.operand), 40)} in each call. += adds."
+                return Cause(diagnosis, text, where).fixed_by(at(where, "=+", "+="))
     return None
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.ros_names import MODULE_OF, PACKAGE
+from grader.checks.causes.ros_names import MODULE_OF, PACKAGE, SHARED_NAMES
 from grader.checks.kind import Kind, NoParams, choice, strings
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, nearest, shorten
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from grader.evidence.evidence import Evidence
+    from grader.submission.code import Code
     from grader.submission.package_xml import Manifest
 
 FILE = "package.xml"
@@ -130,15 +132,29 @@ def _imported(evidence: Evidence) -> dict[str, Where]:
     """Return the ROS 2 packages that the nodes of the exercise import, with the line of the first import.
 
     A name that is almost the name of a known package is a typing error: a package with the wrong name cannot be
-    declared.
+    declared. A package that does not have the imported names is a mistake in the import, not in package.xml.
     """
     found: dict[str, Where] = {}
     for trial in evidence.exercise.trials:
         view = evidence.from_trial(trial.id)
         for package, where in imported_packages(view.code, evidence.submission.files).items():
-            if PACKAGE.fullmatch(package) and (package in KNOWN or nearest(package, KNOWN) is None):
+            exists = package in KNOWN or nearest(package, KNOWN) is None
+            if PACKAGE.fullmatch(package) and exists and not _has_none_of_these(view.code, package):
                 found.setdefault(package, where)
     return found
+
+
+def _has_none_of_these(code: Code, package: str) -> bool:
+    """Return whether the nodes import only names from this package that belong to other packages."""
+    names = [
+        alias.name
+        for module in code.modules
+        for node in module.nodes
+        if isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] == package
+        for alias in node.names
+    ]
+    elsewhere = [MODULE_OF[name].partition(".")[0] for name in names if name in MODULE_OF and name not in SHARED_NAMES]
+    return package in KNOWN and bool(names) and len(elsewhere) == len(names) and package not in elsewhere
 
 
 def _why_not_declared(

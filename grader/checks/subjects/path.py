@@ -4,12 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed, ended_early
 from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_path import (
+    all_zero,
+    line_of_values,
+    radius_of_commands,
+    steady_command,
+    why_elsewhere,
+    why_replaced,
+)
 from grader.checks.causes.why_stopped import cancelled
 from grader.checks.kind import Kind, NoParams, choice, number
 from grader.checks.outcome import Finding, Status, failed, passed
@@ -35,8 +42,6 @@ STRAIGHT_RADIUS_M = 50.0
 """A larger circle than this looks straight on an 11 m canvas."""
 LIVES_S = 1.0
 """The time for which one command moves a turtle (s)."""
-AT_ONCE_S = 0.05
-"""If a second command follows within this time (s), the first command has no effect."""
 LATE_S = 3.0
 """If the first command arrives later than this (s), the delay explains a circle that is too short."""
 POLYGON_SHARE = 0.6
@@ -118,26 +123,28 @@ def _no_circle(evidence: Evidence, trajectory: Trajectory, expected: str) -> Fin
         return failed(
             observed,
             expected,
-            Cause("not-a-number", "A command contained a number that is not finite.", _line(evidence)),
+            Cause("not-a-number", "A command contained a number that is not finite.", line_of_values(evidence)),
         )
     if trajectory.length_m <= MOVED_M:
         if trajectory.turned_rad > TURNED_RAD:
             cause = "linear.x is the forward speed. Without linear.x, the turtle turns on the spot."
-            why = _replaced(evidence) or Cause("turns-on-the-spot", cause, _line(evidence))
+            why = why_replaced(evidence) or Cause("turns-on-the-spot", cause, line_of_values(evidence))
             return failed("The turtle turned on the spot.", expected, replace(why, diagnosis="turns-on-the-spot"))
         crash = crash_of(evidence)
         if crash is not None:
             return crash_finding(evidence, crash, f"The turtle did not move. {end_observed(evidence)}", expected)
-        why = _replaced(evidence) or Cause("not-moving", _all_zero(evidence), _line(evidence))
+        why = why_replaced(evidence) or Cause("not-moving", all_zero(evidence), line_of_values(evidence))
         return failed("The turtle did not move.", expected, why)
     if trajectory.wall.any():
         observed = f"The turtle ran into a wall after {trajectory.wall_s:.1f} s."
-        return failed(observed, expected, Cause("wall", _size(evidence), _line(evidence)))
+        return failed(observed, expected, Cause("wall", radius_of_commands(evidence), line_of_values(evidence)))
     fitted = trajectory.circle
     if fitted is None or fitted.radius > STRAIGHT_RADIUS_M:
         never = trajectory.turned_rad <= TURNED_RAD
         cause = "The turtle never turns. angular.z is the turning speed." if never else ""
-        return failed("The turtle drove in a straight line.", expected, Cause("straight-line", cause, _line(evidence)))
+        return failed(
+            "The turtle drove in a straight line.", expected, Cause("straight-line", cause, line_of_values(evidence))
+        )
     return None
 
 
@@ -154,25 +161,22 @@ def _measured(evidence: Evidence, params: CircleParams, trajectory: Trajectory, 
     if not forward > 0.0:
         direction = "clockwise" if turns < 0.0 else "counter-clockwise"
         cause = "The sign of angular.z sets the direction: a positive value turns left, which is counter-clockwise."
-        if (_steady(evidence) or (0.0, 0.0))[0] < 0.0:
+        if (steady_command(evidence) or (0.0, 0.0))[0] < 0.0:
             cause = f"linear.x is negative, so the turtle drives backwards. {cause}"
         observed = f"The turtle drove the circle {direction}."
-        return failed(observed, expected, Cause("wrong-direction", cause, _line(evidence)))
+        return failed(observed, expected, Cause("wrong-direction", cause, line_of_values(evidence)))
     near = round_.near(fitted.rms) or size.near(fitted.radius) or place.near(centre) or long.near(forward)
     if not size.holds(fitted.radius):
         observed = f"The radius of the circle is {shown(round(fitted.radius, 2))} m."
-        return failed(observed, expected, Cause("wrong-radius", _size(evidence), _line(evidence)), near_edge=near)
+        return failed(
+            observed,
+            expected,
+            Cause("wrong-radius", radius_of_commands(evidence), line_of_values(evidence)),
+            near_edge=near,
+        )
     if not place.holds(centre):
         observed = f"The circle has the right size, but it is {centre:.2f} m away from where it should be."
-        cause = (
-            (
-                "The first commands differ from the later commands, so the turtle left its start "
-                "position before the circle began."
-            )
-            if _steady(evidence) is None
-            else ""
-        )
-        return failed(observed, expected, Cause("wrong-centre", cause, _line(evidence)), near_edge=near)
+        return failed(observed, expected, why_elsewhere(evidence), near_edge=near)
     if not long.holds(forward):
         return _too_short(evidence, trajectory, forward, expected, near_edge=near)
     return passed(expected.replace("drives", "drove"), near_edge=near)
@@ -185,17 +189,17 @@ def _not_round(
     if trajectory.straight_share > POLYGON_SHARE:
         if trajectory.sides == 1:
             return failed(
-                "The turtle drove in a straight line.", expected, Cause("straight-line", where=_line(evidence))
+                "The turtle drove in a straight line.", expected, Cause("straight-line", where=line_of_values(evidence))
             )
         observed = f"The trajectory has {trajectory.sides} straight sides with corners; {off}."
         cause = "To drive a circle, every command must move forward and turn at the same time."
-        return failed(observed, expected, Cause("polygon", cause, _line(evidence)), near_edge=near_edge)
+        return failed(observed, expected, Cause("polygon", cause, line_of_values(evidence)), near_edge=near_edge)
     changed = len({(command.linear, command.angular) for command in evidence.commands}) > 1
     cause = "The commands change. A circle needs the same command all the time." if changed else ended_early(evidence)
     return failed(
         f"The trajectory is not round: {off}.",
         expected,
-        Cause("not-round", cause, _line(evidence)),
+        Cause("not-round", cause, line_of_values(evidence)),
         near_edge=near_edge,
     )
 
@@ -219,57 +223,11 @@ def _too_short(evidence: Evidence, trajectory: Trajectory, turns: float, expecte
         )
         why = Cause("stopped-early", "The turtle stops when no command arrives for 1 s.", cancelled(evidence))
     else:
-        speed = _steady(evidence)
+        speed = steady_command(evidence)
         turn_s = 2.0 * math.pi / abs(speed[1]) if speed and speed[1] else 0.0
         cause = f"With angular.z {shown(speed[1])} rad/s, one turn takes {turn_s:.1f} s." if speed and turn_s else ""
-        return failed(observed, expected, Cause("too-short", cause, _line(evidence)), near_edge=near_edge)
+        return failed(observed, expected, Cause("too-short", cause, line_of_values(evidence)), near_edge=near_edge)
     return failed(observed, expected, why.at(evidence.place("publish")), near_edge=near_edge)
-
-
-def _steady(evidence: Evidence) -> tuple[float, float] | None:
-    """Return linear.x (m/s) and angular.z (rad/s) if these are the same in all commands, else None."""
-    found = {(command.linear[0], command.angular[2]) for command in evidence.commands}
-    return next(iter(found)) if len(found) == 1 else None
-
-
-def _size(evidence: Evidence) -> str:
-    """Return a sentence about the radius that follows from the commands."""
-    speed = _steady(evidence)
-    if speed is None or not all(map(math.isfinite, speed)):
-        return ""
-    if not speed[1]:
-        return "angular.z is 0, so the turtle drives in a straight line."
-    radius = abs(speed[0] / speed[1])
-    return f"The radius is linear.x divided by angular.z: {shown(speed[0])} / {shown(speed[1])} = {shown(radius)} m."
-
-
-def _replaced(evidence: Evidence) -> Cause | None:
-    """Return the cause if each command that drives the turtle is immediately replaced by another one, else None."""
-    commands = evidence.commands
-    after = {id(command): later for command, later in pairwise(commands)}
-    driving = [command for command in commands[:-1] if command.linear[0]]
-    if not driving or any(after[id(each)].linear[0] or after[id(each)].t_s - each.t_s > AT_ONCE_S for each in driving):
-        return None
-    publish = evidence.code.calls("publish")
-    text = (
-        "Some commands would move the turtle, but another command follows each of them at once, "
-        "and the turtle follows only the last command."
-    )
-    return Cause("not-moving", text, publish[-1].where if publish else _line(evidence))
-
-
-def _all_zero(evidence: Evidence) -> str:
-    commands = evidence.commands
-    zero = commands and not any(command.linear[0] or command.angular[2] for command in commands)
-    return "linear.x and angular.z are 0 in every command." if zero else ""
-
-
-def _line(evidence: Evidence) -> Where | None:
-    code = evidence.code
-    if len({command.angular for command in evidence.commands}) == 1 < len({each.linear for each in evidence.commands}):
-        return code.assigned("linear", "x") or evidence.place("Twist", "publish")
-    turns = (code.assigned("angular", axis) for axis in "zxy")
-    return next(filter(None, turns), None) or code.assigned("linear", "x") or evidence.place("Twist", "publish")
 
 
 def no_wall(evidence: Evidence, _: NoParams) -> Finding:
@@ -282,7 +240,7 @@ def no_wall(evidence: Evidence, _: NoParams) -> Finding:
     if trajectory.wall.any():
         observed = f"The turtle ran into a wall after {trajectory.wall_s:.1f} s."
         expected = "The turtle never touches a wall."
-        return failed(observed, expected, Cause("wall", _size(evidence), _line(evidence)))
+        return failed(observed, expected, Cause("wall", radius_of_commands(evidence), line_of_values(evidence)))
     if not (trajectory.finite and trajectory.length_m > MOVED_M):
         return Finding(Status.SKIPPED, "Not judged, because the turtle did not drive.")
     return passed("The turtle did not touch a wall.")

@@ -125,7 +125,7 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
             f"{params.max_interval_s:.2f} s."
         )
         cause = _uneven_cause(evidence, what)
-        grow = why_timers_grow(evidence)
+        grow = why_timers_grow(evidence) or why_publishers_grow(evidence)
         if grow is not None:
             return failed(observed, wanted, grow, near_edge=near)
         return failed(observed, wanted, Cause("uneven-rate", cause, evidence.place(what.call)), near_edge=near)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from typing import TYPE_CHECKING
 
@@ -39,6 +40,16 @@ def _method_moved(by: int) -> Make:
     return make
 
 
+def _body_left_out(package: Package, draw: Random) -> Change | None:
+    """Remove the body of a method. Without a syntax error, only a part of the body was removed: another mistake."""
+    change = replace(r"^(    def \w+\(.*\):)\n(?:        .*\n)+", r"\1" + "\n")(package, draw)
+    try:
+        compile(change.files[change.file] if change else "", "", "exec", ast.PyCF_ONLY_AST)
+    except SyntaxError:
+        return change
+    return None
+
+
 def _main_in_class(package: Package, _: Random) -> Change | None:
     text = package.files[package.source]
     found = re.search(r"^def main\(.*\n(?:(?:    .*)?\n)+", text, re.MULTILINE)
@@ -65,14 +76,14 @@ OPERATORS = (
     _source("quote-left-out", r"(?<=[\w.])([\"'])(?=[,)])", "", "quote-open"),
     _source("quote-typographic", r"\"(/?\w[\w/]*)\"", "\u201c\\1\u201d", "typographic-character"),
     _source("comma-left-out", r"(?<=\w), (?=[\"'])", " ", "comma-missing", *SYNTAX),
-    _source("comma-for-dot", r"(rclpy|self|msg)\.(?=\w+)", r"\1,", *SYNTAX, "equals", "missing-self"),
+    _source("comma-for-dot", r"(rclpy|self|msg)\.(?=\w+)", r"\1,", "comma-for-dot"),
     _source("space-after-def-left-out", r"^( *)def (\w+\()", r"\1def\2", *SYNTAX),
     _source("two-equals", r"^( +self\.\w+) = ", r"\1 == ", "equals", "attribute-missing"),
     _source("ampersands", r"if (.*):$", r"if \1 && True:", *SYNTAX),
     _source("line-too-far-right", r"^        (\w+\.\w+.*)$", r"          \1", "indentation"),
     _source("line-too-far-left", r"^        (\w+\.\w+.*)$", r"      \1", "indentation"),
     _source("tab", r"^        (\w+\.\w+.*)$", "\t\\1", "tabs-and-spaces"),
-    _source("body-left-out", r"^(    def \w+\(.*\):)\n(?:        .*\n)+", r"\1" + "\n", "indentation"),
+    Operator("body-left-out", _body_left_out, frozenset({"indentation"})),
     _source("conflict", r"^( +self\.\w+ = .*)$", "<<<<<<< HEAD\n\\1\n=======\n\\1\n>>>>>>> main", "merge-conflict"),
     _source("print-of-python-2", r"^( +)self\.get_logger\(\)\.info\((.*)\)$", r"\1print \2", "python-2-print"),
     Operator("method-outside-class", _method_moved(-1), frozenset({"method-outside-class"})),

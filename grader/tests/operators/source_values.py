@@ -68,6 +68,7 @@ OPERATORS = (
         "value-compared",
         r"(\.(?:linear\.x|angular\.z)) = ",
         r"\1 == ",
+        "equals",
         "empty-twist",
         "wrong-value",
         "straight-line",

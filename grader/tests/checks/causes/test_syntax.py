@@ -42,3 +42,35 @@ def test_pythons_words_lead_to_the_mistake(words: str, diagnosis: str) -> None:
 def test_marks_of_a_conflict_are_reported_whatever_python_says(mark: bytes) -> None:
     found = unreadable_finding("a.py", Unreadable("expected ':'", 1), b"x = 1\n" + mark + b"\n")
     assert found.diagnosis == "merge-conflict"
+
+
+@pytest.mark.parametrize(
+    ("line", "between"),
+    [
+        ("f(String '~/status', 10)", "String and '~/status'"),
+        ("f('~/status' 10)", "'~/status' and 10"),
+        ("x = 1 2", None),
+        ("f(a if b 10)", None),
+        ("(1, 2) print 'now'", None),
+    ],
+)
+def test_a_missing_comma_is_named_if_python_can_read_the_line_with_it(line: str, between: str | None) -> None:
+    found = unreadable_finding("a.py", Unreadable("invalid syntax", 1), f"{line}\n".encode())
+    assert found.diagnosis == ("syntax-error" if between is None else "comma-missing")
+    assert ("A comma is missing between" in found.cause) == (between is not None)
+    assert between is None or between in found.cause
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("    self,count += 1", "Write a dot: self.count."),
+        ("    self , total.x -= step", "Write a dot: self.total."),
+        ("from rclpy,node import Node", "write a dot, not a comma"),
+        ("x = self,count + 1", None),
+    ],
+)
+def test_a_comma_in_place_of_a_dot_is_named(line: str, words: str | None) -> None:
+    found = unreadable_finding("a.py", Unreadable("invalid syntax", 1), f"{line}\n".encode())
+    assert found.diagnosis == ("syntax-error" if words is None else "comma-for-dot")
+    assert words is None or words in found.cause

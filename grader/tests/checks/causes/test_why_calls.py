@@ -32,6 +32,7 @@ class Driver(Node):
     def send(self):
         self.send()  # crashed
 """
+QUEUE = "The last argument is the queue size, a whole number"
 
 
 @pytest.mark.parametrize(
@@ -183,7 +184,8 @@ def test_a_call_over_several_lines_is_shown_where_it_begins() -> None:
         ),
         ("'int' object is not callable", "not-callable", "", "A value of type int is called"),
         ('can only concatenate str (not "int") to str', "string-and-number", "", "A string and a number"),
-        ("Expected QoSProfile or int, but received <class 'str'>", "queue-size", "", "The last argument"),
+        ("Expected QoSProfile or int, but received <class 'str'>", "queue-size", "", f"{QUEUE} without quotation"),
+        ("Expected QoSProfile or int, but received <class 'float'>", "queue-size", "", f"{QUEUE}."),
         (
             "'property' object is not iterable",
             "class-for-object",

@@ -79,6 +79,23 @@ def test_a_name_that_is_assigned_below_is_the_functions_own_or_selfs(source: str
     assert ("count belongs to the object" in found.cause) == (diagnosis == "missing-self")
 
 
+@pytest.mark.parametrize(("first", "found"), [("ticks = 0  # look", True), ("self.count = 0", False)])
+def test_a_counter_that_is_a_local_variable_of_init_is_reported_there(first: str, *, found: bool) -> None:
+    source = DRIVER.replace("self.count = 0", first).format(line="ticks += 1")
+    error = "UnboundLocalError: cannot access local variable 'ticks' where it is not associated with a value"
+    given = reported(source, error)
+    assert given.diagnosis == ("missing-self" if found else "local-name")
+    assert ("local variable of __init__" in given.cause) == found
+    assert given.line == to_look_at(source)
+
+
+def test_a_variable_that_the_function_sets_later_is_not_taken_for_one_of_init() -> None:
+    source = DRIVER.replace("self.count = 0", "ticks = 0").format(line="print(ticks)")
+    source = source.replace("# crashed\n", "# crashed\n        ticks = 1\n", 1)
+    error = "UnboundLocalError: cannot access local variable 'ticks' where it is not associated with a value"
+    assert reported(source, error).diagnosis == "name-too-early"
+
+
 def test_an_unbound_name_in_other_words_is_local_all_the_same() -> None:
     assert reported(DRIVER.format(line="count += 1"), "UnboundLocalError: no value").diagnosis == "local-name"
 

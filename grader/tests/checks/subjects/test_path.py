@@ -96,6 +96,15 @@ def test_a_trajectory_that_is_not_round_is_explained_by_the_commands_or_by_the_e
     assert finding("circle", evidence(steady)).cause == f"The node crashed: ZeroDivisionError at {NODE_FILE}:14."
 
 
+def test_a_circle_in_the_wrong_place_is_explained_by_the_commands() -> None:
+    assert "The first command differs from the last one" in circle("beside its place").cause
+    backwards = finding("circle", evidence(recording(every(0.5, -2.0, 1.0))))
+    assert (backwards.diagnosis, str(backwards.where)) == ("wrong-centre", f"{NODE_FILE}:14")
+    assert "linear.x is negative, so the turtle drives backwards" in backwards.cause
+    between = [(0.1, 2.0, 1.0), (0.3, 2.0, 0.0), *every(0.5, 2.0, 1.0)]
+    assert finding("circle", evidence(recording(between))).cause == circle("spiral").cause
+
+
 def test_two_turns_may_be_requested() -> None:
     short = found_by(CIRCLE, evidence(SHAPES["good"]()), radius_m=2.0, turns=2.0)
     assert (short.diagnosis, short.observed) == ("too-short", "The turtle drove 1.51 of a turn.")

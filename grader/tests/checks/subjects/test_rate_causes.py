@@ -47,6 +47,13 @@ def test_a_sleep_in_the_timers_method_is_reported() -> None:
     assert (found.diagnosis, str(found.where)) == ("sleep-in-callback", f"{NODE_FILE}:13")
 
 
+def test_a_publisher_that_each_call_creates_explains_uneven_intervals() -> None:
+    publisher = 'self.publisher = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)'
+    found = rate("uneven", ("        msg = Twist()", f"        {publisher}\n        msg = Twist()"))
+    assert (found.diagnosis, str(found.where)) == ("publisher-in-callback", f"{NODE_FILE}:13")
+    assert rate("uneven").diagnosis == "uneven-rate"
+
+
 def test_a_sleep_outside_of_every_callback_is_not_blamed() -> None:
     found = rate("one hertz", ("    rclpy.init(args=args)", "    time.sleep(0.6)\n    rclpy.init(args=args)"))
     assert found.diagnosis == "wrong-rate"

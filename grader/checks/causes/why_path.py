@@ -1,0 +1,85 @@
+"""What the commands and the source say about a trajectory that is not the right circle."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.common.words import number as shown
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.submission.where import Where
+
+AT_ONCE_S = 0.05
+"""If a second command follows within this time (s), the first command has no effect."""
+
+
+def steady_command(evidence: Evidence) -> tuple[float, float] | None:
+    """Return linear.x (m/s) and angular.z (rad/s) if these are the same in all commands, else None."""
+    found = {(command.linear[0], command.angular[2]) for command in evidence.commands}
+    return next(iter(found)) if len(found) == 1 else None
+
+
+def radius_of_commands(evidence: Evidence) -> str:
+    """Return a sentence about the radius that follows from the commands."""
+    speed = steady_command(evidence)
+    if speed is None or not all(map(math.isfinite, speed)):
+        return ""
+    if not speed[1]:
+        return "angular.z is 0, so the turtle drives in a straight line."
+    radius = abs(speed[0] / speed[1])
+    return f"The radius is linear.x divided by angular.z: {shown(speed[0])} / {shown(speed[1])} = {shown(radius)} m."
+
+
+def why_elsewhere(evidence: Evidence) -> Cause:
+    """Return the cause of a circle of the right size in the wrong place."""
+    steady = steady_command(evidence)
+    if steady is None:
+        first, last = evidence.commands[0], evidence.commands[-1]
+        text = "The commands change. A circle needs the same command all the time."
+        if (first.linear, first.angular) != (last.linear, last.angular):
+            text = (
+                "The first command differs from the last one, so the turtle may have left its start position before "
+                "the circle began."
+            )
+        return Cause("wrong-centre", text, line_of_values(evidence))
+    if steady[0] < 0.0:
+        text = (
+            "linear.x is negative, so the turtle drives backwards, and the circle is on the other side of the turtle."
+        )
+        return Cause("wrong-centre", text, evidence.code.assigned("linear", "x") or line_of_values(evidence))
+    return Cause("wrong-centre", where=line_of_values(evidence))
+
+
+def why_replaced(evidence: Evidence) -> Cause | None:
+    """Return the cause if each command that drives the turtle is immediately replaced by another one, else None."""
+    commands = evidence.commands
+    after = {id(command): later for command, later in pairwise(commands)}
+    driving = [command for command in commands[:-1] if command.linear[0]]
+    if not driving or any(after[id(each)].linear[0] or after[id(each)].t_s - each.t_s > AT_ONCE_S for each in driving):
+        return None
+    publish = evidence.code.calls("publish")
+    text = (
+        "Some commands would move the turtle, but another command follows each of them at once, "
+        "and the turtle follows only the last command."
+    )
+    return Cause("not-moving", text, publish[-1].where if publish else line_of_values(evidence))
+
+
+def all_zero(evidence: Evidence) -> str:
+    """Return a sentence if every command has linear.x 0 and angular.z 0, else an empty string."""
+    commands = evidence.commands
+    zero = commands and not any(command.linear[0] or command.angular[2] for command in commands)
+    return "linear.x and angular.z are 0 in every command." if zero else ""
+
+
+def line_of_values(evidence: Evidence) -> Where | None:
+    """Return the line that sets the speeds: angular.z, or linear.x if only linear.x changes."""
+    code = evidence.code
+    if len({command.angular for command in evidence.commands}) == 1 < len({each.linear for each in evidence.commands}):
+        return code.assigned("linear", "x") or evidence.place("Twist", "publish")
+    turns = (code.assigned("angular", axis) for axis in "zxy")
+    return next(filter(None, turns), None) or code.assigned("linear", "x") or evidence.place("Twist", "publish")
