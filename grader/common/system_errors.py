@@ -28,7 +28,7 @@ def refusal(error: BaseException) -> Optional[str]:
 
 
 def refusal_in(said: str) -> Optional[str]:
-    """Return the sentence if the message `said` mentions a lack of disk space, memory, files or processes."""
+    """Return a sentence for users if the message `said` mentions a lack of disk space, memory, files or processes."""
     found = next((number for number in sorted(_SCARCE) if os.strerror(number) in said), None)
     return sentence(found) if found else None
 
@@ -39,7 +39,7 @@ def of_the_machine(error: OSError) -> bool:
 
 
 def sentence(number: int, where: str = "", room: str = ROOM) -> str:
-    """Return the sentence for an errno.
+    """Return the sentence that describes a system error (errno) to users.
 
     `where` is the path that caused the error; `room` says what to do if a disk is full.
     """

@@ -30,7 +30,7 @@ def shorten(text: str, limit: int = 60) -> str:
 
 
 def nearest(name: str, candidates: Iterable[str], alike: float = 0.6) -> str | None:
-    """Return the candidate most similar to `name`, or None if all of them have a difflib ratio below `alike`."""
+    """Return the candidate most similar to `name`, or None if no candidate has a difflib ratio of `alike` or more."""
     found = difflib.get_close_matches(name[:200], [candidate[:200] for candidate in candidates], n=1, cutoff=alike)
     return found[0] if found else None
 

@@ -43,7 +43,7 @@ def explain(
     regrade: Regrade,
     give_up: Callable[[], bool] = lambda: False,
 ) -> Tries:
-    """Try to fix the causes of the failed outcomes. `build_s` is the duration of the build (s).
+    """Test fixes for the causes of the failed outcomes. `build_s` is the duration of the build (s).
 
     `give_up` is called before each change is tested. Once `give_up` returns true, no more changes are tested.
     """

@@ -1,9 +1,10 @@
-"""Announce a new participant to the others on this machine, as soon as it can receive their answers.
+"""Announce a new participant to the other participants on this machine when it can receive their answers.
 
-Fast DDS 2.14 sends the first announcement of a participant before the participant listens for answers. The others
-answer only the first announcement, and at once. If the answer is lost, the participant discovers them when they
-announce themselves again, which is after up to 3 s. So our participants announce themselves to a socket of their own
-process, and `pass_on` sends the announcement to the others when the participant listens.
+Fast DDS 2.14 sends the first announcement of a participant before the participant listens for answers. The other
+participants answer only the first announcement, and answer it immediately. If the answer of a participant is lost, the
+new participant discovers it only when it announces itself again, after up to 3 s. Therefore, our participants announce
+themselves to a socket of their own process, and `passed_on` sends the announcement to the other participants when the
+new participant listens.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ _WAIT_S = 1.0
 
 @contextmanager
 def passed_on(domain: int) -> Iterator[None]:
-    """Create the participant in this context; at the end, its announcement is sent to the others."""
+    """Create the participant in this context; at the end, its announcement is sent to the other participants."""
     held = _held()
     list(_received(held))  # the announcements of earlier participants of this process
     yield

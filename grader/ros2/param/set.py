@@ -49,7 +49,7 @@ def value_of(text: str) -> Any:  # noqa: ANN401
 
 
 def report(parameters: Any, wanted: Any, done: str, failed: str) -> None:  # noqa: ANN401
-    """Set a parameter. Print `done`, or else print `failed` to standard error. Add the node's reason, if any."""
+    """Set a parameter. Print `done`, or print `failed` to standard error, followed by the node's reason, if any."""
     result = parameters.set([wanted])[0]
     reason = f": {result.reason}" if result.reason else ""
     if result.successful:

@@ -265,7 +265,7 @@ def without_landlock(_: object) -> bool:
 
 @pytest.fixture(params=["Landlock", "its own mounts"])
 def _each_confinement(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Use Landlock, or what replaces it on a kernel without Landlock."""
+    """Use Landlock, or the separate mounts that the reader uses on a kernel without Landlock."""
     if request.param != "Landlock":
         monkeypatch.setattr(reader, "allow_only_reading", without_landlock)
         if not bubblewrap.usable():
