@@ -22,7 +22,7 @@ class NoCalls:
     names: tuple[str, ...] = strings(
         about="The names of the functions without module or object, such as `sleep` for `time.sleep`."
     )
-    cause: str = string("a reason", about="The reason that the student reads.")
+    cause: str = string("a reason", about="The reason that the student reads if the check fails.")
 
 
 def no_calls(evidence: Evidence, params: NoCalls) -> Finding:

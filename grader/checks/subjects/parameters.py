@@ -29,9 +29,9 @@ DOUBLE = 3
 class Declares:
     """A parameter that is a float, with a description and a range."""
 
-    parameter: str = string("the name of a parameter", about="The parameter.")
-    at_least: float = number(about="The lower end of its range.")
-    at_most: float = number(about="The upper end of its range.")
+    parameter: str = string("the name of a parameter", about="The name of the parameter.")
+    at_least: float = number(about="The smallest value in the range of the parameter.")
+    at_most: float = number(about="The largest value in the range of the parameter.")
 
 
 def declares(evidence: Evidence, params: Declares) -> Finding:
@@ -67,7 +67,7 @@ def declares(evidence: Evidence, params: Declares) -> Finding:
 class SetsParameter:
     """The response of the node when `[[trial.set]]` sets this parameter and perhaps others in one call."""
 
-    parameter: str = string("the name of a parameter", about="The parameter.")
+    parameter: str = string("the name of a parameter", about="The name of the parameter.")
     value: float = number(about="The value that the trial sets.")
     also: tuple[tuple[str, Any], ...] = table(
         about="Other parameters that the same `[[trial.set]]` sets, with their values.", optional=True

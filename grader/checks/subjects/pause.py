@@ -34,7 +34,7 @@ class Pause:
     """
 
     from_s: float = number(at_least=0, about="The start of the pause, on the trial's clock.")
-    until_s: float = number(above=0, about="The end of the pause.")
+    until_s: float = number(above=0, about="The end of the pause, on the trial's clock.")
     within_s: float = number(0.5, above=0, about="The maximum time to stop, and to continue.")
     goes_on: float = number(
         1.0, at_least=0, at_most=1, about="1 if the turtle must continue after the pause, and 0 if it must not."

@@ -76,7 +76,7 @@ class TopicInBag(InBag):
     """The topic that the bag must contain, with the topic's type."""
 
     topic: str = string("a topic", start="/", about="The topic that must be in the bag.")
-    type: str = string("a type", about="The type of its messages.")
+    type: str = string("a type", about="The type of the messages on the topic.")
 
 
 def topic_in_bag(evidence: Evidence, params: TopicInBag) -> Finding:

@@ -32,12 +32,14 @@ CLOSE = 1e-3
 class CallsService:
     """A call to a simulator service with these fields. `after` names a service that must be called earlier."""
 
-    service: str = string("the full name of a service", start="/", about="The service.")
+    service: str = string("the full name of a service", start="/", about="The name of the service.")
     fields: tuple[tuple[str, Any], ...] = table(about="The relevant fields of the request, with their values.")
     after: str = string(
         "the full name of a service",
         default=" ",
-        about="A service that must have been called before. Without this key, the order does not matter.",
+        about=(
+            "A service that the node must have called before. Without this key, the order of the calls does not matter."
+        ),
     )
 
 
@@ -101,7 +103,7 @@ def _other_request(evidence: Evidence, params: CallsService, calls: list[Call], 
 class AnswersCall:
     """The node's response to a call by the trial: the `nth` call to the service, counted from 1."""
 
-    service: str = string("the full name of a service", start="/", about="The service.")
+    service: str = string("the full name of a service", start="/", about="The name of the service.")
     type: str = string("a service type, as in std_srvs/srv/SetBool", about="The type of the service.")
     nth: float = number(1, at_least=1, about="Which call of this service in the trial is judged; 1 is the first.")
     within_s: float = number(1.0, above=0, about="The maximum time until the response.")

@@ -42,7 +42,11 @@ class Spawns:
     """The number of turtles that the node spawns, the prefix of their names, and the range of their coordinates (m)."""
 
     turtles: float = number(at_least=1, about="The number of turtles that the node spawns.")
-    name: str = string("the beginning of a name", default="target", about="The prefix of the names. A number follows.")
+    name: str = string(
+        "the beginning of a name",
+        default="target",
+        about="The prefix of the names of the turtles. A number follows the prefix.",
+    )
     low_m: float = number(1.0, at_least=0, about="The smallest coordinate of a turtle.")
     high_m: float = number(10.0, at_least=0, about="The largest coordinate of a turtle.")
 
@@ -51,7 +55,7 @@ class Spawns:
 class PlacesDiffer:
     """The id of another trial in which the same node ran, and the prefix of its turtles' names."""
 
-    other: str = string("the id of a trial", about="Another trial of the same node.")
+    other: str = string("the id of a trial", about="The id of another trial of the same node.")
     name: str = string("the beginning of a name", default="target", about="The prefix of the names of the turtles.")
 
 
