@@ -14,16 +14,15 @@ import re
 import subprocess
 import sys
 import time
-from typing import TYPE_CHECKING, NamedTuple
+from importlib import metadata
+from pathlib import Path
+from typing import NamedTuple
 
 from grader.common.interpreter import clean, interpreter
 from grader.errors import MachineError
 from grader.setup import lock, setup_errors
 from grader.setup.bootstrap import ROOT, STAMP, Stamp, say, write_stamp
 from grader.setup.uv import uv
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 _OPTIONS = ("--no-deps", "--require-hashes", "--no-build-isolation")
 _PROGRESS = ("Downloading ", "Using cached ", "Building ", "Prepared ", "Installed ", "Bytecode compiled ")
@@ -32,6 +31,10 @@ _RETRIES = 2
 """The number of failed name look-ups after which the installer is stopped. pip would continue for ten more seconds."""
 _FIRST = frozenset({"uv", "setuptools"})
 """The packages that pip installs, although pip is slower than uv: uv, and setuptools, which uv needs to build empy."""
+_OLDEST_NUMPY = (1, 25)
+"""The oldest version of numpy that matplotlib supports. matplotlib draws the images."""
+_NUMPY = Path(__file__).with_name("numpy.txt")
+"""The last version of numpy 1, in pip's format. Extensions that were built for an older numpy 1 cannot use numpy 2."""
 _UNKNOWN = (
     "The packages could not be installed; the installer's messages are above. HTTPS_PROXY sets a proxy, and pip's "
     f"configuration sets a mirror; {setup_errors.AGAIN}."
@@ -73,7 +76,11 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
     _pip(_write("setup", lock.select(text, ["setup"], only=_FIRST)))
 
     say("Installing " + ("what the grader needs" if sourced else "ROS 2 Jazzy and what the grader needs"))
-    rest = _write("rest", lock.select(text, parts, without=without))
+    selected = lock.select(text, parts, without=without)
+    if sourced and numpy_is_too_old():
+        say("The system's numpy is too old for the images: .venv gets a newer one, and the system keeps its own")
+        selected += _NUMPY.read_text(encoding="utf-8")
+    rest = _write("rest", selected)
     downloading = _uv("-r", str(rest), *_OPTIONS, "--compile-bytecode")
     if downloading is None:
         # pip reads settings that uv does not read: mirrors, certificates and proxies in pip.conf.
@@ -85,6 +92,15 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
         raise MachineError(message)
     total = time.monotonic() - begin
     return {"download": downloading or 0.0, "install": total - (downloading or 0.0)}
+
+
+def numpy_is_too_old() -> bool:
+    """Return whether the system's numpy, which .venv of a sourced ROS 2 uses, is too old to draw the images."""
+    try:
+        version = metadata.version("numpy")
+    except metadata.PackageNotFoundError:
+        return False  # the sourced ROS 2 has a numpy of its own
+    return tuple(map(int, version.split(".")[:2])) < _OLDEST_NUMPY
 
 
 def _pip(requirements: Path) -> None:

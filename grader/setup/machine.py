@@ -35,14 +35,11 @@ LEFT_TO_ROS = {"numpy": "python3-numpy", "em": "python3-empy", "lark": "python3-
 """The modules that the set-up does not install if a ROS 2 is sourced (lock.SOURCED_BRINGS and the part `ros`), and the
 Debian packages that contain these modules.
 """
-_OLDEST_NUMPY = "1.25"
-"""The oldest version of numpy that matplotlib supports. matplotlib draws the images."""
-_IMPORTS = f"""
+_IMPORTS = """
 import importlib, json, sys
 def lacks(name):
     try:
-        module = importlib.import_module(name)
-        return name == "numpy" and module.lib.NumpyVersion(module.__version__) < "{_OLDEST_NUMPY}.0"
+        importlib.import_module(name)
     except Exception:
         return True
 print(json.dumps([name for name in sys.argv[1:] if lacks(name)]))
@@ -263,9 +260,7 @@ def missing_of_python(
     if not python.headers:
         needs.append(Need("Python's headers (Python.h), for turtlesim's messages", name + "-dev"))
     which = "which the sourced ROS 2 needs; PYTHON=/path/to/python3 names a Python that has it"
-    for name in python.lacks:
-        version = f" ({_OLDEST_NUMPY} or newer)" if name == "numpy" else ""
-        needs.append(Need(f"the module {name}{version}, {which}", LEFT_TO_ROS[name]))
+    needs += [Need(f"the module {name}, {which}", LEFT_TO_ROS[name]) for name in python.lacks]
     return needs
 
 

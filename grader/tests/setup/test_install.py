@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import signal
 import sys
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -64,6 +65,27 @@ def test_a_sourced_ros_keeps_its_own_packages(installers: Installers, parts: lis
     assert {name for name in installed if name.startswith("ros-")} == set()
     assert not {"numpy", "empy", "lark-parser"} & installed
     assert {"colcon-core", "rosbags", "matplotlib"} <= installed
+
+
+@pytest.mark.parametrize(
+    ("version", "added"), [("1.21.5", True), ("1.24.2", True), ("1.26.4", False), ("2.2.4", False)]
+)
+def test_a_numpy_that_is_too_old_for_the_images_is_replaced_in_the_environment(
+    installers: Installers, monkeypatch: pytest.MonkeyPatch, version: str, *, added: bool
+) -> None:
+    monkeypatch.setattr(metadata, "version", lambda _: version)
+    install.install(PARTS["learner"], sourced=True)
+    assert ("numpy==1.26.4 " in installers.uv[0]) is added
+    install.install(PARTS["learner"], sourced=False)
+    assert "numpy==1.26.4" not in installers.uv[-1], "the wheels of ROS 2 use the numpy of the lock file"
+
+
+def test_a_numpy_of_the_ros_itself_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(name: str) -> str:
+        raise metadata.PackageNotFoundError(name)
+
+    monkeypatch.setattr(metadata, "version", missing)
+    assert not install.numpy_is_too_old()
 
 
 def test_pip_installs_what_uv_could_not(installers: Installers) -> None:

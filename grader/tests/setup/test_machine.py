@@ -206,19 +206,6 @@ def test_a_python_is_tried_with_the_environment_that_the_ros_needs(tmp_path: Pat
     assert machine.for_ros(here._replace(path="/nowhere/python3"), ros).lacks == tuple(machine.LEFT_TO_ROS)
 
 
-def test_a_numpy_that_is_too_old_for_the_pictures_is_lacked(tmp_path: Path) -> None:
-    (tmp_path / "numpy.py").write_text(
-        "class lib:\n    class NumpyVersion(str):\n        pass\n__version__ = '1.24.2'\n"
-    )
-    old = tmp_path / "python3"
-    old.write_text(f'#!/bin/sh\nPYTHONPATH={tmp_path} exec {sys.executable} "$@"\n')
-    old.chmod(0o755)
-    here = SYSTEMS._replace(path=str(old), version=sys.version_info[:3])
-    requested = machine.for_ros(here, SourcedRos("/opt/ros/jazzy", sys.version_info[:2], turtlesim=True))
-    assert requested.lacks == ("numpy",)
-    assert machine.missing_of_python(requested)[-1].what.startswith("the module numpy (1.25 or newer)")
-
-
 def test_closed_folder_is_the_topmost_one(closed: Path) -> None:
     (closed / "bin").chmod(0o700)
     assert machine.closed_folder(str(closed / "bin/python3")) == closed.resolve()
