@@ -14,6 +14,7 @@ import pytest
 from grader.classroom.gradescope_archive import TEMPLATES
 from grader.ros import installation, underlay
 from grader.sandbox import bubblewrap
+from grader.tests.both_worlds import REAL_ROS2
 from grader.tests.case import ROOT, copy_solution
 from grader.tests.classroom.a_class import reports
 from grader.tests.traps import Traps, careless
@@ -72,7 +73,8 @@ def test_the_traps_are_traps(tmp_path: Path) -> None:
     traps = Traps(tmp_path / "here", tmp_path / "touched")
     command = [sys.executable, "-c", "import importlib.metadata as m; [e.load() for e in m.entry_points(name='trap')]"]
     subprocess.run(command, cwd=traps.folder, check=False, capture_output=True)
-    assert traps.touched == ["importlib"]
+    # If the start of Python has already imported importlib, the first modules from the folder are those that it needs.
+    assert {"importlib", "email"} & set(traps.touched)
     plain = [sys.executable, "-c", "import grader, numpy"]
     subprocess.run(plain, cwd=traps.folder, check=False)
     subprocess.run(["cmake"], cwd=traps.folder, check=False, env={"PATH": ":/usr/bin:/bin"})
@@ -107,7 +109,8 @@ def test_commands_that_look_around(folder: Folder) -> None:
     folder.run("grader", "doctor")
     folder.run("grader", "env")
     folder.run("ros2", "pkg", "list")
-    folder.run("ros2", "topic", "list")
+    # The real ros2 starts its daemon with `python -c`, which searches the current folder for modules.
+    folder.run("ros2", "topic", "list", *(["--no-daemon"] if REAL_ROS2 else []))
     folder.run("rqt_graph", "--text", code=1)
 
 
