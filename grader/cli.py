@@ -20,6 +20,7 @@ from grader.exercise.completion import steps as known_steps
 from grader.gradebook import cli as gradebook
 from grader.learner import cli as learner
 from grader.open import cli as open_course
+from grader.setup import bootstrap
 from grader.setup import cli as setup
 from grader.view import cli as view
 
@@ -212,7 +213,7 @@ def main() -> None:
     except Exception as error:
         if os.environ.get("GRADER_DEBUG"):
             raise
-        refused = refusal(error)
+        refused = refusal(error) or bootstrap.outdated(error)
         if refused:
             typer.secho(f"grader: {refused}", err=True)
             _drop_unwritten()
@@ -247,13 +248,13 @@ def _judged(recording: Path, read_exercise: Callable[[Path], Exercise]) -> tuple
 
 def _opened(path: Path | None, name: str | None) -> tuple[Exercise, Submission]:
     """Open the submission and determine its exercise from the path, the name or, if necessary, the package."""
-    from grader.learner.exercise_argument import guessed, meant
-    from grader.submission.package import open_answers, open_submission
+    from grader.learner.exercise_argument import guessed, meant, open_package
+    from grader.submission.package import open_answers
 
     known, place = guessed(path, name)
     if known is not None and not known.package:
         return known, open_answers(place)
-    opened = open_submission(place)
+    opened = open_package(place, typed=path is not None)
     return known or meant(opened.package_dir, None)[0], opened
 
 

@@ -11,6 +11,7 @@ from grader.exercise.exercise_toml import parse_exercise
 from grader.exercise.model import FILE_NAME, Exercise, catalogue
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
     from grader.exercise.private_checks import Sources
@@ -30,12 +31,19 @@ def find_exercise(name: str, course: Path | None = None) -> Exercise:
         return load_exercise(files[name])
     if len(begin) == 1:
         return load_exercise(files[begin[0]])
-    guess = nearest(name, files)
-    hint = f"did you mean {guess}? " if guess else ""
+    guess = _nearest(name, files)
+    hint = f"Did you mean {guess}? " if guess else ""
     several = f"several exercises start with {name!r}" if begin else f"there is no exercise {name!r}"
     named = begin or list(files)
-    message = f"{several}: {hint}The exercises are {a_list(named, most=len(named))}."
+    message = f"{several}. {hint}The exercises are {a_list(named, most=len(named))}."
     raise UsageError(message)
+
+
+def _nearest(name: str, known: Iterable[str]) -> str | None:
+    """Return the id that was probably meant: one with a typing error, one with this word, or O1 typed for 01."""
+    number = name.translate(str.maketrans("OoIl", "0011"))
+    same = [each for each in known if name and (name.lower() in each.split("-") or each.startswith(f"{number}-"))]
+    return nearest(name, known) or (same[0] if len(same) == 1 else None)
 
 
 def exercise_of_folder(path: Path, course: Path | None = None) -> Exercise | None:

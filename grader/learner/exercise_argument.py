@@ -9,9 +9,11 @@ from grader.checks.exercises import exercise_of_folder, find_exercise
 from grader.errors import UsageError
 from grader.exercise.model import catalogue
 from grader.learner import progress, steps, workspace
+from grader.submission.package import open_submission
 
 if TYPE_CHECKING:
     from grader.exercise.model import Exercise
+    from grader.submission.package import Submission
 
 
 def meant(path: Path | None, exercise: str | None, folder: Path | None = None) -> tuple[Exercise, Path]:
@@ -56,6 +58,22 @@ def guessed(path: Path | None, exercise: str | None, folder: Path | None = None)
     if known is None and current is not None and current[1].resolve() == place.resolve():
         known = current[0]
     return known, place
+
+
+def open_package(place: Path, *, typed: bool) -> Submission:
+    """Open the package in a folder. `typed` is whether the user typed a path.
+
+    Raises:
+        UsageError: the folder does not contain exactly one package. If no path was typed, the message also names the
+            command that starts the first step.
+    """
+    try:
+        return open_submission(place)
+    except UsageError as error:
+        if typed:
+            raise
+        message = f"{error} If you have not started a step yet, type `grader start 01`."
+        raise UsageError(message) from error
 
 
 def _is_step(name: str) -> bool:

@@ -11,6 +11,7 @@ import hashlib
 import json
 import os
 import platform
+import shlex
 import shutil
 import subprocess
 import sys
@@ -74,6 +75,15 @@ def digest() -> str:
     for name in ("requirements.lock", "pyproject.toml"):
         whole.update((ROOT / name).read_bytes())
     return whole.hexdigest()
+
+
+def outdated(error: BaseException) -> Optional[str]:
+    """Return a sentence if `error` is a failed import and the course was changed after its set-up, or None."""
+    stamp = read_stamp()
+    if not isinstance(error, ImportError) or stamp is None or stamp.digest == digest():
+        return None
+    again = f"cd {shlex.quote(str(ROOT))} && make demo"
+    return f"the course was changed ({error}) after its set-up. Set it up again: {again}"
 
 
 def stands(stamp: Stamp, ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python]) -> bool:

@@ -16,7 +16,9 @@ def test_an_exercise_is_found_by_its_id_or_its_beginning() -> None:
 @pytest.mark.parametrize(
     ("name", "hint"),
     [
-        ("03-circle-publsher", "did you mean 03-circle-publisher?"),
+        ("03-circle-publsher", "Did you mean 03-circle-publisher?"),
+        ("O1", "there is no exercise 'O1'. Did you mean 01-first-node? The exercises are"),
+        ("first", "Did you mean 01-first-node?"),
         ("99", "there is no exercise '99'"),
         ("", "there is no exercise ''"),
     ],

@@ -3,8 +3,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 from grader.checks.exercises import find_exercise
+from grader.cli import app
 from grader.errors import UsageError
 from grader.exercise.model import catalogue
 from grader.learner import steps
@@ -58,3 +60,14 @@ def test_a_number_may_omit_the_zero(typed: str) -> None:
 def test_the_list_of_steps_is_complete() -> None:
     with pytest.raises(UsageError, match=rf"01-first-node, .*07-challenges.* and {list(catalogue())[-1]}"):
         find_exercise("99")
+
+
+def test_a_check_without_a_path_or_a_step_names_the_first_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROS2_WORKSPACE", str(tmp_path / "another_ws"))
+    for typed in (["check"], ["check", "."]):
+        done = CliRunner().invoke(app, typed)
+        assert isinstance(done.exception, UsageError)
+        assert str(done.exception).startswith("There is no package in ")
+        assert ("type `grader start 01`" in str(done.exception)) is (typed == ["check"])

@@ -231,3 +231,13 @@ def test_the_target_and_the_python_requested_are_set_up(
     monkeypatch.setattr(bootstrap, "set_up", set_up)
     assert bootstrap.main(arguments) == 7
     assert requested == [TESTS, machine.sourced_ros(os.environ, ROOT), course.python if len(arguments) > 1 else None]
+
+
+def test_a_failed_import_after_an_update_names_the_command_that_sets_up_again(course: Course) -> None:
+    course.set_up()
+    error = ImportError("No module named 'new'")
+    assert bootstrap.outdated(error) is None, "the packages are those of the lock file"
+    (course.root / "requirements.lock").write_text("newer")
+    again = f"Set it up again: cd {course.root} && make demo"
+    assert bootstrap.outdated(error) == f"the course was changed (No module named 'new') after its set-up. {again}"
+    assert bootstrap.outdated(ValueError()) is None

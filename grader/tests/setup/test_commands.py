@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import grader.setup
+from grader.tests.both_worlds import python_path
 
 COMMANDS = Path(grader.setup.__file__).parent / "commands"
 INTERRUPTED = """
@@ -27,22 +29,52 @@ sys.meta_path.insert(0, Interrupting())
 """
 
 
+MISSING = """
+import sys
+
+
+class Missing:
+    def find_spec(self, name, *_):
+        if name == {name!r}:
+            raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
+
+
+sys.meta_path.insert(0, Missing())
+"""
+
+
 @pytest.mark.parametrize(
     ("name", "code"),
     [("grader", 130), ("ros2", 2), ("rqt", 130), ("rqt_console", 130), ("rqt_graph", 130), ("rqt_plot", 130)],
 )
 def test_ctrl_c_during_the_import_prints_no_traceback(tmp_path: Path, name: str, code: int) -> None:
-    (tmp_path / "sitecustomize.py").write_text(INTERRUPTED)
-    command = Path(shutil.copy(COMMANDS / name, tmp_path))
-    python = tmp_path / "python3"
+    done = run(tmp_path, name, INTERRUPTED)
+    assert (done.returncode, done.stdout, done.stderr) == (code, "", "")
+
+
+@pytest.mark.parametrize(
+    ("module", "changed"),
+    [
+        ("grader", "moved or renamed"),
+        ("typer", "changed (No module named 'typer')"),
+    ],
+)
+def test_a_course_that_was_moved_or_updated_names_the_command_that_sets_it_up(
+    tmp_path: Path, module: str, changed: str
+) -> None:
+    done = run(tmp_path, "grader", MISSING.format(name=module))
+    again = f"Set it up again: cd {shlex.quote(str(Path(sys.prefix).parent))} && make demo"
+    said = f"grader: the course was {changed} after its set-up. {again}\n"
+    assert (done.returncode, done.stdout, done.stderr) == (3, "", said)
+
+
+def run(folder: Path, name: str, customized: str) -> subprocess.CompletedProcess[str]:
+    """Run `NAME status` with the code `customized` at the start of Python. Copy the command to the folder first."""
+    (folder / "sitecustomize.py").write_text(customized)
+    command = Path(shutil.copy(COMMANDS / name, folder))
+    python = folder / "python3"
     python.write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
     for file in (command, python):
         file.chmod(0o755)
-    done = subprocess.run(
-        [str(command), "--help"],
-        env={**os.environ, "PYTHONPATH": str(tmp_path)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert (done.returncode, done.stdout, done.stderr) == (code, "", "")
+    env = {**os.environ, "PYTHONPATH": python_path(folder)}
+    return subprocess.run([str(command), "status"], env=env, capture_output=True, text=True, check=False)
