@@ -52,12 +52,24 @@ def guessed(path: Path | None, exercise: str | None, folder: Path | None = None)
     current = steps.current(folder)
     of_workspace = path is None or path.resolve() in (root, root / "src")
     if of_workspace and current is not None and exercise in (None, current[0].id):
+        _check_there(*current)
         return current
     place = path or Path()
     known = find_exercise(exercise) if exercise else exercise_of_folder(place)
     if known is None and current is not None and current[1].resolve() == place.resolve():
         known = current[0]
     return known, place
+
+
+def _check_there(step: Exercise, place: Path) -> None:
+    if not place.is_dir():
+        start = f"grader start {step.id[:2]}"
+        message = (
+            f"The folder of your step, {place}, no longer exists. If you moved your workspace, type "
+            f"`export ROS2_WORKSPACE=NEW_PATH` and `{start}`, which overwrites nothing. To begin the step again, "
+            f"type `{start}`."
+        )
+        raise UsageError(message)
 
 
 def open_package(place: Path, *, typed: bool) -> Submission:

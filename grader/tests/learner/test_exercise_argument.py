@@ -71,3 +71,14 @@ def test_a_check_without_a_path_or_a_step_names_the_first_command(
         assert isinstance(done.exception, UsageError)
         assert str(done.exception).startswith("There is no package in ")
         assert ("type `grader start 01`" in str(done.exception)) is (typed == ["check"])
+
+
+@pytest.mark.parametrize("typed", [None, "{}", "{}/src"])
+def test_a_workspace_that_was_moved_names_the_two_ways_on(workspace: Path, typed: str | None) -> None:
+    moved = workspace.rename(workspace.with_name("renamed"))
+    path = Path(typed.format(workspace)) if typed else None
+    with pytest.raises(UsageError, match=r"my_robot_controller, no longer exists\..*`grader start 03`\.$"):
+        guessed(path, None)
+    assert guessed(None, None, moved) == (None, Path()), "progress belongs to the path of the workspace"
+    steps.start("3", moved)
+    assert guessed(None, None, moved)[1] == moved / "src/my_robot_controller"
