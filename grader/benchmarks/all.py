@@ -2,9 +2,9 @@
 
     python -m grader.benchmarks.all [--times N] [--class N] [--sync N]
 
-F is the sum of two wall times: that of `colcon build` of the package and that of a process with one rclpy node, both
-without the grader. grader.benchmarks.check uses the same F. F is measured again before each cost, so that other
-programs slow down F and the cost alike. The first line shows the load of the machine. Results measured on a busy
+F is the sum of two wall times: the time of a `colcon build` of the package, and the time of a process with one rclpy
+node, both without the grader. grader.benchmarks.check uses the same F. F is measured again before each cost, so that
+other programs slow down F and the cost alike. The first line shows the load of the machine. Results measured on a busy
 machine can be compared only with each other.
 """
 

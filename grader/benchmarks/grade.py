@@ -5,7 +5,7 @@
 
 F (see grader.benchmarks.check) is measured before and after the class, in the same run. The class is mixed: out of
 every eight submissions, four are correct, three are wrong in different ways, and one is hostile. With `--mix right`,
-all submissions are correct. Each submission contains a different comment, so that the grader grades every one of them.
+all submissions are correct. Each submission contains a different comment, so that the grader grades every submission.
 The benchmark also measures the memory of all processes of the run, including those in sandbox cells. The benchmark
 samples the memory several times per second, and counts shared memory once.
 """

@@ -4,7 +4,7 @@
                      calls.json instead, if functions or programs were called without a simulator; or tests.json
                      instead, if the student's tests were run
     build.json       the result of the build
-    tries.json       the fixes that were tried, with their results; for instructors only, since it gives solutions away
+    tries.json       the fixes that were tested, with their results; only for instructors, since it shows solutions
     submission.json  name, digest and paths
     source/          the files of the submission
     exercise/        the exercise at that time: exercise.toml

@@ -115,7 +115,7 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
 def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Copy the files of `source` that are missing in `folder`, except for notebooks.
 
-    `instead` replaces the content of some files. Return the paths that were added, and those that were not changed.
+    `instead` replaces the content of some files. Return the paths that were added, and the paths that were not changed.
     Raises OSError.
     """
     found = tree.read_folder(source)

@@ -41,7 +41,7 @@ class Ports:
     `others` contains the ports of other nodes.
 
     Inside the cell, the ports `others` are in use. Therefore, the nodes get the same port numbers inside the cell as
-    `own` has outside. `discovery` contains the ports of `own` for discovery data.
+    the sockets in `own` outside of the cell. `discovery` contains the ports of `own` for discovery data.
     """
 
     own: tuple[socket.socket, ...]

@@ -45,7 +45,7 @@ class Report:
 
     @property
     def max(self) -> float:
-        """The maximum points of all checks together, including those that the machine could not judge.
+        """The maximum points of all checks together, including checks that the machine could not judge.
 
         If checks that could not be judged were left out, a submission could get full marks by keeping the checks that
         it fails from being judged.

@@ -89,7 +89,7 @@ def interfaces(package: str) -> list[str]:
 
 
 def all_interfaces(kind: str | None = None) -> list[str]:
-    """Return the interfaces of all packages, or only those of one kind ("msg", "srv" or "action")."""
+    """Return the interfaces of all packages, or only the interfaces of one kind ("msg", "srv" or "action")."""
     found = (name for package in interface_packages() for name in interfaces(package))
     return [name for name in found if kind in (None, name.split("/")[1])]
 

@@ -161,7 +161,7 @@ def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: 
 def domain_of(uid: int) -> int:
     """Return the default ROS domain id of a user, from 1 to 101. Users with adjacent user ids get different domains.
 
-    The ports of domain 101 are the highest ones below Linux's range of ephemeral ports. The default domain in ROS 2 is
+    The ports of domain 101 are the highest ports below Linux's range of ephemeral ports. The default domain in ROS 2 is
     0.
     """
     return 1 + uid % 101

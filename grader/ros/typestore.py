@@ -1,4 +1,4 @@
-"""The message types for rosbags: those of ROS 2 Jazzy, and those of installed .msg files."""
+"""The message types for rosbags: the types of ROS 2 Jazzy, and the types in installed .msg files."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ bubblewrap creates two kinds of containers:
   with separate pid and network namespaces, and only the loopback interface. The simulator reads the messages of a
   student's node with libraries that may have security holes;
 - a **cell** contains a student's process. A cell has its own user, pid, ipc, uts, cgroup and mount namespaces, no
-  network except that of the room, no files from the disk except those in `View`, a system call filter
+  network except the network of the room, no files from the disk except the files in `View`, a system call filter
   (system_calls.py), and limits on memory, processes, files, CPU and disk. usage.py watches totals that the kernel does
   not limit.
 

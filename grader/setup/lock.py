@@ -97,7 +97,10 @@ def parse(text: str) -> dict[str, list[Entry]]:
 def select(
     text: str, parts: Collection[str], *, without: Collection[str] = (), only: Collection[str] | None = None
 ) -> str:
-    """Return the requirements of `parts` in pip's format: all packages except `without`, or only those in `only`."""
+    """Return the requirements of `parts` in pip's format.
+
+    The packages in `without` are left out. If `only` is given, all packages that are not in `only` are left out.
+    """
     entries = dict.fromkeys(entry for part, entries in parse(text).items() if part in parts for entry in entries)
     chosen = (entry for entry in entries if entry.name not in without and (only is None or entry.name in only))
     return "".join(entry.text for entry in chosen)

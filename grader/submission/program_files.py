@@ -29,7 +29,7 @@ def program_files() -> tuple[Path, ...]:
 
 
 def paths_in(values: Iterable[object]) -> Iterator[Path]:
-    """Yield the paths among these arguments of a function, including those inside tuples and lists."""
+    """Yield the paths among these arguments of a function, including paths inside tuples and lists."""
     for value in values:
         if isinstance(value, Path):
             yield value

@@ -1,4 +1,4 @@
-"""The lessons are correct: commands and code work, recorded answers are those of ROS 2, and pictures exist."""
+"""The lessons are correct: commands and code work, recorded answers are the answers of ROS 2, and pictures exist."""
 
 from __future__ import annotations
 

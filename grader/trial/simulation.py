@@ -40,8 +40,8 @@ PUBLISHED = {"/turtle1/pose": "turtlesim/msg/Pose", "/turtle1/color_sensor": "tu
 _MOST_AT_ONCE_S = 0.5
 """The maximum time for which callbacks run before the trial checks its clock again (s)."""
 _MOST_INTERVENTIONS = 1000
-"""The maximum number of interventions that are kept in order. After that, each name is kept once, and the others are
-counted."""
+"""The maximum number of interventions that are kept in order. After this number, an intervention is kept only
+if its name is new; all others are counted."""
 
 
 class Simulation:

@@ -114,7 +114,7 @@ def _forbidden(recording: Recording) -> str | None:
 
 
 def nearest_first(evidence: Evidence, _: NoParams) -> Finding:
-    """After each catch, the next target is the one that was nearest to turtle1 at that time."""
+    """After each catch, the next target is the target that was nearest to turtle1 at that time."""
     recording = evidence.recording
     expected = "The next target is always the one that is nearest to turtle1."
     gone = caught(recording)

@@ -44,7 +44,7 @@ class SendsGoals:
 
 
 def sends_goals(evidence: Evidence, params: SendsGoals) -> Finding:
-    """The goals arrive one after the other, with these headings, and each one is reached."""
+    """The goals arrive one after the other, with these headings, and each goal is reached."""
     goals = goals_of(evidence)
     first, amount = int(params.nth) - 1, int(params.total)
     headings = [params.heading_deg + each * params.turn_deg for each in range(amount)]

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 DEPTH = 1000
-"""The depth of the queue. The depth is larger than that of rosbag2 (10), because Python is slower than C++."""
+"""The depth of the queue. The depth is larger than the depth in rosbag2 (10), because Python is slower than C++."""
 
 
 def offered(publishers: Sequence[Any]) -> list[Qos]:

@@ -71,7 +71,7 @@ def _unnoticed_by_cases(
 
 
 def _materials(*, make: bool) -> dict[str, judging.Material]:
-    """Return the cases by name, without those whose recording does not give the expected report.
+    """Return the cases by name, without cases whose recording does not give the expected report.
 
     The report can differ from the expected report if the machine was busy while the case was recorded. With `make`, a
     case whose recording gives another report is recorded again.
