@@ -7,6 +7,7 @@ reads a submission.
 
 from __future__ import annotations
 
+import errno
 import gc
 import io
 import os
@@ -14,6 +15,8 @@ import pickle
 import resource
 import select
 import signal
+import stat
+import sys
 import tempfile
 import time
 import traceback
@@ -138,11 +141,24 @@ def _run(sends: int, readable: tuple[Path, ...], function: Callable[[], object])
         if not allow_only_reading(readable):
             keep_only(readable)
         forbid_all_but_reading()
+        sys.addaudithook(_refuse_pipes)
         with open(sends, "wb") as pipe:
             pipe.write(_answer(function))
     except BaseException:
         os._exit(1)
     os._exit(0)
+
+
+def _refuse_pipes(event: str, arguments: tuple[Any, ...]) -> None:
+    """Raise OSError if a named pipe is about to be opened: a student's pipe, which nobody writes to, would block."""
+    if event != "open" or not isinstance(arguments[0], str | bytes) or (arguments[2] or 0) & os.O_NONBLOCK:
+        return
+    try:
+        mode = os.stat(arguments[0]).st_mode  # noqa: PTH116 - bytes are possible
+    except (OSError, ValueError):
+        return  # opening it fails, too
+    if stat.S_ISFIFO(mode):
+        raise OSError(errno.ENXIO, "it is a named pipe, not a file")
 
 
 def _close_all_but(sends: int) -> None:

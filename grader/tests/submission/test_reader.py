@@ -339,5 +339,18 @@ def test_without_any_confinement_it_says_so(monkeypatch: pytest.MonkeyPatch) -> 
     assert not reader.is_confined()
 
 
+@pytest.mark.parametrize("opens", [Path.read_text, Path.read_bytes, lambda path: os.open(path, os.O_RDONLY)])
+def test_a_named_pipe_does_not_block_it(
+    opens: Callable[[Path], object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every step that reads is protected, not only the search for files: `grader regrade` waited two minutes."""
+    monkeypatch.setattr(reader, "TIMEOUT_S", 20.0)
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "link").symlink_to("pipe")
+    for name in ("pipe", "link"):
+        with pytest.raises(UnreadableError, match="named pipe"):
+            read(opens, tmp_path / name)
+
+
 def test_it_has_no_terminal() -> None:
     assert read(lambda: [Path(f"/proc/self/fd/{number}").readlink() for number in range(3)]) == [Path(os.devnull)] * 3
