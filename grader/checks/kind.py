@@ -38,7 +38,7 @@ P = TypeVar("P")
 class Kind(Generic[P]):
     """A type of check. `check` is a pure function: the same evidence and parameters give the same finding.
 
-    `title` is the title that a student reads if exercise.toml sets none. `about` describes the check for authors of
+    `title` is the title that a student reads if exercise.toml sets no title. `about` describes the check for authors of
     exercises (docs/kinds.md). A kind with `advice` is worth no points and never fails a submission.
     """
 

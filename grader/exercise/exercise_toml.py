@@ -3,7 +3,7 @@
 The keys in `schema = 2`:
 
 - `[exercise]` has id, title, package (without a package, students submit only answers.toml), apart (the package is not
-  the learner's own), show_fix (students see the change that was tried) and starting_point_fails (the ids of the checks
+  the learner's own), show_fix (students see the tested change) and starting_point_fails (the ids of the checks
   that exercises/ must fail).
 - `[numbers]` has file (the name of a TOML file in the package), and lists of possible values. Each student gets one
   value from each list. In a `[[check]]`, the value `{ own = "radius_m" }` stands for the student's own value.
@@ -14,8 +14,8 @@ The keys in `schema = 2`:
   `[trial.parameters]` and `[trial.params_file]` map the names of parameters to their values.
 - A `[[trial]]` without a simulator has id and either function and `[[trial.points]]`, or executable and `[[trial.bag]]`
   (calls_toml.py).
-- `[[check]]` has id, kind, points, needs (ids), title, trial (the default is the first one), hidden, and the parameters
-  of its kind. A `[[check]]` may have a preset instead (presets.py).
+- `[[check]]` has id, kind, points, needs (ids), title, trial (the default is the first trial), hidden, and the
+  parameters of its kind. A `[[check]]` can have a preset instead (presets.py).
 - `[[hint]]` has text, checks (the ids of the checks that it helps with) and part (a letter). The hints begin with a
   nudge and end with almost the whole answer.
 """

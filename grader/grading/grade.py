@@ -94,8 +94,8 @@ def explained(
 ) -> Graded:
     """Return the graded submission. If possible, each cause is proved by a fix in a copy.
 
-    `give_up` is called before each try. Once `give_up` returns true, no more changes are tried. `build` contains the
-    result of the last build.
+    `give_up` is called before each change is tested. Once `give_up` returns true, no more changes are tested. `build`
+    contains the result of the last build.
     """
     report, evidence = graded.report, graded.evidence
     if not can_be_explained(graded):

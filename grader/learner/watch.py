@@ -216,11 +216,11 @@ class Watched:
         return self._unproved is not None and can_be_explained(self._unproved)
 
     def prove(self, tell: Callable[[str], None], give_up: Callable[[], bool]) -> Graded | None:
-        """Prove the causes of the last report by trying to fix them in a copy (see `grader.grading.explain`).
+        """Prove the causes of the last report by testing fixes in a copy (see `grader.grading.explain`).
 
-        Before each attempt, the function `give_up` is asked whether other work must be done first. If other work must
-        be done first, the next call of `prove` starts again. Return the report with the results of the attempts, or
-        None if the attempts have changed nothing.
+        Before each test, `give_up` is called to find out whether other work must be done first. If other work must be
+        done first, the next call of `prove` starts again. Return the report with the results of the tests, or None if
+        the tests have changed nothing.
         """
         if self._unproved is None or give_up():
             return None

@@ -50,7 +50,7 @@ class Ports:
 
 
 def reserve(domain: int) -> Ports:
-    """Bind the ports of OWN participants, or of fewer participants if fewer ports are free. Return the ports.
+    """Bind the ports of as many participants as possible, up to OWN participants. Return the ports.
 
     The port numbers are high, because nodes use the lowest free ports.
 

@@ -12,7 +12,7 @@
     clock, seed
     graded_by   the version of the grader and the first digits of the sha256 of its sources
     report      the file with the full report
-    attention   the reason for an instructor to look at it: "suspicious" if the grader repeatedly failed to judge it
+    attention   the reason to check a submission: "suspicious" if the grader repeatedly failed to judge it
 
 No cell is ever a formula, regardless of what a student wrote.
 """

@@ -59,8 +59,8 @@ FASTEST_HZ = 40.0
 class Rate:
     """The mean rate from the first to the last arrival with its tolerance, and the limits of every interval.
 
-    The first command may arrive up to `first_within_s` after the start, and the last one up to `max_interval_s` before
-    the end.
+    The first command may arrive up to `first_within_s` after the start, and the last command up to `max_interval_s`
+    before the end.
     """
 
     rate_hz: float = number(above=0, at_most=1000, about="The mean rate, from the first to the last arrival.")

@@ -55,7 +55,7 @@ Change = tuple[str, cst.CSTNode, cst.CSTNode]
 class Mutant:
     """A file with one change. `line` and `end_line` are the first and last line of the statement, counted from 1.
 
-    `change` is printed.
+    `change` is the text that is printed.
 
     `kind` is one of the strings in KINDS. `at_import` is true if the statement runs only when the file is imported.
     """
