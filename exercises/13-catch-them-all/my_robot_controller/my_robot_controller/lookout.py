@@ -24,7 +24,7 @@ class LookoutNode(Node):
         self.timer = self.create_timer(0.5, self.look)
         self.begun = False
         self.heading = LEFT
-        self.goal = None  # of the goal that the turtle follows, None if there is none
+        self.goal = None  # the handle of the goal that the turtle follows, or None
         self.remaining = None  # rad, from the last feedback
 
     def look(self):
@@ -34,8 +34,8 @@ class LookoutNode(Node):
         # TODO 7: while there is a goal, log what the last feedback said, as in "1.25 rad to go".
 
     def turn(self):
-        # TODO 4: send a goal with the present heading, without waiting. Two methods hear of it: one of the feedback,
-        # and one of the answer to the goal.
+        # TODO 4: send a goal with the present heading, without waiting. Pass two methods: one for the feedback,
+        # and one for the response to the goal.
         pass
 
     def goal_accepted(self, future):

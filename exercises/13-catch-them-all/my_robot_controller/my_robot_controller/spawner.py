@@ -35,7 +35,7 @@ class SpawnerNode(Node):
         pass
 
     def spawned(self, future):
-        # TODO 5: the response says the name of the turtle that is there now.
+        # TODO 5: the response contains the name of the new turtle.
         pass
 
     def announce(self):
@@ -43,7 +43,7 @@ class SpawnerNode(Node):
         pass
 
     def catch(self, request, response):
-        # TODO 8: if the target is one of those that are left, it is no longer, and /kill removes the turtle.
+        # TODO 8: if the target is in self.left, remove it from the list, and send a request to /kill with its name.
         return response
 
 

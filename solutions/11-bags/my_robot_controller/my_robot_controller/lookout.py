@@ -24,7 +24,7 @@ class LookoutNode(Node):
         self.timer = self.create_timer(0.5, self.look)
         self.begun = False
         self.heading = LEFT
-        self.goal = None  # of the goal that the turtle follows, None if there is none
+        self.goal = None  # the handle of the goal that the turtle follows, or None
         self.remaining = None  # rad, from the last feedback
 
     def look(self):

@@ -30,7 +30,7 @@ class LookoutNode(Node):
         self.timer = self.create_timer(0.5, self.look)
         self.begun = False
         self.heading = LEFT
-        self.goal = None  # of the goal that the turtle follows, None if there is none
+        self.goal = None  # the handle of the goal that the turtle follows, or None
         self.remaining = None  # rad, from the last feedback
 
     def look(self):
@@ -53,8 +53,8 @@ class LookoutNode(Node):
         future.add_done_callback(self.goal_accepted)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 4: send a goal with the present heading, without waiting. Two methods hear of it: one of the feedback,
-        # # and one of the answer to the goal.
+        # # TODO 4: send a goal with the present heading, without waiting. Pass two methods: one for the feedback,
+        # # and one for the response to the goal.
         # pass
         # END STARTER
 

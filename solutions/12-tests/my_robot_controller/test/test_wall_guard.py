@@ -103,9 +103,9 @@ def test_stops_when_no_pose_comes(bench):
 
 # END SOLUTION
 # BEGIN STARTER
-# # TODO 2: a class Bench with the guard, a listener beside it, and a clock that you move.
+# # TODO 2: write a class Bench with the guard, a listener beside it, and a clock that you move.
 #
-# # TODO 3: a fixture that gives each test a fresh bench.
+# # TODO 3: write a fixture that gives each test a fresh bench.
 #
-# # TODO 4: one test for each promise in wall_guard.py.
+# # TODO 4: write one test for each promise in wall_guard.py.
 # END STARTER

@@ -58,7 +58,7 @@ class SpawnerNode(Node):
         self.left.append(future.result().name)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 5: the response says the name of the turtle that is there now.
+        # # TODO 5: the response contains the name of the new turtle.
         # pass
         # END STARTER
 
@@ -83,7 +83,7 @@ class SpawnerNode(Node):
             self.get_logger().warning(f"there is no target {request.name}")
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 8: if the target is one of those that are left, it is no longer, and /kill removes the turtle.
+        # # TODO 8: if the target is in self.left, remove it from the list, and send a request to /kill with its name.
         # END STARTER
         return response
 
