@@ -40,7 +40,7 @@ def find_exercise(name: str, course: Path | None = None) -> Exercise:
 
 
 def _nearest(name: str, known: Iterable[str]) -> str | None:
-    """Return the id that was probably meant: one with a typing error, one with this word, or O1 typed for 01."""
+    """Return the id that `name` probably means: `name` may have a typing error, be a word of an id, or have O for 0."""
     number = name.translate(str.maketrans("OoIl", "0011"))
     same = [each for each in known if name and (name.lower() in each.split("-") or each.startswith(f"{number}-"))]
     return nearest(name, known) or (same[0] if len(same) == 1 else None)

@@ -1,7 +1,7 @@
 """Own mounts: a process keeps only the files and folders that it names, in a mount namespace of its own.
 
-This is the second choice, for kernels without Landlock (landlock.py). It needs the rights of root, or user namespaces
-for ordinary users, as bubblewrap does. The process must have only one thread.
+This module is the second choice, for kernels without Landlock (landlock.py). The process needs the rights of root, or
+user namespaces for ordinary users, as bubblewrap does. The process must have only one thread.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _KEPT = {
     os.ST_NOSUID: 2, os.ST_NODEV: 4, os.ST_NOEXEC: 8, os.ST_NOATIME: 1 << 10, os.ST_NODIRATIME: 1 << 11,
     os.ST_RELATIME: 1 << 21,
 }  # fmt: skip
-"""Flags of a mount that an ordinary user may not change, from statvfs(3), with their values for mount(2)."""
+"""Mount flags that an ordinary user is not allowed to change, from statvfs(3), with their values for mount(2)."""
 _DETACH = 2
 _MOST_NAMES = 400
 """The maximum number of names in a path, after its links have been replaced by their targets."""
@@ -55,7 +55,7 @@ def keep_only(paths: Iterable[Path]) -> bool:
                 _bind(c, descriptor, _STAGE / path.relative_to("/"))
         os.close(descriptor)
     for link, target in links.items():
-        with suppress(OSError):  # it is inside a folder that is kept
+        with suppress(OSError):  # the link is inside a folder that is kept
             (_STAGE / link.relative_to("/")).parent.mkdir(parents=True, exist_ok=True)
             (_STAGE / link.relative_to("/")).symlink_to(target)
     with suppress(OSError):
@@ -92,7 +92,7 @@ def _here() -> Path:
 
 
 def _opened(paths: Iterable[Path]) -> Iterator[tuple[Path, int]]:
-    """Yield the real path and a descriptor of each file or folder that exists, once."""
+    """Yield the real path and a descriptor of each existing file or folder, each only once."""
     for path in dict.fromkeys(Path(os.path.realpath(path)) for path in paths):
         with suppress(OSError):
             yield path, os.open(path, os.O_PATH | os.O_CLOEXEC | os.O_NOFOLLOW)

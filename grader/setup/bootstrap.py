@@ -78,7 +78,7 @@ def digest() -> str:
 
 
 def outdated(error: BaseException) -> Optional[str]:
-    """Return a sentence if `error` is a failed import and the course was changed after its set-up, or None."""
+    """Return a sentence for users if `error` is a failed import and the course has changed since its set-up."""
     stamp = read_stamp()
     if not isinstance(error, ImportError) or stamp is None or stamp.digest == digest():
         return None

@@ -98,7 +98,7 @@ def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> 
 
 
 def is_confined() -> bool:
-    """Return whether a child process of `read` can open no files except those that it was called with."""
+    """Return whether a child process of `read` can open only the files that `read` was called with."""
     with tempfile.NamedTemporaryFile() as file:
         return not read(_can_open, file.name)
 
@@ -150,13 +150,13 @@ def _run(sends: int, readable: tuple[Path, ...], function: Callable[[], object])
 
 
 def _refuse_pipes(event: str, arguments: tuple[Any, ...]) -> None:
-    """Raise OSError if a named pipe is about to be opened: a student's pipe, which nobody writes to, would block."""
+    """Raise OSError if a named pipe is about to be opened: opening a pipe to which nobody writes would never end."""
     if event != "open" or not isinstance(arguments[0], str | bytes) or (arguments[2] or 0) & os.O_NONBLOCK:
         return
     try:
         mode = os.stat(arguments[0]).st_mode  # noqa: PTH116 - bytes are possible
     except (OSError, ValueError):
-        return  # opening it fails, too
+        return  # opening the file fails, too
     if stat.S_ISFIFO(mode):
         raise OSError(errno.ENXIO, "it is a named pipe, not a file")
 

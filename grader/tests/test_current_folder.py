@@ -73,7 +73,7 @@ def test_the_traps_are_traps(tmp_path: Path) -> None:
     traps = Traps(tmp_path / "here", tmp_path / "touched")
     command = [sys.executable, "-c", "import importlib.metadata as m; [e.load() for e in m.entry_points(name='trap')]"]
     subprocess.run(command, cwd=traps.folder, check=False, capture_output=True)
-    # If the start of Python has already imported importlib, the first modules from the folder are those that it needs.
+    # If Python has imported importlib when it starts, the traps replace the modules that importlib imports later.
     assert {"importlib", "email"} & set(traps.touched)
     plain = [sys.executable, "-c", "import grader, numpy"]
     subprocess.run(plain, cwd=traps.folder, check=False)

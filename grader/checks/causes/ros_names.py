@@ -32,7 +32,7 @@ MODULE_OF = {
 }
 """Maps a class to the module that it is usually imported from."""
 SHARED_NAMES = frozenset({"Pose", "Color", "Empty", "setup", "find_packages", "glob"})
-"""The names in `MODULE_OF` that other packages have too, such as geometry_msgs with another Pose."""
+"""The names in `MODULE_OF` that also exist in other packages, such as Pose in geometry_msgs."""
 
 MODULES = (
     "rclpy",

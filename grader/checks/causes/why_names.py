@@ -246,7 +246,7 @@ def why_unbound(scene: CrashScene) -> Cause:
 
 
 def _only_raised(scene: CrashScene, name: str) -> bool:
-    """Return whether the function of the crash only changes the variable, with an operator such as +=."""
+    """Return whether the function that crashed changes the variable only with operators such as +=."""
     inside = list(ast.walk(scene.function)) if scene.function is not None else []
     raised = {id(node.target) for node in inside if isinstance(node, ast.AugAssign)}
     stored = [

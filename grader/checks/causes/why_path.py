@@ -1,4 +1,4 @@
-"""What the commands and the source say about a trajectory that is not the right circle."""
+"""Why a trajectory is not the right circle, according to the commands and the source."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def radius_of_commands(evidence: Evidence) -> str:
 
 
 def why_elsewhere(evidence: Evidence) -> Cause:
-    """Return the cause of a circle of the right size in the wrong place."""
+    """Return the cause of a circle that has the right size but the wrong place."""
     steady = steady_command(evidence)
     if steady is None:
         first, last = evidence.commands[0], evidence.commands[-1]

@@ -145,7 +145,7 @@ def _imported(evidence: Evidence) -> dict[str, Where]:
 
 
 def _has_none_of_these(code: Code, package: str) -> bool:
-    """Return whether the nodes import only names from this package that belong to other packages."""
+    """Return whether all names that the nodes import from this package belong to other packages."""
     names = [
         alias.name
         for module in code.modules

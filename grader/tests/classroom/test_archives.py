@@ -194,7 +194,7 @@ def test_unpacking_that_takes_too_long_ends_only_its_own_process(
 
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="the filter is for x86-64")
 def test_a_hole_in_unpacking_reaches_no_other_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The process that unpacks is the confined one: code in it can neither write nor start a program."""
+    """Archives are read in a confined process, in which code can neither write files nor start a program."""
 
     def attack(_: str) -> tuple[str]:
         for attempt in (lambda: (tmp_path / "owned").touch(), lambda: os.execv("/bin/true", ["true"]), os.fork):

@@ -25,7 +25,7 @@ def _without(path: str, look_at: str = "") -> Make:
 def _moved(to: str) -> Make:
     def make(package: Package, _: Random) -> Change | None:
         if package.source.endswith("/__init__.py"):
-            return None  # Without this file, its folder is not a package: another mistake.
+            return None  # Without this file, its folder is not a package, which is another mistake.
         files = dict(package.files)
         text = files.pop(package.source)
         files[to.format(folder=package.folder, name=package.source.rpartition("/")[2].removesuffix(".py"))] = text

@@ -1,4 +1,4 @@
-"""The forms of sentences in reports whose truth follows from the two packages, the source and the recording."""
+"""The forms of sentences that can be checked against the two packages, the source and the recording."""
 
 from __future__ import annotations
 

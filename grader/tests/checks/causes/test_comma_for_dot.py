@@ -1,4 +1,4 @@
-"""A comma in place of a dot is named, and a comma between two values is not mistaken for one."""
+"""A comma in place of a dot is reported, and a comma between two values is not reported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The causes that rclpy's own exceptions have."""
+"""The causes of exceptions that rclpy raises."""
 
 from __future__ import annotations
 
