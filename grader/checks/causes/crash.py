@@ -49,7 +49,6 @@ MEANINGS = {
     "SyntaxError": "Python cannot read this line or the line before it.",
     "TabError": "The indentation mixes tabs and spaces.",
     "TypeError": "A function was called with the wrong number or type of arguments.",
-    "UnboundLocalError": "The variable is used before it gets a value.",
     "ValueError": "An argument has the right type, but its value is not allowed.",
     "ZeroDivisionError": "A number was divided by zero.",
 }

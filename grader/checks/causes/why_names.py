@@ -53,6 +53,7 @@ def why_no_name(scene: CrashScene) -> Cause | None:
         comma_for_dot(scene, name)
         or _of_self(scene, name)
         or _of_string(scene, name)
+        or _in_other_capitals(scene, name)
         or _of_import(scene, name)
         or _bound_elsewhere(scene, name)
         or _alike(scene, name)
@@ -133,6 +134,21 @@ def _of_import(scene: CrashScene, name: str) -> Cause | None:
                 text = f"The file does not import {name}. {name} is in the module {module}."
                 return Cause("missing-import", text).fixed_by(_import(scene, f"from {module} import {name}"))
     return None
+
+
+def _in_other_capitals(scene: CrashScene, name: str) -> Cause | None:
+    """Return the cause if the function has a variable that differs from this argument only in capitals, else None."""
+    passed = any(
+        isinstance(argument, ast.Name) and argument.id == name
+        for call in scene.on_line
+        if isinstance(call, ast.Call)
+        for argument in call.args
+    )
+    other = name.lower()
+    if not passed or other == name or not any(function is scene.function for _, function in _stores(scene, other)):
+        return None
+    text = f"There is a name {other}. Upper and lower case matter."
+    return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, name, other))
 
 
 def _star_import(scene: CrashScene, module: str) -> ast.ImportFrom | None:

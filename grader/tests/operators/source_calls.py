@@ -88,7 +88,7 @@ OPERATORS = (
     _source("message-a-class", r"= (Twist|String)\(\)", r"= \1", "class-for-object"),
     _source("node-a-class", r"^( +node) = (\w+)\(\)$", r"\1 = \2", "class-for-object"),
     _source("spin-without-node", r"rclpy\.spin\(node\)", "rclpy.spin()", "argument-missing"),
-    _source("spin-of-class", r"^( +)rclpy\.spin\(node\)", r"\1rclpy.spin(Node)", "class-for-object"),
+    _source("spin-of-class", r"^( +)rclpy\.spin\(node\)", r"\1rclpy.spin(Node)", "class-for-object", "name-misspelt"),
     _source("spin-named-only", r"rclpy\.spin\(node\)", "rclpy.spin", "not-called"),
     _source("init-named-only", r"rclpy\.init\(.*\)", "rclpy.init", "not-called"),
     _source("spin-once", r"rclpy\.spin\(", "rclpy.spin_once(", "spin-once"),

@@ -74,3 +74,61 @@ def test_a_comma_in_place_of_a_dot_is_named(line: str, words: str | None) -> Non
     found = unreadable_finding("a.py", Unreadable("invalid syntax", 1), f"{line}\n".encode())
     assert found.diagnosis == ("syntax-error" if words is None else "comma-for-dot")
     assert words is None or words in found.cause
+
+
+@pytest.mark.parametrize(
+    ("source", "line", "words"),
+    [
+        ("else if x:", "elif x:", "Python spells else if as one word: elif."),
+        ("count++", "count += 1", "Python has no ++ and no --."),
+        ("count --;", "count -= 1", "Python has no ++ and no --."),
+        ("// a comment", "/ a", "In Python, a comment begins with #."),
+        ("msg = new Twist()", "msg = knew Twist()", "Python has no keyword new."),
+        ("if x {", "if x }", "In Python, a block begins with a colon, not with a brace."),
+        ("defsend(self):", "send(self):", "A space is missing after def."),
+        ("classNode(object):", "Node(object):", "A space is missing after class."),
+        ("first = a.b:main,", '"first = a.b:main",', "An entry point is a string, so it needs quotation marks."),
+    ],
+)
+def test_a_line_that_python_cannot_read_is_explained(source: str, line: str, words: str) -> None:
+    assert words in unreadable_finding("a.py", Unreadable("invalid syntax", 1), f"{source}\n".encode()).cause
+    assert words not in unreadable_finding("a.py", Unreadable("invalid syntax", 1), f"{line}\n".encode()).cause
+
+
+SAID = {
+    "(unicode error) 'utf-8' codec can't decode byte 0xe4": "Save the file as UTF-8.",
+    "inconsistent use of tabs and spaces in indentation": "Tabs and spaces look alike but are different.",
+    "Missing parentheses in call to 'print'. Did you mean print(...)?": "In Python 3, print is a function",
+    "expected ':'": "try or else must end with a colon.",
+    "unmatched ')'": "There is one closing bracket too many, or it is the wrong kind of bracket.",
+    "unterminated triple-quoted string literal": "A string that begins with three quotation marks must end with three.",
+    "unterminated string literal": "A string must end on the same line",
+    "unexpected indent": "All lines of a block must start at the same column",
+    "invalid syntax. Perhaps you forgot a comma?": "Put a comma between two arguments",
+    "cannot assign to function call here.": "= gives a value to a name. == compares two values.",
+    "'(' was never closed": "This bracket is never closed.",
+    "invalid non-printable character U+00A0": "This character comes from a word processor or a web page.",
+}
+
+
+@pytest.mark.parametrize(("message", "words"), SAID.items())
+def test_each_message_of_python_has_its_own_sentence(message: str, words: str) -> None:
+    found = {other: unreadable_finding("a.py", Unreadable(other, 1), b"x = 1\n").cause for other in SAID}
+    assert [other for other, said in found.items() if words in said] == [message]
+
+
+def test_what_another_line_causes_is_explained_there() -> None:
+    data = b"def send():\nx = 1\n"
+    empty = "expected an indented block after function definition on line 1"
+    found = unreadable_finding("a.py", Unreadable(empty, 2), b"def send():\ndef other():\n")
+    assert (str(found.where), "so this line has no body" in found.cause) == ("a.py:1", True)
+    assert "has no body" not in unreadable_finding("a.py", Unreadable(empty, 2), data).cause
+    other = "closing parenthesis ']' does not match opening parenthesis '(' on line 1"
+    found = unreadable_finding("a.py", Unreadable(other, 2), b"f(1,\n]\n")
+    assert (str(found.where), "The bracket ( of line 1 is still open" in found.cause) == ("a.py:1", True)
+    same = "closing parenthesis ']' does not match opening parenthesis '('"
+    assert "is still open" not in unreadable_finding("a.py", Unreadable(same, 2), b"f(1,\n]\n").cause
+    conflict = b"<<<<<<< HEAD\nx = 1\n"
+    words = "Git left two versions in the file"
+    assert words in unreadable_finding("a.py", Unreadable("invalid syntax", 1), conflict).cause
+    assert words not in unreadable_finding("a.py", Unreadable("invalid syntax", 1), b"# <<<<<<< HEAD\nx 1\n").cause

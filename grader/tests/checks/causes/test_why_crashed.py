@@ -28,3 +28,32 @@ def test_an_invalid_topic_is_shown_at_its_own_line() -> None:
     call = "self.create_publisher(  # crashed\n            Twist, 'a b', 10)  # look\n        x = 1"
     source = DRIVER.format(line=call).replace("x = 1  # crashed", "x = 1")
     assert reported(source, ERROR).line == to_look_at(source)
+
+
+RULES = {
+    "topic name must not end with '/'": "A topic name must not end with a slash.",
+    "topic name must not contain repeated '/'": "A topic name must not have two slashes in a row.",
+    "topic name token must not start with a number": "No part of a topic name may begin with a digit.",
+    "topic name must not be empty": "A topic name must not be empty.",
+    "topic name must not contain characters other than": "A topic name may contain only letters",
+}
+
+
+@pytest.mark.parametrize(("message", "rule"), RULES.items())
+def test_each_rule_for_topic_names_is_told_alone(message: str, rule: str) -> None:
+    found = reported(DRIVER.format(line="self.other()"), f"InvalidTopicNameException: Invalid topic name: {message}")
+    assert [each for each in RULES.values() if each in found.cause] == [rule]
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        ("NameError: free variable 'y' referenced", "This name was never defined. Check the spelling"),
+        ("TabError: inconsistent use", "The indentation mixes tabs and spaces."),
+        ("IndentationError: unexpected indent", "All lines of a block must have the same indentation."),
+        ("KeyError: 'speed'", "The dictionary has no such key."),
+    ],
+)
+def test_an_exception_without_a_known_cause_is_explained_by_its_class(error: str, words: str) -> None:
+    assert reported(DRIVER.format(line="self.other()"), error).cause.startswith(words)
+    assert reported(DRIVER.format(line="self.other()"), "OtherError: what").cause == ""

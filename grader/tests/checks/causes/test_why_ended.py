@@ -33,6 +33,7 @@ def ended(source: str, t_s: float = 3.0) -> tuple[str, str, int | None]:
     ("body", "diagnosis", "words"),
     [
         ("rclpy.spin  # look", "not-called", "This line names rclpy.spin but does not call it"),
+        ("return  # look\n    rclpy.spin(Driver())", "ends-at-once", "main returns here, before it calls rclpy.spin."),
         ("node = Driver()", "no-spin", "rclpy.spin keeps a node running, but it is never called."),
         ("rclpy.spin_once(Driver())  # look", "spin-once", "rclpy.spin_once handles one event"),
         ("while True: rclpy.spin_once(Driver())", "ended-early", ""),

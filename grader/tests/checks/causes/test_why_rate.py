@@ -99,3 +99,11 @@ def test_a_publisher_that_each_call_makes_anew_is_found(made: str, *, found: boo
 def test_what_a_callback_calls_for_every_message_is_found_in_its_own_methods() -> None:
     source = NODE.format(made=SUBSCRIBES, at_send="  # look", sent="self.other()")
     assert often(source, FRAME_S) == ("every-message", line_with(LOOK, source))
+
+
+@pytest.mark.parametrize(("made", "found"), [(SUBSCRIBES, True), ("self.create_timer(0.016, self.send)", False)])
+def test_a_method_that_each_message_calls_is_told(made: str, *, found: bool) -> None:
+    source = NODE.format(made=made, at_send="", sent="publish(msg)")
+    cause = why_often(evidence(recording([]), submission({NODE_FILE: source})), "publish", FRAME_S, PERIOD_S)
+    words = "send is called for every message, 62.5 times per second, and each time it calls publish."
+    assert (cause is not None and cause.text == words) == found

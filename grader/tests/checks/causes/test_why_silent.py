@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.checks.causes.why_silent import why_nothing, why_qos
+from grader.checks.causes.why_silent import returns_before, why_nothing, why_qos
 from grader.evidence.evidence import Run
 from grader.tests.checks.crashes import LOOK, line_with
 from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
@@ -62,6 +62,7 @@ def silence(source: str) -> tuple[str, str, int | None] | None:
         ),
         (TIMER, "self.client.call(request)  # look", "waits-in-callback", "This callback waits for a response,"),
         ("pass", "pass", "method-never-called", "Nothing calls send."),
+        ("rclpy.spin(self)  # look", "pass", "blocks-in-init", "rclpy.spin returns only after Ctrl-C,"),
     ],
 )
 def test_silence_is_explained_at_its_line(made: str, sent: str, diagnosis: str, words: str) -> None:
@@ -195,3 +196,18 @@ def test_what_nothing_wakes_waits_for_ever_in_spin_once(made: str, spun: str, *,
         assert (reported[0], reported[2]) == ("spin-once-waits", line_with(LOOK, source))
     else:
         assert reported is None
+
+
+def test_a_program_that_never_spins_is_told_so() -> None:
+    source = NODE.format(made=TIMER, sent="pass")
+    assert silence(source) is None
+    cause = why_nothing(given(source.replace("rclpy.spin(", "print(")), ("publish",))
+    assert cause is not None
+    assert (cause.diagnosis, cause.text) == ("no-spin", "Without rclpy.spin, no timer callback is ever called.")
+
+
+@pytest.mark.parametrize(("sent", "found"), [("return", True), ("if done: return", False), ("pass", False)])
+def test_a_return_before_the_message_is_found(sent: str, *, found: bool) -> None:
+    cause = returns_before(given(NODE.format(made=TIMER, sent=sent)), "publish")
+    assert (cause is not None) == found
+    assert cause is None or cause.text == "send returns in line 8, before it calls publish."

@@ -1,0 +1,216 @@
+"""Each sentence about an exception is printed where it is true, and not for a similar line with the same exception."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.tests.checks.crashes import DRIVER, reported
+
+NO_NAME = "NameError: name '{}' is not defined"
+NO_ATTRIBUTE = "AttributeError: {} has no attribute '{}'"
+TOO_FEW = "TypeError: Driver.{}() missing 1 required positional argument: '{}'"
+TOO_MANY = "TypeError: Driver.{}() takes {} positional argument{} but {} were given"
+METHODS = "\n    def drive(self, step):\n        pass\n\n    def stop(self):\n        pass\n"
+SOURCE = "import rclpy\n" + DRIVER.replace("\ndef outside", METHODS + "\ndef outside")
+ROSPY = (
+    ("init_node", "The node gets its name in super().__init__."),
+    ("is_shutdown", "In ROS 2, rclpy.ok() returns the opposite."),
+    ("get_time", "the node's clock gives the time"),
+    ("get_param", "a node has declare_parameter and get_parameter"),
+    ("loginfo", "the logger has the method info"),
+    ("logwarn", "the logger has the method warning"),
+    ("logerr", "the logger has the method error"),
+    ("Rate", "a node does regular work in the callback of a timer"),
+)
+"""Names of rospy with what replaces them in ROS 2."""
+
+
+def cause(line: str, error: str) -> str:
+    """Return the cause for a node that crashes in this line."""
+    return reported(SOURCE.format(line=line), error).cause
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near", "error"),
+    [
+        ("The list has fewer items", "x = [1][1]", None, "IndexError: list index out of range"),
+        ("A node name may contain only letters", "x = 1", None, "InvalidNodeNameException: Invalid node name"),
+        ("ROS 2 was used before rclpy.init or after", "x = 1", None, "NotInitializedException: no context"),
+        (
+            "belongs to rospy, the library of ROS 1",
+            "rclpy.loginfo('a')",
+            None,
+            NO_ATTRIBUTE.format("module 'rclpy'", "loginfo"),
+        ),
+        (
+            "Separate two arguments with a comma, not with a dot.",
+            "self.create_timer(0.5. self, self.send)",
+            None,
+            NO_ATTRIBUTE.format("'float' object", "self"),
+        ),
+        (
+            "Here create_publisher expects a string",
+            "self.create_publisher(Twist, topic, 10)",
+            "self.create_publisher(topic, '/a', 10)",
+            NO_NAME.format("topic"),
+        ),
+        (
+            "There is a name node. Upper and lower case matter.",
+            "node = self; rclpy.spin(Node)",
+            "Node = self; rclpy.spin(Node)",
+            NO_NAME.format("Node"),
+        ),
+        ("There is a name node.", "node = self; rclpy.spin(Node)", "node = self; Node()", NO_NAME.format("Node")),
+        ("the object is called this", "this.count = 1", None, NO_NAME.format("this")),
+        ("A method can use self only if", "self.count = 1", None, NO_NAME.format("self")),
+        (
+            "is called here without a value for 'step'.",
+            "self.drive()",
+            "self.create_timer(1.0, self.drive)",
+            TOO_FEW.format("drive", "step"),
+        ),
+        (
+            "drive is called immediately. To pass the method itself",
+            "other(self.drive())",
+            "x = self.drive()",
+            TOO_FEW.format("drive", "step"),
+        ),
+        (
+            "A timer calls its callback without arguments.",
+            "self.create_timer(1.0, self.drive)",
+            "self.create_subscription(Pose, '/a', self.drive, 10)",
+            TOO_FEW.format("drive", "step"),
+        ),
+        (
+            "A subscription passes the message to its callback.",
+            "self.create_subscription(Pose, '/a', self.stop, 10)",
+            "self.create_timer(1.0, self.stop)",
+            TOO_MANY.format("stop", 1, "", 2),
+        ),
+        (
+            "A future passes itself to its callback.",
+            "future.add_done_callback(self.stop)",
+            "self.create_timer(1.0, self.stop)",
+            TOO_MANY.format("stop", 1, "", 2),
+        ),
+        (
+            "a timer calls its callback without arguments; a subscription passes the message".capitalize(),
+            "other(self.stop)",
+            "self.create_timer(1.0, self.stop)",
+            TOO_MANY.format("stop", 1, "", 2),
+        ),
+        (
+            "super is a function. Write super().__init__",
+            "super.__init__('a')",
+            None,
+            "TypeError: descriptor '__init__' requires a 'super' object but received a 'str'",
+        ),
+        (
+            "This call of shutdown ends ROS 2",
+            "rclpy.shutdown()\n        rclpy.spin(self)",
+            "rclpy.spin(self)  # crashed\n        rclpy.shutdown()",
+            "TypeError: 'NoneType' object does not support the context manager protocol",
+        ),
+        (
+            "min or max had nothing to compare",
+            "x = max([])",
+            None,
+            "ValueError: max() arg is an empty sequence",
+        ),
+        (
+            "An object of Driver can be called only if",
+            "self()",
+            None,
+            "TypeError: 'Driver' object is not callable",
+        ),
+        (
+            "self.other is None here",
+            "self.other.x",
+            "self.other.x + self.another.x",
+            NO_ATTRIBUTE.format("'NoneType' object", "x"),
+        ),
+        (
+            "You can create objects only of the parts",
+            "x = Spawn()",
+            None,
+            "NotImplementedError: Service classes can not be instantiated",
+        ),
+        (
+            "rclpy puts the feedback into another message",
+            "x = msg.remaining",
+            None,
+            NO_ATTRIBUTE.format("'RotateAbsolute_FeedbackMessage' object", "remaining"),
+        ),
+        (
+            "tkinter is Python's module for graphical windows",
+            "import tkinter",
+            None,
+            "ModuleNotFoundError: No module named 'tkinter'",
+        ),
+        (
+            "example_interfaces is a package of ROS 2",
+            "import example_interfaces",
+            None,
+            "ModuleNotFoundError: No module named 'example_interfaces'",
+        ),
+    ],
+)
+def test_a_sentence_is_printed_where_it_is_true_and_not_near_it(
+    words: str, true: str, near: str | None, error: str
+) -> None:
+    assert words in cause(true, error)
+    assert words not in cause(near or true, error if near else "ZeroDivisionError: division by zero")
+
+
+@pytest.mark.parametrize(("name", "words"), ROSPY)
+def test_what_replaces_a_name_of_rospy(name: str, words: str) -> None:
+    assert words in cause(f"rclpy.{name}()", NO_ATTRIBUTE.format("module 'rclpy'", name))
+    others = [other for other, _ in ROSPY if other != name]
+    assert not any(words in cause(f"rclpy.{each}()", NO_ATTRIBUTE.format("module 'rclpy'", each)) for each in others)
+
+
+INSIDE = "\n    def publish_it(self):\n        pass\n"
+OUTSIDE = "\ndef publish_it(self):\n    pass\n"
+
+
+@pytest.mark.parametrize(("methods", "found"), [(OUTSIDE, True), (INSIDE, False)])
+def test_a_class_that_ends_too_early_is_told(methods: str, *, found: bool) -> None:
+    source = DRIVER.format(line="Driver.other()").replace("\ndef outside", f"{methods}\ndef outside")
+    given = reported(source, NO_ATTRIBUTE.format("type object 'Driver'", "other")).cause
+    words = "publish_it is not indented, so the class ends above publish_it. Indent publish_it like the other methods."
+    assert (given == words) == found
+
+
+@pytest.mark.parametrize(("line", "found"), [("self.other.x", True), ("self.other.x + self.another.x", False)])
+def test_what_is_none_is_told_only_if_it_is_clear(line: str, *, found: bool) -> None:
+    given = cause(line, NO_ATTRIBUTE.format("'NoneType' object", "x"))
+    assert given.startswith("self.other is None here, so it has" if found else "The value is None here, so it has")
+
+
+@pytest.mark.parametrize(("made", "found"), [("    node = Driver()\n", True), ("    return Driver()\n", False)])
+def test_a_function_without_return_that_creates_the_node_is_told(made: str, *, found: bool) -> None:
+    source = f"{SOURCE.format(line='pass').replace('# crashed', '')}\ndef make():\n{made}\nnode = make()\n"
+    source += "rclpy.spin(node)  # crashed\n"
+    given = reported(source, NO_ATTRIBUTE.format("'NoneType' object", "executor")).cause
+    assert given.startswith("rclpy.spin was called with None instead of a node.")
+    assert ("make has no return, so it returns None." in given) == found
+
+
+@pytest.mark.parametrize(
+    ("files", "words"),
+    [
+        ({"my_robot_controller/speeds.py": ""}, "my_robot_controller/speeds.py exists, but you must import it"),
+        ({"speeds.py": ""}, "speeds.py is next to setup.py, so it is not installed."),
+        ({}, "No installed package has a module speeds."),
+    ],
+)
+def test_where_a_module_is_decides_what_is_told(files: dict[str, str], words: str) -> None:
+    given = reported(SOURCE.format(line="import speeds"), "ModuleNotFoundError: No module named 'speeds'", files)
+    assert words in given.cause
+    assert given.cause.count(" exists, but you must import it with") == words.count(" exists, but")
+
+
+@pytest.mark.parametrize(("name", "found"), [("count", True), ("another", False)])
+def test_a_class_in_place_of_an_object_is_told(name: str, *, found: bool) -> None:
+    given = cause(f"Driver.{name}", NO_ATTRIBUTE.format("type object 'Driver'", name))
+    assert (given == "Driver is a class. Add parentheses after the class name to create an object.") == found
