@@ -37,6 +37,11 @@ def packages() -> dict[str, Path]:
     return _resources("packages")
 
 
+def has_package(name: str) -> bool:
+    """Return whether the package is installed."""
+    return any((prefix / _INDEX / "packages" / name).exists() for prefix in prefixes())
+
+
 def contents(kind: str) -> dict[str, list[str]]:
     """Return the lines of each package's resource of this kind, such as "rclcpp_components", sorted by package."""
     return {

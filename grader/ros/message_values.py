@@ -8,8 +8,6 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-import yaml
-
 from grader.ros import index
 from grader.ros.failure import Ros2Error, did_you_mean
 from grader.ros.rendering import ARRAY
@@ -44,6 +42,8 @@ def parse(text: str, *, dictionary: bool = True) -> Any:  # noqa: ANN401
     Raises:
         Ros2Error: the string is not valid YAML, or `dictionary` is true and the value is not a dictionary.
     """
+    import yaml
+
     try:
         values = yaml.safe_load(text)
     except yaml.YAMLError as error:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
-
-import yaml
 
 TRUNCATED_AT = 128
 """The default maximum number of elements of an array, or characters of a string, that are printed."""
@@ -26,19 +25,6 @@ class Form:
     strings: bool = True
     flow: bool = False
     """Whether an array is printed on one line, as in "[1, 2]"."""
-
-
-class _Dumper(yaml.SafeDumper):  # type: ignore[misc]
-    """Writes each field of a message on a separate line, even in flow style, as the real `ros2` does."""
-
-
-_Dumper.add_representer(
-    dict,
-    lambda dumper, data: yaml.MappingNode(
-        "tag:yaml.org,2002:map",
-        [(dumper.represent_data(name), dumper.represent_data(value)) for name, value in data.items()],
-    ),
-)
 
 
 def is_message(value: Any) -> bool:  # noqa: ANN401
@@ -77,14 +63,36 @@ def to_yaml(value: Any, form: Form | None = None) -> str:  # noqa: ANN401
 
 def dumped(values: Any, form: Form) -> str:  # noqa: ANN401
     """Return plain dictionaries, lists, numbers and strings as YAML that ends with a newline."""
+    import yaml
+
     text: str = yaml.dump(
-        values, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=float("inf"), default_flow_style=form.flow
+        values, Dumper=_dumper(), sort_keys=False, allow_unicode=True, width=float("inf"), default_flow_style=form.flow
     )
     return text
 
 
+@cache
+def _dumper() -> Any:  # noqa: ANN401
+    """Return a dumper that writes each field on a separate line, even in flow style, as the real `ros2` does."""
+    import yaml
+
+    class Dumper(yaml.SafeDumper):  # type: ignore[misc]
+        pass
+
+    Dumper.add_representer(
+        dict,
+        lambda dumper, data: yaml.MappingNode(
+            "tag:yaml.org,2002:map",
+            [(dumper.represent_data(name), dumper.represent_data(value)) for name, value in data.items()],
+        ),
+    )
+    return Dumper
+
+
 def on_one_line(value: Any) -> str:  # noqa: ANN401
     """Return a message on one line, in the format that `ros2 topic pub` accepts, as in "{linear: {x: 0.0}}"."""
+    import yaml
+
     text: str = yaml.safe_dump(
         plain(value), sort_keys=False, allow_unicode=True, width=float("inf"), default_flow_style=True
     )

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_NONE: Mapping[str, str] = MappingProxyType({})
 
 
-@dataclass(frozen=True)
-class Group:
-    """A command group, which is the word after `ros2`.
+class Group(NamedTuple):
+    """A command group, which is the word after `ros2`. It is not a dataclass, whose import would slow each command.
 
     `verbs` maps the words that may follow the group to their help. A group without verbs is a command. `flags`
     maps options that may come before the verb to their help. With `runs_itself`, the group also works without a verb.
     """
 
     about: str
-    verbs: dict[str, str] = field(default_factory=dict)
-    flags: dict[str, str] = field(default_factory=dict)
+    verbs: Mapping[str, str] = _NONE
+    flags: Mapping[str, str] = _NONE
     runs_itself: bool = False
 
 

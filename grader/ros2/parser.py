@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
 import re
 from typing import TYPE_CHECKING, NoReturn
 
@@ -14,7 +15,7 @@ from grader.ros.failure import did_you_mean
 from grader.ros2.groups import GROUPS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
 MODULES = {
     # xml is a package in Python's standard library.
@@ -25,6 +26,18 @@ MODULES = {
 }
 """The names of modules that differ from the names of their groups or verbs."""
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
+
+
+class _Formatter(argparse.RawDescriptionHelpFormatter):
+    """A formatter that does not import shutil to get the width of the terminal."""
+
+    def __init__(self, prog: str) -> None:
+        columns = os.environ.get("COLUMNS", "")
+        try:
+            width = int(columns) if columns.isdecimal() and int(columns) else os.get_terminal_size(1).columns
+        except OSError:
+            width = 80
+        super().__init__(prog, width=(width or 80) - 2)
 
 
 class Parser(argparse.ArgumentParser):
@@ -49,7 +62,7 @@ def make_parser(words: Sequence[str]) -> Parser:
     root = Parser(
         prog="ros2",
         description="ros2 is an extensible command-line tool for ROS 2.",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        formatter_class=_Formatter,
     )
     root.add_argument(
         "--use-python-default-buffering",
@@ -62,11 +75,11 @@ def make_parser(words: Sequence[str]) -> Parser:
 
 
 def _add_words(
-    parser: argparse.ArgumentParser,
+    parser: Parser,
     kind: str,
-    about: dict[str, str],
+    about: Mapping[str, str],
     chosen: str | None,
-    add: Callable[[argparse.ArgumentParser, str], None],
+    add: Callable[[Parser, str], None],
 ) -> None:
     """Add the words that may come next, and call `add` to add the arguments of the chosen word."""
     width = max(map(len, about))
@@ -79,18 +92,18 @@ def _add_words(
         parser_class=Parser,
     )
     for name in sorted(about):
-        made = words.add_parser(
-            name,
-            prog=f"{parser.prog} {name}",
-            description=about[name],
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-        )
         if name == chosen:
+            made = words.add_parser(
+                name, prog=f"{parser.prog} {name}", description=about[name], formatter_class=_Formatter
+            )
             add(made, name)
+        else:
+            # Only the name is needed, and the parsers of all words would cost a third of the time of a command.
+            words.choices[name] = parser
 
 
-def _add_group(verb: str | None) -> Callable[[argparse.ArgumentParser, str], None]:
-    def add(parser: argparse.ArgumentParser, name: str) -> None:
+def _add_group(verb: str | None) -> Callable[[Parser, str], None]:
+    def add(parser: Parser, name: str) -> None:
         group = GROUPS[name]
         for flag, text in group.flags.items():
             parser.add_argument(flag, action="store_true", help=text)

@@ -5,11 +5,9 @@ from __future__ import annotations
 import json
 import os
 import socket
-import subprocess
 import time
 from typing import Any
 
-from grader.common.interpreter import interpreter
 from grader.ros2.daemon import socket_path
 
 ANSWER_S = 8.0
@@ -50,6 +48,11 @@ def start(*, debug: bool = False) -> None:
 
     With `debug`, the daemon logs to this terminal.
     """
+    # Most commands find a daemon.
+    import subprocess
+
+    from grader.common.interpreter import interpreter
+
     target = None if debug else subprocess.DEVNULL
     server = interpreter("-m", "grader.ros2.daemon.server", *(["--debug"] if debug else []), searches=True)
     subprocess.Popen(
