@@ -36,7 +36,7 @@ else:
 
 
 RECORDED = (".mcap", "/metadata.yaml")
-"""The file name extensions of a bag, which each student records."""
+"""The names of a bag's files. Each student records a separate bag."""
 
 
 @dataclass(frozen=True)

@@ -156,7 +156,7 @@ def _zip(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
 
 
 def _tar(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
-    """Yield the same values as `_zip`, but for a tar archive, which may be compressed with gzip."""
+    """Yield the same values as `_zip`, but for a tar archive, with or without compression by gzip."""
     file.seek(0)
     gzipped = file.read(2) == b"\x1f\x8b"
     file.seek(0)

@@ -110,8 +110,8 @@ def _this_machine_only() -> bool:
 def _leave_generator_out() -> None:
     """Import rosidl_generator_py without its templates and parser, which take a seventh of a verb's start-up time.
 
-    Message modules need only one small function of rosidl_generator_py, which itself omits the rest if `em` is not
-    installed.
+    Message modules need only one small function of rosidl_generator_py. If `em` is not installed, rosidl_generator_py
+    itself omits the other functions.
     """
     if "em" not in sys.modules:
         sys.modules["em"] = None  # type: ignore[assignment]

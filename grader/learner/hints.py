@@ -71,7 +71,7 @@ def _exercise(step: str | None, folder: Path | None) -> Exercise:
 
 
 def _part(exercise: Exercise, part: str) -> str:
-    """Return the letter of a part of an exercise, which the learner may type as d, D or d)."""
+    """Return the letter of a part of an exercise. The learner can type the letter as d, D or d)."""
     letter = part.lower().rstrip(")")
     parts = sorted({each.part for each in exercise.hints if each.part})
     if letter not in parts:

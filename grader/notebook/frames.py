@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 CHANNELS = ("shell", "control", "stdin", "iopub")
 """The channels. A frame contains the index of its channel in this list."""
 ORDER = len(CHANNELS)
-"""The channel of the first frame, which contains the key for the signatures."""
+"""The channel of the first frame. The first frame contains the key for the signatures."""
 CHUNK = 1024 * 1024
 """The number of bytes that are read from a pipe at a time."""
 MOST_PARTS = 1000

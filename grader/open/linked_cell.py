@@ -98,7 +98,7 @@ class LinkedCell:
 
 
 def linkable() -> bool:
-    """Return whether a node in a cell can reach the nodes of this machine, which needs a sandbox and Fast DDS."""
+    """Return whether a node in a cell can reach the nodes of this machine. This requires a sandbox and Fast DDS."""
     return os.environ.get("RMW_IMPLEMENTATION", FAST_DDS) == FAST_DDS and bubblewrap.usable()
 
 

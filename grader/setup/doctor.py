@@ -165,7 +165,7 @@ def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
 
 
 def look_at_colcon() -> Line:
-    """Return a line about the colcon of this Python, which builds submissions."""
+    """Return a line about colcon, which is installed in this Python and builds submissions."""
     try:
         version = metadata.version("colcon-core")
     except metadata.PackageNotFoundError:

@@ -189,7 +189,7 @@ def find_pythons(path: str) -> Iterator[Python]:
 def choose_python(
     pythons: Iterable[Python], *, root: bool, wanted: Optional[Tuple[int, int]] = None
 ) -> Optional[Python]:
-    """Return the first suitable interpreter for .venv. Complete interpreters are preferred to those that lack modules.
+    """Return the first suitable interpreter for .venv. Complete interpreters are preferred to incomplete ones.
 
     For root, an interpreter that other users can also run (not in root's home) is preferred, since the sandbox drops
     root's rights. `wanted` is the only suitable (major, minor) version: the version that a sourced ROS 2 was built for.

@@ -41,7 +41,7 @@ class Attack:
 
     An attack on the simulator leaves a trace in the recording even in a sandbox, because the grader judges the
     recording. `passes` is a check that would pass if `without` were ignored ("interventions", "participants").
-    `reaches` is a topic, an intervention or a text in the recording, which shows that the attack was made.
+    `reaches` is a topic, an intervention or a text in the recording that shows that the attack was made.
     """
 
     name: str

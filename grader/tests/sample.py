@@ -68,7 +68,7 @@ def lives_in_wall_time(case: Case) -> bool:
 
 @cache
 def without_test() -> frozenset[str]:
-    """Return at most MOST_OF_GROUP diagnoses of each group, whose ids no test of the checks expects.
+    """Return, for each group, at most MOST_OF_GROUP diagnoses whose ids no test of the checks expects.
 
     An id of one word can appear in a test for another reason, so its appearance does not count.
     """

@@ -261,7 +261,7 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
 
 
 def _members(scene: CrashScene, own: ast.ClassDef) -> set[str]:
-    """Return the methods and attributes of a class and of its base classes that are defined in the node's files."""
+    """Return the methods and attributes that the node's files define for a class and its base classes."""
     nodes = [node for module in scene.evidence.code.modules for node in module.nodes]
     known = {node.name: node for node in nodes if isinstance(node, ast.ClassDef)}
     family, waiting = [own], [own]

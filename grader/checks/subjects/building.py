@@ -49,7 +49,7 @@ def plain_files(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def builds(evidence: Evidence, _: NoParams) -> Finding:
-    """The package builds with colcon, which installs its Python modules."""
+    """Check that colcon builds the package and installs its Python modules."""
     build = evidence.built
     known = early(evidence, _)
     if known is not None:

@@ -100,7 +100,7 @@ def mutants_of(file: Path) -> list[Mutant]:
 
 
 def _says_nothing(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> bool:
-    """Return whether the statement is a `return None` at the end of a function, which changes nothing."""
+    """Return whether the statement is a `return None` without an effect, at the end of a function."""
     if not (isinstance(node, cst.Return) and isinstance(node.value, cst.Name) and node.value.value == "None"):
         return False
     line = parents[node]

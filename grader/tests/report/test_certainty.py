@@ -65,7 +65,7 @@ def test_every_diagnosis_is_a_fact_or_a_possibility_that_a_try_can_prove() -> No
 
 
 def texts_of_causes() -> Iterator[tuple[str, str]]:
-    """Yield (diagnosis, text) for each Cause(...) in the code of the checks whose diagnosis is a string literal."""
+    """Yield (diagnosis, text) for each Cause(...) in the code of the checks, if the diagnosis is a string literal."""
     for file in sorted((ROOT / "grader/checks").rglob("*.py")):
         for function in (
             each for each in ast.walk(ast.parse(file.read_text("utf-8"))) if isinstance(each, ast.FunctionDef)
