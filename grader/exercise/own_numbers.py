@@ -29,7 +29,7 @@ Value = str | float | int
 _INVISIBLE = frozenset(
     {0x034F, 0x115F, 0x1160, 0x17B4, 0x17B5, 0x2800} | {*range(0x180B, 0x1810), *range(0xFE00, 0xFE10)}
 )
-"""Letters and marks that are drawn as nothing: Default_Ignorable_Code_Point in Unicode's DerivedCoreProperties.txt,
+"""Invisible letters and marks: Default_Ignorable_Code_Point in Unicode's DerivedCoreProperties.txt,
 without the characters in UNSAFE_CATEGORIES, and the empty Braille pattern."""
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 USUAL_RADIUS_M = 2.0
 """A random start leaves room for a circle of this radius (m), unless a check needs a different radius."""
 DEFAULT_SEED = 1
-"""The seed for scenarios with random values, if the user gives none."""
+"""The seed for scenarios with random values, if the user gives no seed."""
 
 
 def plan_of(evidence: Evidence, clock: ClockName, *, choice: ClockChoice, seed: int | None) -> Plan:

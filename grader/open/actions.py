@@ -35,7 +35,7 @@ class Actions:
     programs: Programs
 
     def all(self) -> Mapping[str, Callable[[Request], Any]]:
-        """Return the actions by name. Some are coroutines."""
+        """Return the actions by name. Some actions are coroutines."""
         threaded = {"start": self.start, "hint": self.hint, "rerun": self.rerun, "ask": self.ask}
         return {**threaded, "turtlesim": self.turtlesim, "node": self.node}
 

@@ -39,7 +39,7 @@ PARTS = {
 
 ALWAYS = ("setup", "grader")
 """The parts of every set-up. The packages of these two parts are not repeated in other parts. All other parts,
-including `ros`, are optional, so each of them lists all packages that it needs in addition to these.
+including `ros`, are optional. Therefore, an optional part lists all packages that it needs beyond the two parts.
 """
 
 SOURCED_BRINGS = frozenset({"numpy", "empy"})

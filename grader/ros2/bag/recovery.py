@@ -30,7 +30,7 @@ class Saved(NamedTuple):
     type: str
     data: bytes
     definition: str
-    """The definition of the type, or an empty string if the file has none."""
+    """The definition of the type, or an empty string if the file has no definition."""
 
 
 def recover(folder: Path) -> None:

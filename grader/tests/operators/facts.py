@@ -3,7 +3,7 @@
 The only inputs are the difference between the correct and the wrong package, the source of the wrong package, and its
 recording. An outcome names the mistake in two cases: the outcome refers to a changed line and mentions a changed word
 of this line; or it refers to a line with a name that was replaced elsewhere, and mentions the old and the new name. A
-statement is false if it contradicts a fact about these inputs: sentences.py recognises each form of sentence and
+statement is false if it contradicts a fact about these inputs: sentences.py recognizes each form of sentence and
 decides whether it is true.
 """
 
