@@ -6,10 +6,11 @@ templates insert HTML from Markdown and outputs into these pages without escapin
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import bleach
-from nbconvert.filters import markdown2html
+from nbconvert.filters import get_metadata
+from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
 
 if TYPE_CHECKING:
     from traitlets.config import Config
@@ -24,13 +25,37 @@ TAGS = {
 ATTRIBUTES = {**bleach.sanitizer.ALLOWED_ATTRIBUTES, "span": ["class"], "div": ["class"]}
 
 
+class _NoPictures(dict[str, dict[str, str]]):
+    """The pictures attached to a cell, all of them empty. Without it, nbconvert refuses a page with such a picture."""
+
+    def __contains__(self, name: object) -> bool:
+        return True
+
+    def __missing__(self, name: str) -> dict[str, str]:
+        return {SHOWN[0]: ""}
+
+
 def safe_html(markdown: str) -> str:
-    """Render Markdown as HTML with only the allowed tags and attributes."""
-    return str(bleach.clean(markdown2html(markdown), tags=TAGS, attributes=ATTRIBUTES, strip=True))
+    """Render Markdown as HTML with only the allowed tags and attributes. Pictures are left out."""
+    renderer = IPythonRenderer(escape=False, attachments=_NoPictures())
+    html = MarkdownWithMath(renderer=renderer).render(markdown)
+    return str(bleach.clean(html, tags=TAGS, attributes=ATTRIBUTES, strip=True))
+
+
+def safe_metadata(output: Any, key: str, mimetype: str | None = None) -> float | None:  # noqa: ANN401 - nbformat's output
+    """Return the width or height of a picture if it is a number, and None for all other values.
+
+    nbconvert's templates insert these values without quotes, so that a text could add attributes to the element.
+    """
+    try:
+        value = get_metadata(output, key, mimetype)  # type: ignore[no-untyped-call]
+    except AttributeError:
+        return None  # the kernel sent something else than an object
+    return value if type(value) in (int, float) else None
 
 
 def configure_pages(config: Config) -> None:
     """Configure nbgrader's pages to show only harmless content."""
     config.HTMLExporter.sanitize_html = True
-    config.HTMLExporter.filters = {"markdown2html": safe_html}
+    config.HTMLExporter.filters = {"markdown2html": safe_html, "get_metadata": safe_metadata}
     config.NbConvertBase.display_data_priority = SHOWN

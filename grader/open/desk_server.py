@@ -110,7 +110,7 @@ class DeskServer:
 
     async def _live(self, socket: WebSocket) -> None:
         shown = socket.query_params.get("token", "")
-        if not self.door.opens(shown):
+        if not self.door.opens(shown, socket.client):
             await socket.close(4403)
             return
         await socket.accept()

@@ -11,6 +11,8 @@ import hmac
 import secrets
 from typing import TYPE_CHECKING
 
+from grader.view.peer import is_of_another_user
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -43,7 +45,8 @@ def admitted(token: str, shown: str) -> bool:
 class Door:
     """Admits a page that has the token or a code that is valid only once.
 
-    The browser that this process starts gets a code, because every user of the machine can read command lines.
+    The browser that this process starts gets a code, because every user of the machine can read command lines. Another
+    user could be faster than the browser, so a code admits only programs of this user.
     """
 
     def __init__(self, token: str) -> None:
@@ -56,9 +59,12 @@ class Door:
         self._codes.add(made)
         return made
 
-    def opens(self, shown: str) -> bool:
-        """Return whether a page with this token or code may connect. A code is valid only once."""
-        if shown in self._codes:
+    def opens(self, shown: str, client: tuple[str, int] | None) -> bool:
+        """Return whether a page with this token or code may connect. A code is valid only once.
+
+        `client` is the address and port of the page's end of the connection.
+        """
+        if shown in self._codes and not is_of_another_user(client):
             self._codes.discard(shown)
             return True
         return admitted(self.token, shown)

@@ -57,7 +57,7 @@ def application(hub: Hub, controls: Controls, door: Door, index: str = "index.ht
 
     async def live(socket: WebSocket) -> None:
         shown = socket.query_params.get("token", "")
-        if not door.opens(shown):
+        if not door.opens(shown, socket.client):
             await socket.close(4403)
             return
         await socket.accept()

@@ -32,6 +32,8 @@ _SETTINGS: dict[str, Any] = {
     "ws_per_message_deflate": False,
     "ws_max_size": 65536,
     "lifespan": "off",
+    # Do not trust an address that the client sends in a header.
+    "proxy_headers": False,
     "timeout_graceful_shutdown": 1,
     # Limit the connections, so that clients that never finish cannot use up the process's files.
     "limit_concurrency": 200,

@@ -24,6 +24,14 @@ OUTPUTS: tuple[dict[str, str], ...] = (
     {"application/javascript": "steal()"},
 )
 WIDGETS = {"application/vnd.jupyter.widget-state+json": {"state": {"a": f"</script>{SCRIPT}"}}}
+PICTURES = "![a](attachment:a.png)![b](attachment:b.svg)![c](data:image/svg+xml,<svg onload=steal()>)"
+SIZES: tuple[dict[str, Any], ...] = (
+    {"image/png": {"width": "1 onerror=steal()", "height": 2}},
+    {"image/png": {"height": "1 onerror=steal()"}, "width": 3},
+    {"width": "1 onerror=steal()", "needs_background": "x onerror=steal()", "alt": "' onerror='steal()"},
+    {"image/png": ["onerror=steal()"]},
+)
+"""Metadata of pictures, which a kernel may send with each picture."""
 RESOURCES = {
     "nbgrader": {"notebook": "n", "assignment": "a", "student": "s"},
     **dict.fromkeys(("notebook_id", "assignment_id", "submission_id", "base_url", "mathjax_url"), "x"),
@@ -34,11 +42,12 @@ RESOURCES = {
 
 def cells() -> list[Any]:
     made = [
-        new_markdown_cell(f"{SCRIPT}\n\n# Title\n\n<a href='javascript:steal()' onclick='steal()'>x</a>"),  # type: ignore[no-untyped-call]
+        new_markdown_cell(f"{SCRIPT}\n\n# Title\n\n<a href='javascript:steal()' onclick='steal()'>x</a>{PICTURES}"),  # type: ignore[no-untyped-call]
         new_code_cell(  # type: ignore[no-untyped-call]
             SCRIPT,
             outputs=[
                 *(new_output("display_data", data=data) for data in OUTPUTS),  # type: ignore[no-untyped-call]
+                *(new_output("display_data", data={"image/png": "AAAA"}, metadata=size) for size in SIZES),  # type: ignore[no-untyped-call]
                 new_output("stream", text=SCRIPT),  # type: ignore[no-untyped-call]
             ],
         ),
@@ -61,4 +70,7 @@ def test_nothing_of_a_notebook_is_a_script_in_the_formgrader() -> None:
     assert "plain" in page
     assert "<h1>Title" in page
     assert "steal()" in page  # the script is shown as text
+    assert 'height="2"' in page
+    assert 'width="3"' in page
+    assert re.findall(r"<img[^>]* on\w+=", page) == []
     assert re.findall(r"<script[^>]*>\s*steal|(?:href|src|on\w+)\s*=\s*[\"']?[^\"'>]*steal|<svg onload", page) == []

@@ -1,8 +1,20 @@
 from __future__ import annotations
 
+import os
+import socket
+import subprocess
+import sys
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
 import pytest
 
+from grader.tests.observed_host import USER
 from grader.view.guard import Door, admitted, answer_headers, refusal
+from grader.view.serving import _SETTINGS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1:4711", "localhost:4711", "localhost"])
@@ -50,4 +62,46 @@ def test_the_policy_lets_nothing_in_from_elsewhere() -> None:
 def test_a_code_opens_once_and_the_token_always() -> None:
     door = Door("secret")
     code = door.code()
-    assert [door.opens(shown) for shown in (code, code, "secret", "secret", "")] == [True, False, True, True, False]
+    assert [door.opens(shown, None) for shown in (code, code, "secret", "secret", "")] == [
+        True,
+        False,
+        True,
+        True,
+        False,
+    ]
+
+
+CONNECTS = "import socket, sys; link = socket.create_connection(('127.0.0.1', int(sys.argv[1]))); sys.stdin.read()"
+
+
+@contextmanager
+def connected(*become: str) -> Iterator[tuple[str, int]]:
+    """Connect from another process, which may be another user's. Yield the address and port of its end."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        command = [*become, sys.executable, "-I", "-c", CONNECTS, str(server.getsockname()[1])]
+        with subprocess.Popen(command, stdin=subprocess.PIPE) as program:
+            link, client = server.accept()
+            with link:
+                yield client
+            assert program.stdin is not None
+            program.stdin.close()
+
+
+def test_a_program_of_this_user_may_use_a_code() -> None:
+    door = Door("secret")
+    with connected() as client:
+        assert door.opens(door.code(), client)
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can become another user")
+def test_another_user_who_reads_the_command_line_cannot_use_its_code() -> None:
+    door = Door("secret")
+    code = door.code()
+    with connected("setpriv", f"--reuid={USER}", f"--regid={USER}", "--clear-groups", "--") as client:
+        assert door.opens("secret", client)
+        assert not door.opens(code, client)
+    assert door.opens(code, None), "the browser can still use it"
+
+
+def test_a_client_cannot_choose_its_address() -> None:
+    assert _SETTINGS["proxy_headers"] is False

@@ -1,0 +1,32 @@
+"""The user at the other end of a connection from this machine, from /proc/net/tcp and tcp6 (proc(5))."""
+
+from __future__ import annotations
+
+import os
+import socket
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_TABLES = (Path("/proc/net/tcp"), Path("/proc/net/tcp6"))
+
+
+def is_of_another_user(client: tuple[str, int] | None) -> bool:
+    """Return whether another user of this machine, but not root, opened the connection with this address and port."""
+    return client is not None and any(user not in (0, os.getuid()) for user in _users(*client))
+
+
+def _users(host: str, port: int) -> Iterator[int]:
+    """Yield the user of each socket with this address. There is none for a connection from another machine."""
+    # The kernel writes addresses as hexadecimal numbers in the byte order of the processor.
+    address = f"{int.from_bytes(socket.inet_aton(host), 'little'):08X}"
+    names = (f"{address}:{port:04X}", f"0000000000000000FFFF0000{address}:{port:04X}")
+    for table in _TABLES:
+        with suppress(OSError):
+            for line in table.read_text("ascii").splitlines()[1:]:
+                words = line.split()
+                if words[1] in names:
+                    yield int(words[7])
