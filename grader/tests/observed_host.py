@@ -154,6 +154,12 @@ class Host:
         return found
 
 
+def readable_by_others(path: Path) -> bool:
+    """Return whether an ordinary user can read the file."""
+    command = ["setpriv", f"--reuid={USER}", f"--regid={USER}", "--clear-groups", "test", "-r", str(path)]
+    return os.geteuid() != 0 or subprocess.run(command, check=False).returncode == 0
+
+
 def _ours() -> list[Path]:
     """Return the folders of the grader and its interpreter."""
     found = [ROOT, Path(sys.prefix), Path(sys.base_prefix)]

@@ -6,7 +6,6 @@ import dataclasses
 import json
 import os
 import shlex
-import subprocess
 import sys
 import tempfile
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -26,7 +25,7 @@ from grader.sandbox import bubblewrap
 from grader.tests.attack import Attack, make_attack, read_attacks
 from grader.tests.case import copy_solution
 from grader.tests.gradings import AT_ONCE
-from grader.tests.observed_host import SECRET, USER, Host, Left
+from grader.tests.observed_host import SECRET, Host, Left, readable_by_others
 from grader.trial.recorder import NAMESAKE, OWN_NAMESPACE
 
 if TYPE_CHECKING:
@@ -119,11 +118,6 @@ def each(which: Callable[[Attack], bool], *, sampled: bool = True) -> pytest.Mar
 
     chosen = [pytest.param(attack, id=attack.name, marks=marks(attack)) for attack in ATTACKS if which(attack)]
     return pytest.mark.parametrize("attack", chosen)
-
-
-def readable_by_others(path: Path) -> bool:
-    command = ["setpriv", f"--reuid={USER}", f"--regid={USER}", "--clear-groups", "test", "-r", str(path)]
-    return os.geteuid() != 0 or subprocess.run(command, check=False).returncode == 0
 
 
 @pytest.mark.clocks("defended")

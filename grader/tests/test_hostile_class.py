@@ -5,17 +5,22 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.ros import installation, underlay
 from grader.sandbox import bubblewrap
 from grader.tests.attack import Attack, make_attack, read_attacks
 from grader.tests.case import CASES, copy_solution, make_submission, read_case
 from grader.tests.classroom.a_class import GRADER, STEP, environment, judged, reports
+from grader.tests.observed_host import USER, readable_by_others
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from collections.abc import Iterator
 
 pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="the sandbox is not available")
 CLASS = 40
@@ -30,17 +35,30 @@ HONEST = (
     "mistakes/332-clockwise",
 )
 """The submissions of the honest students: our solution, or a case."""
-ATTACKS = tuple(attack for attack in read_attacks() if attack.base == STEP)
-SAMPLE = tuple(attack for attack in ATTACKS if attack.sample)[:4]
+TESTS = "12-tests"
+HONEST_TESTS = ("solution", "mistakes/1206-functions-not-named-test")
+ATTACKS = read_attacks()
+CIRCLES = tuple(attack for attack in ATTACKS if attack.base == STEP)
+SAMPLE = tuple(attack for attack in CIRCLES if attack.sample)[:4]
 EACH = CLASS - len(HONEST)
 
 
-def make_honest(folder: Path, names: tuple[str, ...]) -> Path:
+@dataclass(frozen=True)
+class Class:
+    """Honest submissions and attacks for one step, and the folder for the class and its results."""
+
+    folder: Path
+    step: str = STEP
+    honest: tuple[str, ...] = HONEST
+    as_user: bool = False
+
+
+def make_honest(folder: Path, step: str, names: tuple[str, ...]) -> Path:
     """Write the honest submissions below the new folder."""
     for number, name in enumerate(names):
         to = folder / f"honest-{number}"
         if name == "solution":
-            copy_solution(STEP, to / "my_robot_controller")
+            copy_solution(step, to / "my_robot_controller")
         else:
             make_submission(read_case(CASES.parent / name), to)
     return folder
@@ -55,21 +73,29 @@ def is_crowded_by_others(out: Path) -> bool:
     )
 
 
-def graded(folder: Path, out: Path) -> Path:
+def graded(one: Class, name: str) -> Path:
     """Grade a class. The command must exit with 0."""
-    command = [GRADER, "grade", str(folder), "--exercise", STEP, "--out", str(out)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment())
+    out = one.folder / f"reports-{name}"
+    command = [GRADER, "grade", str(one.folder / name), "--exercise", one.step, "--out", str(out)]
+    env = environment()
+    if one.as_user:
+        env |= {"HOME": str(one.folder), "XDG_CACHE_HOME": str(one.folder / "cache")}
+        subprocess.run(["chown", "-R", f"{USER}:{USER}", str(one.folder)], check=True)
+        command = ["setpriv", f"--reuid={USER}", f"--regid={USER}", "--clear-groups", "--inh-caps=-all", "--", *command]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=env, cwd=one.folder)
     expected = (0, 3) if is_crowded_by_others(out) else (0,)
     assert done.returncode in expected, done.stdout + done.stderr
     return out
 
 
-def assert_untouched(tmp_path: Path, honest: tuple[str, ...], attacks: tuple[Attack, ...]) -> None:
-    alone = graded(make_honest(tmp_path / "alone", honest), tmp_path / "reports-alone")
-    shutil.copytree(tmp_path / "alone", tmp_path / "class")
+def assert_untouched(one: Class, attacks: tuple[Attack, ...]) -> None:
+    if one.as_user and (interfaces := underlay.ensure(installation.find_ros())):
+        shutil.copytree(interfaces, one.folder / "cache/grader" / interfaces.name, symlinks=True)
+    make_honest(one.folder / "alone", one.step, one.honest)
+    shutil.copytree(one.folder / "alone", one.folder / "class")
     for attack in attacks:
-        make_attack(attack, tmp_path / "class" / attack.name)
-    together = graded(tmp_path / "class", tmp_path / "reports")
+        make_attack(attack, one.folder / "class" / attack.name)
+    alone, together = graded(one, "alone"), graded(one, "class")
     expected, judgements = judged(alone), judged(together)
     assert judgements.keys() == expected.keys() | {attack.name for attack in attacks}
     assert {student: judgements[student] for student in expected} == expected
@@ -77,14 +103,43 @@ def assert_untouched(tmp_path: Path, honest: tuple[str, ...], attacks: tuple[Att
     assert [attack.name for attack in attacks if points[attack.name] > attack.most] == []
 
 
-def test_a_class_with_some_attacks(tmp_path: Path) -> None:
-    assert_untouched(tmp_path, HONEST[:3], SAMPLE)
+@pytest.fixture(params=["as the caller", "as an ordinary user"])
+def as_user(request: pytest.FixtureRequest) -> bool:
+    if request.param == "as the caller":
+        return False
+    if os.geteuid() != 0:
+        pytest.skip("the other tests already run as an ordinary user")
+    if not readable_by_others(Path(__file__)):
+        pytest.skip("other users cannot read this folder")
+    return True
+
+
+@pytest.fixture
+def folder() -> Iterator[Path]:
+    """Return a folder that other users can enter, unlike pytest's own."""
+    with tempfile.TemporaryDirectory(prefix="hostile-class-") as named:
+        Path(named).chmod(0o755)
+        yield Path(named)
+
+
+def test_a_class_with_some_attacks(folder: Path) -> None:
+    assert_untouched(Class(folder, honest=HONEST[:3]), SAMPLE)
 
 
 @pytest.mark.exhaustive
-@pytest.mark.parametrize("first", range(0, len(ATTACKS), EACH))
-def test_a_class_of_forty_with_every_attack(first: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize("first", range(0, len(CIRCLES), EACH))
+def test_a_class_of_forty_with_every_attack(first: int, folder: Path, *, as_user: bool) -> None:
     """The last class is filled up with the first attacks, so that each class has forty submissions."""
-    attacks = (*ATTACKS, *ATTACKS)[first : first + EACH]
+    attacks = (*CIRCLES, *CIRCLES)[first : first + EACH]
     assert len(attacks) + len(HONEST) == CLASS
-    assert_untouched(tmp_path, HONEST, attacks)
+    assert_untouched(Class(folder, as_user=as_user), attacks)
+
+
+@pytest.mark.exhaustive
+def test_a_class_with_every_attack_on_the_tests_of_step_12(folder: Path, *, as_user: bool) -> None:
+    attacks = tuple(attack for attack in ATTACKS if attack.base == TESTS)
+    assert_untouched(Class(folder, TESTS, HONEST_TESTS, as_user), attacks)
+
+
+def test_every_attack_is_in_a_class() -> None:
+    assert {attack.base for attack in ATTACKS} == {STEP, TESTS}

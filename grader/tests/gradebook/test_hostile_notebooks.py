@@ -201,6 +201,27 @@ def with_links(folder: Path, secret: Path) -> None:
     os.mkfifo(folder / "pipe.txt")
 
 
+def edited(folder: Path, change: Callable[[Any], object]) -> None:
+    file = folder / f"{HOMEWORK}.ipynb"
+    notebook = nbformat.read(file, as_version=4)  # type: ignore[no-untyped-call]
+    change(notebook)
+    nbformat.write(notebook, file)  # type: ignore[no-untyped-call]
+
+
+def of_version(version: object) -> Callable[[Path, Path], object]:
+    """Add a cell with nbgrader's metadata in another version. nbgrader itself then stops, and asks for an update."""
+    cell = code("2")
+    cell.metadata = {"nbgrader": {"schema_version": version, "grade": False, "solution": False, "locked": False}}
+    return lambda folder, _: edited(folder, lambda notebook: notebook.cells.append(cell))
+
+
+def with_a_picture(folder: Path, _: Path) -> None:
+    """Add a picture that the student has attached to a cell, and one that does not exist."""
+    cell = new_markdown_cell("![mine](attachment:a.png) ![none](attachment:b.png)")  # type: ignore[no-untyped-call]
+    cell.attachments = {"a.png": {"image/png": "AAAA"}}
+    edited(folder, lambda notebook: notebook.cells.append(cell))
+
+
 def beside(folder: Path, secret: Path) -> None:
     (folder / "notes.txt").symlink_to(secret)
     sparse(folder / "large.txt")
@@ -218,6 +239,8 @@ BESIDE: dict[str, Callable[[Path, Path], object]] = {
     "never": lambda folder, _: (folder / readable.TIMESTAMP).write_text("yesterday evening"),
     "deep": lambda folder, _: (folder / f"{HOMEWORK}.ipynb").write_text("[" * 100_000),
     "blocks": lambda folder, _: pipe(folder / f"{HOMEWORK}.ipynb"),
+    "newer": of_version(99),
+    "picture": with_a_picture,
 }
 """Maps a student to what is wrong with the student's folder in submitted/."""
 
@@ -244,7 +267,7 @@ def test_collect_takes_only_regular_files_of_the_submission(hostile: Hostile) ->
 
 def test_autograde_continues_after_submissions_that_attack_it(hostile: Hostile) -> None:
     full = {name for name, score in hostile.scores.items() if score == 1.0}
-    assert full == {"anna", "beside", "links"}
+    assert full == {"anna", "beside", "links", "newer", "picture"}
     assert TITLE not in hostile.graded
     for student in ("never", "deep", "blocks"):
         assert f"error processing assignment '{HOMEWORK}' for student '{student}'" in hostile.graded
