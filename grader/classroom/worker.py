@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from grader.classroom.task import Done, Pace, Task
 
 Message = tuple[Literal["tells"], str] | tuple[Literal["now"], "Pace"] | tuple[Literal["done"], "Done"]
-"""The messages that a worker sends. It also sends ("fails", text) for a MachineError that no submission caused."""
+"""The messages that a worker sends, besides ("fails", text) for a MachineError that no submission caused."""
 
 _LAST_WORDS = 1000
 
@@ -55,7 +55,7 @@ class Worker:
         self.connection: Connection = Connection(ours.detach())
 
     def send(self, task: Task) -> None:
-        """Send a task to the worker, one at a time. If the process has exited, the next `receive` reports that."""
+        """Send a task to the worker, one at a time. If the process has exited, the next `receive` reports the exit."""
         with suppress(BrokenPipeError, ConnectionResetError):
             self.connection.send(task)
 

@@ -120,7 +120,7 @@ def _leave_generator_out() -> None:
 
 
 def _domain() -> int:
-    """Return the domain id. Raise Ros2Error if it is invalid, because Fast DDS would terminate the process."""
+    """Return the domain id. Raise Ros2Error if the id is invalid, because Fast DDS would terminate the process."""
     text = os.environ.get("ROS_DOMAIN_ID", "") or "0"
     if not text.isdecimal() or int(text) > HIGHEST_DOMAIN:
         message = f"ROS_DOMAIN_ID is '{text}'; a whole number from 0 to {HIGHEST_DOMAIN} was expected"

@@ -1,4 +1,4 @@
-"""The files other than a submission's that the reading process may open: Python's, the grader's, and the lessons."""
+"""The files that the reading process can open besides a submission: Python's files, the grader's files, and lessons."""
 
 from __future__ import annotations
 

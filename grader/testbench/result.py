@@ -66,7 +66,7 @@ class BenchResult:
 
 @dataclass(frozen=True)
 class Ended:
-    """What is known about a run after its end, before its report (JSON) is read.
+    """The data about a run that has ended, without its report, which has not been read yet (JSON).
 
     A student's process could have written the report.
     """

@@ -40,7 +40,7 @@ _TYPES_AHEAD = (
 )
 _HEADER = struct.Struct("<i?dI")
 READY = b"ready\n"
-"""The session writes this before any of the student's code runs. A failure after this line is not the machine's
+"""The session writes this line before any of the student's code runs. A failure after this line is not the machine's
 fault."""
 _MOST_REPORT = 64 * 1024
 _DUMPABLE, _PARENT_DEATH = 4, 1

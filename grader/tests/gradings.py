@@ -24,7 +24,7 @@ AT_ONCE = max(1, (os.cpu_count() or 1) // int(os.environ.get("PYTEST_XDIST_WORKE
 """The number of cases that are graded in parallel. Together with the other test processes, these cases use every
 processor."""
 HANG_S = 300.0
-"""This time (s) is longer than any time limit of the grader. A command that takes longer has hung."""
+"""This time (s) is longer than any time limit of the grader. A command that takes longer than this time has hung."""
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ ASLEEP_S = 20.0
 WORKED_S = 20.0
 """The maximum CPU time that a node may use before it waits for its clock (s)."""
 HANDSHAKE_S = 100.0
-"""The maximum wall time until a node waits for its clock (s). A node can reach it only on a crowded machine. The limit
-for the whole trial is slightly higher (trial.py)."""
+"""The maximum wall time until a node waits for its clock (s). A node can reach this limit only on a crowded machine.
+The limit for the whole trial is slightly higher (trial.py)."""
 TICK_CPU_S = 1.0
 """If a node works longer than this on one frame, it counts as never idle (s of CPU time)."""
 TICK_S = 30.0

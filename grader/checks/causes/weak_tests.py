@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from grader.submission.pytest_files import TestCode, TestFunction
 
 CLOCKS = frozenset({"time", "monotonic", "perf_counter", "monotonic_ns", "time_ns", "perf_counter_ns"})
-"""Functions of the module time that return the wall time."""
+"""Functions of Python's module `time` that return the wall time."""
 RAISING = frozenset({"raises", "fail", "warns"})
 """Pytest functions that make a test fail."""
 CATCHES_ALL = frozenset({"AssertionError", "Exception", "BaseException"})

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from grader.trial.observed import Call, Goal
 
 SAME_TIME_S = 0.1
-"""A goal that begins or ends within this time of a call may be active or not when the call arrives (s)."""
+"""If a goal begins or ends within this time of a call (s), the goal can be active or inactive when the call arrives."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -40,7 +40,7 @@ class Cluster:
         self.address = json.loads(file.read_text())["address"].removeprefix("tcp://")
 
     def worker(self, *options: str) -> subprocess.Popen[bytes]:
-        """Start a worker with one thread. With a nanny, which is the default, a worker that dies is replaced."""
+        """Start a worker with one thread. With a nanny process (the default), a worker that dies is replaced."""
         return self._start("worker", f"tcp://{self.address}", "--nthreads", "1", *options)
 
     def _start(self, *arguments: object) -> subprocess.Popen[bytes]:

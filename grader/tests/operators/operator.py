@@ -101,7 +101,7 @@ def anywhere(make: Make) -> Make:
 def remove_line(pattern: str, *, file: str = "") -> Make:
     """Return an operator that removes a line that matches the pattern.
 
-    A removed statement may be replaced by `pass`.
+    A removed statement can be replaced by `pass`.
     """
     is_code = not file
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 SLOW = {"dataclasses", "inspect", "json", "shutil", "subprocess"}
-"""Modules of Python that cost more than 2 ms. None of the look-ups needs them."""
+"""Modules of Python whose import takes more than 2 ms. No command that looks up names needs these modules."""
 SLOWEST = {"numpy", "rclpy", "rosbags", "yaml"}
 """The arguments of a verb do not need these modules."""
 PARSERS = """

@@ -98,7 +98,7 @@ def who_may_act() -> bool:
 
 
 def a_request_without_an_executor() -> dict[str, Any]:
-    """Return what is recorded of a request that is answered by take_in, and the response that the client gets."""
+    """Return what is recorded of a request that the method `take_in` answers, and the response that the client gets."""
     stage = _stage()
     student = rclpy.create_node("student")
     spawn = student.create_client(Spawn, "/spawn")
