@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.edit import at
+from grader.common.words import shorten
 from grader.submission.constants import number, written
 from grader.submission.where import Where
 
@@ -33,12 +34,23 @@ def timer_fault(evidence: Evidence) -> Cause | None:
             name = ast.unparse(called.func)
             fix = at(Where(timer.module.file, called.lineno), f"{name}()", name)
             return Cause("callback-called", text, timer.where).fixed_by(fix)
+        named = _named_by_lambda(timer.argument(1, "callback"))
+        if named is not None:
+            place, name = Where(timer.module.file, named.lineno), ast.unparse(named)
+            text = f"The lambda names {shorten(name)} but does not call it: the parentheses are missing."
+            return Cause("not-called", text, place).fixed_by(at(place, f"lambda: {name}", f"lambda: {name}()"))
     return None
 
 
 def _in_seconds(timer: Call, period: float) -> tuple[Edit, ...]:
     node = written(timer.argument(0, "timer_period_sec"), timer.module.names)
     return at(Where(timer.module.file, node.lineno), ast.unparse(node), f"{period / 1000.0:g}") if node else ()
+
+
+def _named_by_lambda(argument: ast.expr | None) -> ast.expr | None:
+    """Return the name or attribute that is the whole body of a lambda, or None."""
+    body = argument.body if isinstance(argument, ast.Lambda) else None
+    return body if isinstance(body, ast.Name | ast.Attribute) else None
 
 
 def _is_call(argument: ast.expr | None) -> bool:

@@ -13,9 +13,13 @@ from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
 from grader.checks.causes.no_entry_point import line as entry_point_line
-from grader.checks.causes.why_calls import CREATE_OBJECT
 from grader.checks.causes.why_not_set import compared
-from grader.checks.causes.why_other_object import set_twice, subscription_for_publisher
+from grader.checks.causes.why_other_object import (
+    CREATE_OBJECT,
+    no_object,
+    set_twice,
+    subscription_for_publisher,
+)
 from grader.checks.edit import at
 from grader.common.words import a_list, nearest, shorten
 from grader.submission.constants import dotted
@@ -69,9 +73,20 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
         return _of_a_wrong_thing(scene, owner, name)
     if scene.class_named(owner) is not None:
         return (_of_own_type if match["type"] else _of_own_class)(scene, owner, name)
+    if not match["type"] and scene.own_class is not None and _is_subclass_elsewhere(scene, owner, name):
+        return _of_own_class(scene, scene.own_class.name, name)
     if match["type"] or owner.startswith("Metaclass_"):
         return _class_for_object(owner.removeprefix("Metaclass_"))
     return _of_another_object(scene, owner, name)
+
+
+def _is_subclass_elsewhere(scene: CrashScene, owner: str, name: str) -> bool:
+    """Return whether another module defines this class of the object, and nothing there sets the attribute."""
+    classes = [
+        node for module in scene.evidence.code.modules for node in module.nodes if isinstance(node, ast.ClassDef)
+    ]
+    known = any(each.name == owner for each in classes)
+    return known and not any(attribute == name for each in classes for attribute, _ in attributes_set(each))
 
 
 def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None:
@@ -180,26 +195,12 @@ def _of_none(scene: CrashScene, name: str) -> Cause | None:
             )
             return Cause("none-before-message", text)
     if name == "executor":
-        return _no_object(scene)
+        return no_object(scene)
     known = [holder for holder in holders if holder]
     what = f"{shorten(known[0])} is None here, so it" if len(known) == 1 else "The value is None here, so it"
     return Cause(
         "attribute-missing", f"{what} has no attribute {shorten(name)}. A function without return returns None."
     )
-
-
-def _no_object(scene: CrashScene) -> Cause:
-    """Return the cause if rclpy.spin gets None, for example from a function without a return statement."""
-    text = "rclpy.spin was called with None instead of a node."
-    given = {dotted(call.args[0]) for call in scene.calls_on_line("spin") if call.args}
-    for node in scene.nodes:
-        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and given & set(map(dotted, node.targets)):
-            for maker in scene.functions(dotted(node.value.func) or ""):
-                if not any(isinstance(each, ast.Return) and each.value for each in ast.walk(maker)):
-                    return Cause(
-                        "no-object", f"{text} {maker.name} has no return, so it returns None.", scene.at(maker)
-                    )
-    return Cause("no-object", text)
 
 
 def _of_own_class(scene: CrashScene, owner: str, name: str) -> Cause:

@@ -10,7 +10,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.comma_for_dot import comma_for_dot
 from grader.checks.causes.crash_scene import attributes_set, methods
-from grader.checks.causes.why_other_object import message_for_class
+from grader.checks.causes.why_other_object import CREATE_OBJECT, message_for_class, published_other
 from grader.checks.causes.why_parameters import too_few, too_many
 from grader.checks.edit import at
 from grader.common.words import a_list, count, shorten
@@ -38,7 +38,6 @@ MAKERS = {
     "add_on_set_parameters_callback": 0,
 }
 """Methods that take a callback, with the position of the callback among the arguments."""
-CREATE_OBJECT = "Add parentheses after the class name to create an object."
 TAKES = {
     "create_publisher": "the type, the topic and the queue size",
     "create_subscription": "the type, the topic, the callback and the queue size",
@@ -110,7 +109,7 @@ def why_type(scene: CrashScene) -> Cause | None:
         more = f" It takes {TAKES[keyword['function']]}." if keyword["function"] in TAKES else ""
         return Cause("unexpected-keyword", f"{keyword['function']} has no parameter {keyword['name']}.{more}")
     if (expected := EXPECTED.search(text)) is not None:
-        return _published(expected["wanted"], expected["got"])
+        return published_other(scene, expected["wanted"], expected["got"])
     if (called := NOT_CALLABLE.search(text)) is not None:
         return _not_callable(scene, called["type"])
     return _by_message(scene, text)
@@ -227,13 +226,6 @@ def _too_many(scene: CrashScene, many: re.Match[str]) -> Cause | None:
 
 
 MORE = {"get_logger": " get_logger() returns the logger, and the methods of the logger take the text."}
-
-
-def _published(wanted: str, got: str) -> Cause:
-    kind = got.rpartition(".")[2]
-    if kind == f"Metaclass_{wanted}":
-        return Cause("class-for-object", f"{wanted} is a class. {CREATE_OBJECT}")
-    return Cause("publish-other", f"This publisher sends a {wanted}, but publish was called with a {shorten(kind)}.")
 
 
 def _not_callable(scene: CrashScene, kind: str) -> Cause | None:

@@ -9,9 +9,53 @@ from grader.checks.cause import Cause
 from grader.checks.edit import at
 from grader.common.words import a_list, shorten
 from grader.submission.constants import dotted
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
+
+
+CREATE_OBJECT = "Add parentheses after the class name to create an object."
+
+
+def published_other(scene: CrashScene, wanted: str, got: str) -> Cause:
+    """Return the cause if publish is called with something other than a message of the type `wanted`."""
+    kind = got.rpartition(".")[2]
+    if kind == f"Metaclass_{wanted}":
+        return Cause("class-for-object", f"{wanted} is a class. {CREATE_OBJECT}")
+    text = f"This publisher sends a {wanted}, but publish was called with a {shorten(kind)}."
+    if kind == "NoneType":
+        text = f"This publisher sends a {wanted}, but publish was called with None."
+        for call in scene.calls_on_line("publish"):
+            maker = without_return(scene, call.args[0]) if call.args else None
+            if maker is not None:
+                return Cause("publish-other", f"{text} {maker.text}", maker.where)
+    return Cause("publish-other", text)
+
+
+def without_return(scene: CrashScene, call: ast.expr) -> Cause | None:
+    """Return the cause if the expression calls one of the student's functions that returns nothing, else None."""
+    name = (dotted(call.func) or "").rpartition(".")[2] if isinstance(call, ast.Call) else ""
+    for module in scene.evidence.code.modules:
+        for node in module.nodes:
+            if isinstance(node, ast.FunctionDef) and node.name == name:
+                if any(isinstance(each, ast.Return) and each.value for each in ast.walk(node)):
+                    return None
+                text = f"{name} has no return, so it returns None."
+                return Cause("publish-other", text, Where(module.file, node.lineno))
+    return None
+
+
+def no_object(scene: CrashScene) -> Cause:
+    """Return the cause if rclpy.spin gets None, for example from a function without a return statement."""
+    text = "rclpy.spin was called with None instead of a node."
+    given = {dotted(call.args[0]) for call in scene.calls_on_line("spin") if call.args}
+    for node in scene.nodes:
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and given & set(map(dotted, node.targets)):
+            maker = without_return(scene, node.value)
+            if maker is not None:
+                return Cause("no-object", f"{text} {maker.text}", maker.where)
+    return Cause("no-object", text)
 
 
 def message_for_class(scene: CrashScene) -> Cause | None:

@@ -10,6 +10,7 @@ from grader.checks.causes.crash_scene import methods
 from grader.checks.causes.why_rate import callbacks_of
 from grader.checks.edit import at
 from grader.common.words import shorten
+from grader.submission.constants import dotted
 
 if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
@@ -45,8 +46,24 @@ def too_few(scene: CrashScene, function: str, names: str) -> Cause | None:
                 f"With () after its name, {function} is called immediately. To pass the method itself, write its name."
             )
         return Cause("callback-called", text, scene.at(called))
+    of_class = _method_of_class(scene, function) if names.strip("'") == "self" else None
+    if of_class is not None:
+        return of_class
     text = f"Nothing is passed for {shorten(names)}. {_passed(scene, function)}"
     return Cause("callback-parameters", text, scene.at(own[0]))
+
+
+def _method_of_class(scene: CrashScene, function: str) -> Cause | None:
+    """Return the cause if a method of a class is passed as a callback without an object, else None."""
+    for own in scene.classes:
+        name = f"{own.name}.{function}"
+        for node in scene.nodes:
+            if isinstance(node, ast.Call) and name in [dotted(argument) for argument in node.args]:
+                text = (
+                    f"{name} does not belong to an object. Pass the method of an object: the object, a dot, {function}."
+                )
+                return Cause("class-for-object", text, scene.at(node))
+    return None
 
 
 def too_many(scene: CrashScene, function: str) -> Cause | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import math
 import re
 from collections import Counter
@@ -81,6 +82,8 @@ def values(evidence: Evidence, params: Values) -> Finding:
         why = Cause("values-change", "The other commands were right. Something changes the values while the node runs.")
     if why.diagnosis in ("wrong-value", "empty-twist") and bad == total:
         why = next(filter(None, (compared_field(evidence, FIELDS[index]) for index in off)), why)
+    if why.diagnosis == "empty-twist":
+        why = why.at(_published_empty(evidence))
     if bad == total and alike and why.diagnosis != "equals":
         why = why.fixed_by(_right_values(evidence, params.wanted, off))
     return failed(observed, expected, why.at(_line(evidence, field)), near_edge=near)
@@ -128,6 +131,15 @@ def _text(evidence: Evidence, where: Where | None) -> str:
 def _line(evidence: Evidence, field: str) -> Where | None:
     linear_or_angular, axis = field.split(".")
     return evidence.code.assigned(linear_or_angular, axis) or evidence.place("Twist")
+
+
+def _published_empty(evidence: Evidence) -> Where | None:
+    """Return the place that publishes a new message without setting a field, or None."""
+    for call in evidence.code.calls("publish"):
+        message = call.argument(0, "msg")
+        if isinstance(message, ast.Call) and not message.args and not message.keywords:
+            return call.where
+    return None
 
 
 def _same(value: float, other: float) -> bool:

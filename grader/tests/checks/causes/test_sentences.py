@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.tests.checks.crashes import DRIVER, reported
+from grader.tests.checks.crashes import DRIVER, reported, to_look_at
 
 NO_NAME = "NameError: name '{}' is not defined"
 NO_ATTRIBUTE = "AttributeError: {} has no attribute '{}'"
@@ -214,3 +214,31 @@ def test_where_a_module_is_decides_what_is_told(files: dict[str, str], words: st
 def test_a_class_in_place_of_an_object_is_told(name: str, *, found: bool) -> None:
     given = cause(f"Driver.{name}", NO_ATTRIBUTE.format("type object 'Driver'", name))
     assert (given == "Driver is a class. Add parentheses after the class name to create an object.") == found
+
+
+@pytest.mark.parametrize(("body", "found"), [("step.x = 1", True), ("return step", False)])
+def test_a_function_without_return_whose_value_is_published_is_told(body: str, *, found: bool) -> None:
+    source = (
+        f"{SOURCE.format(line='self.p.publish(make(1))')}\ndef make(step):{'  # look' if found else ''}\n    {body}\n"
+    )
+    error = "TypeError: Expected <class 'geometry_msgs.msg._twist.Twist'>, got <class 'NoneType'>"
+    given = reported(source, error)
+    assert given.line == to_look_at(source)
+    assert "This publisher sends a Twist, but publish was called with None." in given.cause
+    assert ("make has no return, so it returns None." in given.cause) == found
+
+
+@pytest.mark.parametrize(("callback", "found"), [("Driver.stop", True), ("self.stop", False)])
+def test_a_method_without_its_object_is_told(callback: str, *, found: bool) -> None:
+    source = SOURCE.format(line="pass") + f"\nnode.create_timer(1.0, {callback})\n"
+    given = reported(source, TOO_FEW.format("stop", "self")).cause
+    words = "Driver.stop does not belong to an object. Pass the method of an object: the object, a dot, stop."
+    assert (given == words) == found
+
+
+@pytest.mark.parametrize(("set_there", "found"), [("self.other = 1", True), ("self.pub = 1", False)])
+def test_an_attribute_that_a_base_class_misses_is_told(set_there: str, *, found: bool) -> None:
+    source = "from my_robot_controller.circle import Circle\n" + SOURCE.format(line="self.pub.publish()")
+    circle = f"class Circle(Driver):\n    def start(self):\n        {set_there}\n"
+    given = reported(source, NO_ATTRIBUTE.format("'Circle' object", "pub"), {"my_robot_controller/circle.py": circle})
+    assert (given.cause == "Nothing sets self.pub, and the class has no method with that name.") == found

@@ -6,7 +6,7 @@ import pytest
 
 from grader.checks.outcome import Finding, Status
 from grader.checks.subjects.values import VALUES
-from grader.tests.checks.made import NODE_FILE, every, evidence, finding, recording
+from grader.tests.checks.made import NODE_FILE, every, evidence, finding, node, recording
 from grader.tests.checks.made import found as found_by
 from grader.tests.checks.shapes import SHAPES, fields
 
@@ -128,3 +128,12 @@ def test_rounding_never_hides_the_difference() -> None:
 def test_near_the_edge(off: float, near: bool, status: str) -> None:
     found = finding("values", evidence(recording(every(0.5, 2.0 + off, 1.0))))
     assert (found.near_edge, found.status.value) == (near, status)
+
+
+def test_an_empty_message_is_reported_where_it_is_published() -> None:
+    commands = [(0.3, 0.0, 0.0), *every(0.5, 2.0, 1.0)]
+    plain = evidence(recording(commands), node())
+    empty = ("        msg = Twist()", "        self.publisher.publish(Twist())\n        msg = Twist()")
+    found, other = (finding("values", given) for given in (evidence(recording(commands), node(empty)), plain))
+    assert (found.diagnosis, str(found.where)) == ("empty-twist", f"{NODE_FILE}:13")
+    assert (other.diagnosis, str(other.where)) == ("empty-twist", f"{NODE_FILE}:14")
