@@ -173,7 +173,7 @@ class Evidence:
         return trajectory_of(self.recording)
 
     def entry_point(self) -> str | None:
-        """Return the executable's entry point "module:attribute" as it was installed, or else as setup.py has it."""
+        """Return the executable's entry point "module:attribute" as it was installed, or as setup.py defines it."""
         executable = self.trial.executable
         if self.build is not None and executable in self.build.entry_points:
             return self.build.entry_points[executable]

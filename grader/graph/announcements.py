@@ -2,9 +2,9 @@
 
 Fast DDS 2.14 sends the first announcement of a participant before the participant listens for answers. The other
 participants answer only the first announcement, and answer it immediately. If the answer of a participant is lost, the
-new participant discovers it only when it announces itself again, after up to 3 s. Therefore, our participants announce
-themselves to a socket of their own process, and `passed_on` sends the announcement to the other participants when the
-new participant listens.
+new participant discovers this participant only at its next announcement, after up to 3 s. Therefore, our participants
+announce themselves to a socket of their own process, and `passed_on` sends the announcement to the other participants
+when the new participant listens.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 Line = tuple[int, int, int, int]
-"""A struct sock_filter: the operation, the number of lines to skip if it is true and if it is false, and a value."""
+"""A struct sock_filter: the operation, the numbers of lines to skip if the condition is true or false, and a value."""
 
 LOAD, EQUAL, AT_LEAST, ANY_BIT, RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
 ALLOW, ERRNO = 0x7FFF0000, 0x00050000

@@ -33,7 +33,7 @@ class _Search:
     nearly: list[str] = field(default_factory=list)
     """Files whose names would be package.xml or setup.py in lower case and without a second suffix."""
     linked: list[str] = field(default_factory=list)
-    """Links to folders. They are not followed."""
+    """Links to folders. Such links are not followed."""
     ignored: list[str] = field(default_factory=list)
     """Folders that colcon ignores because they contain a marker file."""
     folders: int = 0
