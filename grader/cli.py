@@ -69,7 +69,9 @@ Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Also print which
 ExerciseId = Annotated[
     Optional[str],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
     typer.Option(
-        "--exercise", help="The exercise. Not needed in exercises/ and solutions/.", autocompletion=known_steps
+        "--exercise",
+        help="The id of the exercise. Not required for a folder in exercises/ or solutions/.",
+        autocompletion=known_steps,
     ),
 ]
 
@@ -86,7 +88,7 @@ def check(
         ),
     ] = None,
     exercise: ExerciseId = None,
-    clock: Annotated[Clock, typer.Option(help="auto: simulated time, and wall time in doubtful cases.")] = Clock.auto,
+    clock: Annotated[Clock, typer.Option(help="auto: simulated time, or wall time in doubtful cases.")] = Clock.auto,
     json: Json = None,
     image: Image = None,
     html: Html = None,

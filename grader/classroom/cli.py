@@ -51,7 +51,9 @@ def grade(
     exercise: Annotated[
         Optional[str],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
         typer.Option(
-            help="The exercise. Not needed for nbgrader's submitted/.", metavar="ID", autocompletion=known_steps
+            help="The id of the exercise. Not required for nbgrader's submitted/.",
+            metavar="ID",
+            autocompletion=known_steps,
         ),
     ] = None,
     jobs: Annotated[
@@ -113,7 +115,7 @@ def grade(
         str, typer.Option(help="Path of the package in the repository, for GitHub's annotations.", metavar="PATH")
     ] = "",
 ) -> None:
-    """Grade a class, several submissions in parallel. After an interruption, the same command continues."""
+    """Grade a class, several submissions in parallel. After an interruption, the same command continues the grading."""
     from grader.classroom.grade_class import Request, exit_code, grade_class
 
     request = Request(

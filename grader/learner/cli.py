@@ -40,7 +40,7 @@ def start(
     step: Annotated[
         str,
         typer.Argument(
-            help="A step, such as 03-circle-publisher or 03, or next.",
+            help="A step, such as 03-circle-publisher or 03, or the word next.",
             metavar="STEP|next",
             autocompletion=steps_or_next,
         ),
@@ -70,7 +70,7 @@ def run(
     workspace: Workspace = None,
     view: Annotated[bool, typer.Option("--view/--no-view", help="Show the turtle on a page on this machine.")] = True,
 ) -> None:
-    """Build your package and run its node beside a turtlesim that you can watch. Ctrl-C ends both."""
+    """Build your package and run its node beside a turtlesim that you can watch. Ctrl-C ends the node and turtlesim."""
     from grader.learner import run_node
 
     raise typer.Exit(run_node.run(run_node.program_of(step, program, workspace), view=view))

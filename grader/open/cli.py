@@ -24,7 +24,7 @@ def open_page(
     port: Annotated[Optional[int], typer.Option(help="Port of the page. Default: the same port as last time.")] = None,  # noqa: UP045
     show: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in your browser.")] = True,
 ) -> None:
-    """Learn on a page in the browser: the lesson, the verdict after each save, and a live turtle. Ctrl-C ends it."""
+    """Open a page with the lesson, the verdict after each save, and a live turtle. Ctrl-C ends the command."""
     from grader.open.course_page import run
 
     run(workspace, port, opens=show)

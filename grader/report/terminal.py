@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from grader.evidence.tries import Tries
     from grader.report.report import Report
 
-RESULTS = {"passes": "then it passes", "further": "the node gets further", "refuted": "it still fails"}
+RESULTS = {"passes": "the check then passes", "further": "the node gets further", "refuted": "the check still fails"}
 HIDDEN = "A hidden check shows no details."
 NARROW = 50
 """On a terminal with fewer columns than this, text is not indented under its label."""

@@ -156,7 +156,7 @@ def _handle_what_arrived(executor: SingleThreadedExecutor) -> None:
 def _options(arguments: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="turtlesim_node",
-        description="Run turtlesim in wall time, until Ctrl-C. It has no window; use --view to see the turtles.",
+        description="Run turtlesim without a window, in wall time, until Ctrl-C. Use --view to see the turtles.",
         epilog="Example: ros2 run turtlesim turtlesim_node --view",
     )
     parser.add_argument("--image", type=Path, metavar="FILE.png", help="write the canvas with the trails on exit")

@@ -36,7 +36,7 @@ def sim(
     ] = False,
     port: Annotated[Optional[int], typer.Option(help="Port of the page. Default: the same port as last time.")] = None,  # noqa: UP045
 ) -> None:
-    """Run turtlesim as a node, in wall time, until Ctrl-C. It has no window; use --view to see the turtles."""
+    """Run turtlesim without a window, as a node in wall time, until Ctrl-C. Use --view to see the turtles."""
     from grader.common.interpreter import interpreter
     from grader.report.output_file import check_writable
     from grader.report.progress_line import progress

@@ -207,10 +207,10 @@ CATCHES = Kind(
 NEAREST_FIRST = Kind(
     "nearest_first",
     "trial",
-    "The nearest one is caught first",
+    "The nearest target is caught first",
     NoParams,
     nearest_first,
-    about="After each catch, turtle1 next catches the turtle that is nearest.",
+    about="After each catch, turtle1 next catches the turtle that is nearest to turtle1.",
 )
 WITHIN_REACH = Kind(
     "within_reach",

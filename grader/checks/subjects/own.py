@@ -128,7 +128,7 @@ CIRCLE = Kind(
     "The turtle drives your own circle",
     OwnCircle,
     own_circle,
-    about="Like the kind `circle`, but radius and direction are the student's own numbers.",
+    about="This kind is like `circle`, but the radius and the direction are the student's own numbers.",
     drives=True,
     requested=_requested,
 )
@@ -138,6 +138,6 @@ RATE = Kind(
     "Commands arrive at your own rate",
     OwnRate,
     own_rate,
-    about="Like the kind `rate`, but the rate is the student's own number.",
+    about="This kind is like `rate`, but the rate is the student's own number.",
     drives=True,
 )

@@ -105,7 +105,7 @@ class AnswersCall:
 
     service: str = string("the full name of a service", start="/", about="The name of the service.")
     type: str = string("a service type, as in std_srvs/srv/SetBool", about="The type of the service.")
-    nth: float = number(1, at_least=1, about="Which call of this service in the trial is judged; 1 is the first.")
+    nth: float = number(1, at_least=1, about="The number of the call of this service that is judged, from 1.")
     within_s: float = number(1.0, above=0, about="The maximum time until the response.")
     fields: tuple[tuple[str, Any], ...] = table(about="The relevant fields of the response, with their values.")
 

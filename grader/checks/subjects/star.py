@@ -125,7 +125,7 @@ STAR = Kind(
     Star,
     star,
     about=(
-        "The turtle drives straight sides, goals turn it between the sides, and it ends at its start and stands still."
+        "The turtle drives straight sides, and action goals turn it between the sides. It stops at its start position."
     ),
     drives=True,
     requested=requested_star,

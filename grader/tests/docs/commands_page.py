@@ -26,7 +26,7 @@ commands and options.
 | --- | --- |
 | `source ~/ros2-course/.venv/setup.bash` | adds `grader`, `ros2` and `colcon` (in zsh: `setup.zsh`) |
 | `source ~/ros2_ws/install/setup.bash` | adds the packages that you have built in your workspace, for `ros2 run` |
-| `colcon build --symlink-install` | builds the packages of the workspace that you are in. Step 05 explains it |
+| `colcon build --symlink-install` | builds the packages of the current workspace. Step 05 explains this command |
 """
 PANELS = ("Learn", "Teach")
 NOT_USED = ("component", "daemon", "launch", "lifecycle", "multicast", "security", "wtf")
