@@ -14,6 +14,7 @@ from grader.authoring import cli as authoring
 from grader.book import cli as book
 from grader.classroom import cli as classroom
 from grader.common.interpreter import clean_own
+from grader.common.needed_command import needed_command
 from grader.common.system_errors import refusal
 from grader.errors import GraderError
 from grader.exercise.completion import steps as known_steps
@@ -196,13 +197,15 @@ book.add_to(app)
 def main() -> None:
     """Run the command. An error is printed as a sentence; docs/design.md, decision 9, lists the exit codes."""
     clean_own()
+    words = sys.argv[1:]
     if "_GRADER_COMPLETE" in os.environ:  # the shell requests completions (grader.ros.shell)
         from typer.completion import completion_init  # type: ignore[attr-defined]
 
         completion_init()
+        words = []
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # limits numpy's threads, as in grader.ros.installation
     try:
-        app()
+        needed_command(app, words)()
     except GraderError as error:
         typer.secho(f"grader: {error}", err=True, fg=typer.colors.RED if sys.stderr.isatty() else None)
         sys.exit(error.exit_code)

@@ -9,6 +9,7 @@ from grader.common.words import a_list, nearest
 from grader.errors import UsageError
 from grader.exercise.exercise_toml import parse_exercise
 from grader.exercise.model import FILE_NAME, Exercise, catalogue
+from grader.exercise.tables import read_toml
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -72,6 +73,18 @@ def load_exercise(path: Path) -> Exercise:
         message = f"{file}: cannot be read ({error.strerror})."
         raise UsageError(message) from error
     return parse_exercise(data, name=str(file), folder=file.parent, kinds=KINDS)
+
+
+def title_of(path: Path) -> str:
+    """Return the title of the exercise in a file exercise.toml. If possible, only the first tables are read.
+
+    Raises UsageError, which lists every problem in the file.
+    """
+    head = path.read_bytes().partition(b"\n[[")[0]
+    try:
+        return str(read_toml(head, str(path))["exercise"]["title"])
+    except (UsageError, KeyError):
+        return load_exercise(path).title
 
 
 def exercise_from(sources: Sources) -> Exercise:

@@ -9,8 +9,7 @@ from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING
 
-from grader.checks.exercises import exercise_of_folder, find_exercise
-from grader.checks.kinds import KINDS
+from grader.checks.exercises import exercise_of_folder, find_exercise, title_of
 from grader.common.words import a_list, count
 from grader.errors import GraderError, UsageError
 from grader.exercise.model import catalogue
@@ -134,6 +133,8 @@ def keep_picture(evidence: Evidence, report: Report, folder: Path | None = None)
 
     The message is empty if no image was saved. An image that cannot be written is not an error.
     """
+    from grader.checks.kinds import KINDS  # imports all checks
+
     exercise = evidence.exercise
     if report.exit_code != 0 or not any(KINDS[check.kind].drives for check in exercise.checks):
         return ""
@@ -168,14 +169,14 @@ def print_status(folder: Path | None, console: Console) -> None:
     for heading in ("", "step", "", "points", "hints"):
         table.add_column(heading)
     begins = {part[0]: title for title, part in parts().items()}
-    for name in catalogue():
+    for name, file in catalogue().items():
         if name in begins:
             table.add_row("", begins[name], style="bold")
         step = known.step(name)
         sign = "✓" if step.passed else ("→" if name == known.current else "·")
         points = f"{step.points:g}/{step.max:g}" if step.max else ""
         style = "green" if step.passed else ("bold" if name == known.current else "dim")
-        table.add_row(sign, name, find_exercise(name).title, points, str(len(step.read) or ""), style=style)
+        table.add_row(sign, name, title_of(file), points, str(len(step.read) or ""), style=style)
     console.print(table)
     passed = sum(known.step(name).passed for name in catalogue())
     console.print(f"\n{passed} of {count(len(catalogue()), 'step')} passed, in {root}", soft_wrap=True)

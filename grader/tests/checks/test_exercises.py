@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from grader.checks.exercises import exercise_of_folder, find_exercise
+from grader.checks.exercises import exercise_of_folder, find_exercise, title_of
 from grader.errors import UsageError
-from grader.exercise.model import course_folder
+from grader.exercise.model import catalogue, course_folder
 
 
 def test_an_exercise_is_found_by_its_id_or_its_beginning() -> None:
@@ -47,3 +47,16 @@ def test_the_exercise_follows_from_a_folder_below_solutions_and_exercises() -> N
     assert exercise_of_folder(root / "exercises" / "03-circle-publisher") == found
     assert exercise_of_folder(root / "grader") is None
     assert exercise_of_folder(Path("/tmp/03-circle-publisher")) is None
+
+
+def test_the_title_is_read_without_the_checks() -> None:
+    assert {name: title_of(file) for name, file in catalogue().items()} == {
+        name: find_exercise(name).title for name in catalogue()
+    }
+
+
+def test_the_title_of_an_exercise_with_a_mistake_is_refused_as_the_exercise_is(tmp_path: Path) -> None:
+    file = tmp_path / "exercise.toml"
+    file.write_text('schema = 2\n\n[exercise]\nid = "01-x"\n\n[[check]]\n')
+    with pytest.raises(UsageError, match="title"):
+        title_of(file)

@@ -1,0 +1,51 @@
+from __future__ import annotations
+
+import subprocess
+from typing import TYPE_CHECKING
+
+import pytest
+import typer
+
+from grader.common.interpreter import interpreter
+from grader.common.needed_command import needed_command
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+STATUS = """
+import sys
+from grader.cli import main
+sys.argv = ["grader", "status"]
+try:
+    main()
+finally:
+    print("imported:", *sys.modules)
+"""
+
+
+def two_and_a_group() -> typer.Typer:
+    app, group = typer.Typer(), typer.Typer(name="more")
+    for name in ("first-one", "second"):
+        app.command(name)(lambda: None)
+    group.command("third")(lambda: None)
+    app.add_typer(group)
+    return app
+
+
+@pytest.mark.parametrize("words", [["second"], ["--verbose", "second", "--help"]])
+def test_only_the_command_on_the_command_line_is_created(words: list[str]) -> None:
+    app = two_and_a_group()
+    assert list(needed_command(app, words).commands) == ["second"]
+    assert len(app.registered_commands) == 2
+
+
+@pytest.mark.parametrize("words", [[], ["--help"], ["secnd"], ["more", "third"]])
+def test_without_the_name_of_a_command_all_are_created(words: list[str]) -> None:
+    assert set(needed_command(two_and_a_group(), words).commands) == {"first-one", "second", "more"}
+
+
+def test_status_imports_no_check(tmp_path: Path) -> None:
+    start = interpreter("-c", STATUS, env={"HOME": str(tmp_path), "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"})
+    done = subprocess.run(start.argv, env=start.env, capture_output=True, text=True, check=True)
+    assert "Draw a circle" in done.stdout
+    assert not {"grader.checks.kinds", "rich.markdown"} & set(done.stdout.partition("imported:")[2].split())
