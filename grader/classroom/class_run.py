@@ -106,7 +106,7 @@ class _Run:
 
 def _in_words(why: str) -> str:
     return (
-        f"The grader's process was lost twice while it graded this submission ({why}). This is reported as an error, "
-        "which says nothing about the quality of the submission. Grade the submission alone with `grader check`, or "
-        "run the same command again."
+        f"The grader's process was lost twice while it graded this submission ({why}). The submission gets the status "
+        "error, which says nothing about the quality of the submission. Grade the submission alone with `grader "
+        "check`, or run the same command again."
     )

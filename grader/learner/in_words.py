@@ -10,7 +10,7 @@ from grader.common.words import a_list, count
 def difference(theirs: str, ours: str, path: str) -> str:
     """Return a sentence about the differences between the learner's text and the solution's text."""
     if not theirs:
-        return "You do not have this file."
+        return "Your package does not contain this file."
     mine, solution = (_parts(text) if path.endswith(".py") else None for text in (theirs, ours))
     if mine is None or solution is None:
         lines = set(theirs.splitlines()) ^ set(ours.splitlines())

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 LARGEST = 4_000_000
-"""The maximum size of a file that may be a report (bytes). No report is this large."""
+"""The maximum size of a file that may be a report (bytes). Every report is smaller."""
 PAGE = "index.html"
 MOST_DIAGNOSES = 5
 BAR = "#1c7ed6"

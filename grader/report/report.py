@@ -31,7 +31,7 @@ class Report:
     seed: int | None
     outcomes: tuple[Outcome, ...]
     seconds: dict[str, float] = field(default_factory=dict)
-    """The wall time of each stage. This time is ignored when two reports are compared."""
+    """The wall time of each stage. Wall time is ignored when two reports are compared."""
     recording: str | None = None
     confined: bool = True
     """False if the student's code ran outside a sandbox, with resource limits only."""

@@ -33,7 +33,7 @@ LEFT_OUT = frozenset({"build", "install", "log"})
 """Folders that colcon creates next to src/. Students often submit them."""
 
 OF_THE_MACHINE = frozenset({errno.EIO, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.ESTALE})
-"""Errors that are caused by the machine. Such errors have nothing to do with the student."""
+"""Errors that are caused by the machine, and have nothing to do with the student."""
 
 
 def shown(path: str) -> str:

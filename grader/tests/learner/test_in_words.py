@@ -34,7 +34,7 @@ REST = "The code is the same in __init__ and the lines outside functions."
             OURS.replace("def step", "def go"),
             f"{REST} Only you have go. Only the solution has step.",
         ),
-        ("", "You do not have this file."),
+        ("", "Your package does not contain this file."),
     ],
 )
 def test_it_is_said_in_words(theirs: str, said: str) -> None:
