@@ -17,8 +17,7 @@ FEEDBACK = "/_action/feedback"
 OF_A_TYPE = "_FeedbackMessage"
 SENDS = ("send_goal_async", "send_goal")
 ONE_FRAME_S = 0.04
-"""The time (s) from the decision to abort a goal until the goal ends. The goal ends after one frame; the value is two frames, to
-be safe."""
+"""The time (s) from the decision to abort a goal until the goal ends: one frame, and another frame to be safe."""
 
 
 def why_no_goal(evidence: Evidence, action: str, type_name: str) -> Cause:
