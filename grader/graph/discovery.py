@@ -98,7 +98,8 @@ def _leave_shared_memory_out(profile: Path) -> None:
 
     The file loopback.xml explains why the nodes of `ros2` verbs do not use LOCALHOST with its shared memory.
     """
-    if os.environ.get(_RANGE) == "LOCALHOST" and os.environ.get(_PROFILE) == str(FASTDDS_PROFILE):
+    ours = os.environ.get(_RANGE) == "LOCALHOST" and os.environ.get(_PROFILE) == str(FASTDDS_PROFILE)
+    if ours and rclpy.get_rmw_implementation_identifier().startswith("rmw_fastrtps"):
         os.environ.update({_RANGE: "SYSTEM_DEFAULT", _PROFILE: str(profile)})
 
 
