@@ -155,7 +155,7 @@ def _modules(evidence: Evidence) -> Finding:
         observed = (
             f"`colcon build` installed none of the Python files: the folder {shorten(bare[0])} has no __init__.py."
         )
-        expected = "Each folder with Python files has a file __init__.py, which may be empty."
+        expected = "Each folder with Python files has a file __init__.py, which can be empty."
         cause = "find_packages in setup.py finds only folders with an __init__.py." if finds else ""
         return failed(observed, expected, Cause("missing-init", cause, Where("setup.py", _setup_line(evidence))))
     # If colcon cannot read package.xml, it reports the exception from setup.py and continues.

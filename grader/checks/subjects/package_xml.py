@@ -85,7 +85,7 @@ def why_not_read(evidence: Evidence, manifest: Manifest) -> Cause:
             tag_, line = open_tag(evidence.submission.files[FILE])
             cause = f"<{shorten(tag_, 30)}> in line {line} has no closing tag </{shorten(tag_, 30)}>."
         elif "junk after" in problem:
-            cause = "Nothing may follow the last tag, </package>."
+            cause = "Nothing is allowed after the last tag, </package>."
         return Cause("xml-malformed", cause, Where(FILE, line))
     return Cause("package-xml-invalid", where=Where(FILE, manifest.line or _line(evidence, "<package").line))
 

@@ -137,7 +137,7 @@ def test_what_was_left_out_of_the_submission_is_reported(more: tuple[str, ...], 
             {"package.xml": f"{PACKAGE_XML}<more/>"},
             "xml-malformed",
             "package.xml:15",
-            "Nothing may follow the last tag, </package>.",
+            "Nothing is allowed after the last tag, </package>.",
         ),
         (
             xml("</depend>\n  <depend>turtle", "</depends>\n  <depend>turtle"),
