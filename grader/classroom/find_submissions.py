@@ -8,7 +8,7 @@ reason. This module uses os.path, because the functions of os.path return False 
 while the methods of pathlib raise an exception.
 """
 
-# ruff: noqa: PTH110, PTH112, PTH114
+# ruff: noqa: PTH110, PTH112, PTH113, PTH114
 
 from __future__ import annotations
 
@@ -33,6 +33,8 @@ UNKNOWN = ""
 """The exercise id for a folder whose layout does not name an exercise."""
 OWN = "exercises"
 """The folder of a clone in which the student works."""
+_OF_THE_COURSE = ("course", "docs", "grader", "solutions")
+"""The other folders of a clone."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +119,7 @@ def _one_of(alike: Sequence[Found]) -> Found:
 
 def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:
     """Return the names of files and links that are not submissions, except for hidden files."""
-    folders = [path for path in given if os.path.isdir(path) and not _is_one(path)]
+    folders = [path for path in given if os.path.isdir(path) and not _is_one_alone(path)]
     return tuple(
         shown(entry.name)
         for folder in folders
@@ -145,7 +147,7 @@ def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
         message = f"{shown(str(path))} does not exist. Give the folder with one folder or archive per student."
         raise UsageError(message)
     absolute = Path(os.path.realpath(path))
-    if not os.path.isdir(path) or _is_one(path):
+    if not os.path.isdir(path) or _is_one_alone(path):
         name = absolute.name if os.path.isdir(path) else archives.stem(absolute.name)
         if name is None:
             message = f"{shown(str(path))} is neither a folder nor an archive (.zip, .tar.gz)."
@@ -167,6 +169,19 @@ def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
 def _is_one(folder: Path) -> bool:
     """Return whether a folder is a submission itself: a package, or a clone of the course."""
     return any(os.path.exists(folder / name) for name in (*PACKAGE_FILES, OWN))
+
+
+def _is_one_alone(folder: Path) -> bool:
+    """Return whether a folder of the command line is a submission, and not a class.
+
+    In a class, a student's folder can have any name, such as "setup.py" or "exercises".
+    """
+    if any(os.path.isfile(folder / name) for name in PACKAGE_FILES):
+        return True
+    if not os.path.isdir(folder / OWN):
+        return False
+    others = (entry for entry in _entries(folder) if entry.name not in (OWN, *_OF_THE_COURSE))
+    return os.path.exists(folder / ".git") or all(_student(entry) is None for entry in others)
 
 
 def _student(entry: Path) -> str | None:

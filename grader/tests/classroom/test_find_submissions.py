@@ -65,6 +65,22 @@ def test_a_folder_of_clones(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.parametrize("name", ["exercises", "setup.py", "package.xml"])
+def test_no_name_of_a_students_folder_hides_the_class(tmp_path: Path, name: str) -> None:
+    for student in ("anna", "ben", name):
+        copy_solution(STEP, tmp_path / student / "my_robot_controller")
+    assert [student for student, *_ in names(tmp_path, STEP)] == sorted(["anna", "ben", name])
+
+
+def test_a_clone_is_one_submission(tmp_path: Path) -> None:
+    for name, folders in {"ann": ("course", "docs"), "ben": (".git", "notes")}.items():
+        copy_solution(STEP, tmp_path / name / "exercises" / STEP / "my_robot_controller")
+        for folder in folders:
+            (tmp_path / name / folder).mkdir()
+        (found,) = find_submissions([tmp_path / name], STEP, tmp_path / "grades")
+        assert found.path == tmp_path / name / "exercises" / STEP
+
+
 def test_a_link_to_the_exercise_of_another_student_is_not_followed(tmp_path: Path) -> None:
     copy_solution(STEP, tmp_path / "anna" / "exercises" / STEP / "my_robot_controller")
     (tmp_path / "ben").mkdir()
