@@ -18,18 +18,18 @@ help: ## this list
 demo: python3 ## set up, grade the solution of step 03, say what to type next
 	@begin=$$(date +%s) && $(SET_UP) learner $(CHOSEN) && $(BIN)/python -I -m grader.setup.demo --since $$begin
 
-cluster: python3 ## set up a machine that grades for another one, with Dask
+cluster: python3 ## set up a machine as a Dask worker for grading
 	@$(SET_UP) cluster $(CHOSEN)
 
 notebooks: python3 ## set up JupyterLab and nbgrader, with the course's kernel
 	@$(SET_UP) notebooks $(CHOSEN) && $(BIN)/grader kernel install
 
-docs: python3 ## build README, docs/ and the lessons as a site in build/site; a link that leads nowhere fails
+docs: python3 ## build README, docs/ and the lessons as a site in build/site; a broken link is an error
 	@$(SET_UP) docs $(CHOSEN)
 	@$(BIN)/sphinx-build -q -W --keep-going -n -c docs -d build/site-doctrees . build/site
 	@echo "The documentation: build/site/index.html"
 
-test: lint ## set up, lint, and run all tests but the exhaustive ones
+test: lint ## set up, lint, and run all tests except the exhaustive ones
 	@$(BIN)/python -m pytest -n $$(( $$(nproc) + 1 )) --dist loadscope --no-loadscope-reorder
 
 test-all: lint ## all tests: in both clocks, with repetition and load (long)
