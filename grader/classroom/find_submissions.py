@@ -33,6 +33,7 @@ UNKNOWN = ""
 """The exercise id for a folder whose layout does not name an exercise."""
 OWN = "exercises"
 """The folder of a clone in which the student works."""
+_HIDDEN = (".git", ".github", ".ipynb_checkpoints", ".vscode", "__MACOSX")
 _OF_THE_COURSE = ("course", "docs", "grader", "solutions")
 """The other folders of a clone."""
 
@@ -118,14 +119,21 @@ def _one_of(alike: Sequence[Found]) -> Found:
 
 
 def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:
-    """Return the names of files and links that are not submissions, except for hidden files."""
+    """Return the names of entries that are not submissions, except for hidden files and the folders in _HIDDEN."""
     folders = [path for path in given if os.path.isdir(path) and not _is_one_alone(path)]
     return tuple(
         shown(entry.name)
         for folder in folders
         for entry in _entries(folder)
-        if not entry.name.startswith((".", "__MACOSX")) and _student(entry) is None and not _same(entry, leave_out)
+        if _student(entry) is None and not _is_of_a_program(entry) and not _same(entry, leave_out)
     )
+
+
+def _is_of_a_program(entry: Path) -> bool:
+    """Return whether a program, and not a student, has probably made a hidden entry."""
+    if entry.name in _HIDDEN or not entry.name.startswith("."):
+        return entry.name in _HIDDEN
+    return os.path.isfile(entry) and archives.stem(entry.name) is None
 
 
 def _entries(folder: Path) -> list[Path]:

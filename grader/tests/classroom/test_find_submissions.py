@@ -72,6 +72,14 @@ def test_no_name_of_a_students_folder_hides_the_class(tmp_path: Path, name: str)
     assert [student for student, *_ in names(tmp_path, STEP)] == sorted(["anna", "ben", name])
 
 
+def test_hidden_folders_and_archives_are_named(tmp_path: Path) -> None:
+    for name in ("anna", "...", ".ben", ".git", "__MACOSX"):
+        (tmp_path / name).mkdir()
+    for name in (".clara.zip", ".DS_Store"):
+        (tmp_path / name).touch()
+    assert passed_over([tmp_path], tmp_path / "grades") == ("...", ".ben", ".clara.zip")
+
+
 def test_a_clone_is_one_submission(tmp_path: Path) -> None:
     for name, folders in {"ann": ("course", "docs"), "ben": (".git", "notes")}.items():
         copy_solution(STEP, tmp_path / name / "exercises" / STEP / "my_robot_controller")
