@@ -137,10 +137,11 @@ def test_an_attack_is_stopped_for_an_ordinary_user(attack: Attack, runs: Runs) -
 def assert_held(attack: Attack, done: Graded) -> None:
     left = done.left
     # If other programs keep the machine busy, the report may mention it. The attacker alone must not cause this.
-    if not (done.too_busy and os.getloadavg()[0] > 2.0 * (os.cpu_count() or 1)):
+    crowded = done.too_busy and os.getloadavg()[0] > 2.0 * (os.cpu_count() or 1)
+    if not crowded:
         assert left.exit_code in (0, 1), left.stdout + left.stderr
     assert (sorted(left.files), left.processes, left.sockets) == ([], (), ())
-    if attack.points >= 0.0:
+    if attack.points >= 0.0 and not crowded:
         assert done.points == pytest.approx(attack.points), left.stdout
     assert done.points <= attack.most, left.stdout
     said = done.said
