@@ -28,7 +28,7 @@ def why_ended(evidence: Evidence) -> Cause:
     if not code.calls("spin") and code.calls("spin_once") and not loops(evidence):
         text = "rclpy.spin_once handles one event and returns. rclpy.spin continues until Ctrl-C."
         return Cause("spin-once", text, evidence.place("spin_once"))
-    returned = _returns_before_spin(evidence)
+    returned = _returns_before_spin(evidence) or _spins_only_as_script(evidence)
     if returned is not None:
         return returned
     stop = _exits(evidence)
@@ -49,6 +49,21 @@ def _returns_before_spin(evidence: Evidence) -> Cause | None:
             if lines and spins and min(lines) < min(spins):
                 text = f"{node.name} returns here, before it calls rclpy.spin."
                 return Cause("ends-at-once", text, Where(module.file, min(lines)))
+    return None
+
+
+def _spins_only_as_script(evidence: Evidence) -> Cause | None:
+    """Return the cause if all calls of rclpy.spin are below `if __name__ == "__main__"`, else None."""
+    spins = evidence.code.calls("spin") if evidence.entry_point() is not None else []
+    for module in evidence.code.modules:
+        for node in module.body:
+            below = list(ast.walk(node)) if isinstance(node, ast.If) and "__name__" in ast.unparse(node.test) else []
+            if spins and all(call.node in below for call in spins):
+                text = (
+                    "rclpy.spin is called only in this block, which does not run: ros2 run calls the function of the "
+                    "entry point."
+                )
+                return Cause("ends-at-once", text, Where(module.file, node.lineno))
     return None
 
 

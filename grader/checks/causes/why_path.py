@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
     from grader.submission.where import Where
 
+CHANGE = "The commands change. A circle needs the same command all the time."
 AT_ONCE_S = 0.05
 """If a second command follows within this time (s), the first command has no effect."""
 
@@ -34,12 +35,17 @@ def radius_of_commands(evidence: Evidence) -> str:
     return f"The radius is linear.x divided by angular.z: {shown(speed[0])} / {shown(speed[1])} = {shown(radius)} m."
 
 
+def why_radius(evidence: Evidence) -> str:
+    """Return a sentence about a wrong radius: how it follows from the commands, or that the commands change."""
+    return CHANGE if steady_command(evidence) is None else radius_of_commands(evidence)
+
+
 def why_elsewhere(evidence: Evidence) -> Cause:
     """Return the cause of a circle that has the right size but the wrong place."""
     steady = steady_command(evidence)
     if steady is None:
         first, last = evidence.commands[0], evidence.commands[-1]
-        text = "The commands change. A circle needs the same command all the time."
+        text = CHANGE
         if (first.linear, first.angular) != (last.linear, last.angular):
             text = (
                 "The first command differs from the last one, so the turtle may have left its start position before "

@@ -1,12 +1,15 @@
-"""Why commands or log lines stop before the end: a timer is cancelled."""
+"""Why commands or log lines stop before the end: the node exits, a timer is cancelled, or a condition becomes false."""
 
 from __future__ import annotations
 
+import ast
 from typing import TYPE_CHECKING
+
+from grader.checks.causes.crash import ended_early
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
-    from grader.submission.where import Where
 
 CANCELS = "cancel stops the timer, so it does not call its method again."
 
@@ -16,3 +19,29 @@ def cancelled(evidence: Evidence) -> Where | None:
     if evidence.code.calls("create_timer") and evidence.code.calls("cancel"):
         return evidence.place("cancel")
     return None
+
+
+def why_stopped(evidence: Evidence, call: str) -> tuple[str, Where | None]:
+    """Return the reason why `call` was not called until the end, and its place. The reason may be empty."""
+    stop = cancelled(evidence)
+    early = ended_early(evidence)
+    if early or stop is not None:
+        return early or CANCELS, stop
+    condition = _condition(evidence, call)
+    if condition is None:
+        return "", None
+    return f"{call} is called only if the condition in line {condition.line} is true.", condition
+
+
+def _condition(evidence: Evidence, call: str) -> Where | None:
+    """Return the if statement that contains the only call of `call`, or None."""
+    calls = evidence.code.calls(call)
+    if len(calls) != 1:
+        return None
+    around = [
+        node
+        for node in calls[0].module.nodes
+        if isinstance(node, ast.If) and any(calls[0].node in ast.walk(each) for each in node.body)
+    ]
+    inner = max(around, key=lambda node: node.lineno, default=None)
+    return None if inner is None else Where(calls[0].module.file, inner.lineno)

@@ -15,6 +15,7 @@ from grader.checks.causes.why_path import (
     radius_of_commands,
     steady_command,
     why_elsewhere,
+    why_radius,
     why_replaced,
 )
 from grader.checks.causes.why_stopped import cancelled
@@ -171,7 +172,7 @@ def _measured(evidence: Evidence, params: CircleParams, trajectory: Trajectory, 
         return failed(
             observed,
             expected,
-            Cause("wrong-radius", radius_of_commands(evidence), line_of_values(evidence)),
+            Cause("wrong-radius", why_radius(evidence), line_of_values(evidence)),
             near_edge=near,
         )
     if not place.holds(centre):

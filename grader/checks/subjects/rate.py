@@ -20,7 +20,7 @@ from grader.checks.causes.why_rate import (
     why_sleep_in_callback,
     why_timers_grow,
 )
-from grader.checks.causes.why_stopped import CANCELS, cancelled
+from grader.checks.causes.why_stopped import CANCELS, cancelled, why_stopped
 from grader.checks.edit import at
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, Status, failed, passed
@@ -274,8 +274,7 @@ def _stopped(evidence: Evidence, what: Subject, measured: Measured, expected: st
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, f"{observed} {end_observed(evidence)}", wanted)
-    stop = cancelled(evidence)
-    cause = ended_early(evidence) or (CANCELS if stop else "")
+    cause, stop = why_stopped(evidence, what.call)
     return failed(
         observed, wanted, Cause("stopped-early", cause, stop or evidence.place(what.call)), near_edge=near_edge
     )

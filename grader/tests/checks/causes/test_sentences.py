@@ -61,6 +61,7 @@ def cause(line: str, error: str) -> str:
             NO_NAME.format("Node"),
         ),
         ("There is a name node.", "node = self; rclpy.spin(Node)", "node = self; Node()", NO_NAME.format("Node")),
+        ("This is a future.", "x = answer.name", None, NO_ATTRIBUTE.format("'Future' object", "name")),
         ("the object is called this", "this.count = 1", None, NO_NAME.format("this")),
         ("A method can use self only if", "self.count = 1", None, NO_NAME.format("self")),
         (

@@ -34,6 +34,16 @@ def ended(source: str, t_s: float = 3.0) -> tuple[str, str, int | None]:
     [
         ("rclpy.spin  # look", "not-called", "This line names rclpy.spin but does not call it"),
         ("return  # look\n    rclpy.spin(Driver())", "ends-at-once", "main returns here, before it calls rclpy.spin."),
+        (
+            "pass\n\nif __name__ == '__main__':  # look\n    rclpy.spin(Driver())",
+            "ends-at-once",
+            "rclpy.spin is called only in this block, which does not run",
+        ),
+        (
+            "rclpy.spin(Driver())  # look\n\nif __name__ == '__main__':\n    main(); rclpy.spin(Driver())",
+            "ended-early",
+            "",
+        ),
         ("node = Driver()", "no-spin", "rclpy.spin keeps a node running, but it is never called."),
         ("rclpy.spin_once(Driver())  # look", "spin-once", "rclpy.spin_once handles one event"),
         ("while True: rclpy.spin_once(Driver())", "ended-early", ""),

@@ -105,6 +105,15 @@ def test_a_circle_in_the_wrong_place_is_explained_by_the_commands() -> None:
     assert finding("circle", evidence(recording(between))).cause == circle("spiral").cause
 
 
+def test_a_wrong_radius_is_explained_by_the_commands() -> None:
+    assert circle("swapped").cause.endswith("1.0 / 2.0 = 0.5 m.")
+    alternating = [
+        (t_s, 1.2 * (index % 2), 0.4 * (1 - index % 2)) for index, (t_s, _, _) in enumerate(every(0.1, 0, 0))
+    ]
+    found = finding("circle", evidence(recording(alternating)))
+    assert (found.diagnosis, found.cause) == ("wrong-radius", circle("spiral").cause)
+
+
 def test_two_turns_may_be_requested() -> None:
     short = found_by(CIRCLE, evidence(SHAPES["good"]()), radius_m=2.0, turns=2.0)
     assert (short.diagnosis, short.observed) == ("too-short", "The turtle drove 1.51 of a turn.")

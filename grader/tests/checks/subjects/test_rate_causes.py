@@ -177,3 +177,13 @@ def test_a_loop_without_a_pause_is_reported_with_its_line() -> None:
     assert finding("rate", evidence(slow, node(loop))).diagnosis == "wrong-rate"
     quick = recording([(index / 4.3, 2.0, 1.0) for index in range(1, 43)])
     assert finding("rate", evidence(quick, node(loop))).diagnosis == "loop-without-pause"
+
+
+def test_a_condition_around_the_only_call_explains_why_commands_stop() -> None:
+    publish = "        self.publisher.publish("
+    found = rate("three quarters", (publish, f"        if self.count < 9:\n    {publish}"))
+    assert found.diagnosis == "stopped-early"
+    line = str(found.where).rpartition(":")[2]
+    assert found.cause == f"publish is called only if the condition in line {line} is true."
+    other = rate("three quarters", (publish, f"        if self.count < 9:\n            return\n{publish}"))
+    assert (other.diagnosis, other.cause) == ("stopped-early", "")
