@@ -102,7 +102,9 @@ def _stands_still(evidence: Evidence, left: list[Track]) -> Cause:
                 return why
         text = f"The turtle stands beside {shorten(near.turtle)}."
         return Cause("stands-still", text, evidence.place("call_async", "publish"))
-    text = "The turtle stood still at the end. After a catch, the node must choose the next nearest target."
+    text = (
+        "The turtle stood still at the end. After a catch, the node must choose the nearest of the remaining targets."
+    )
     return Cause("stands-still", text, evidence.place("call_async", "publish"))
 
 
