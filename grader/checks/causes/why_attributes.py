@@ -207,7 +207,8 @@ def _of_own_class(scene: CrashScene, owner: str, name: str) -> Cause:
     own = scene.class_named(owner)
     assert own is not None
     made = next((each for each in methods(own) if each.name == "__init__"), None)
-    if name.startswith("_") and not name.startswith("__") and made is not None:
+    is_own = any(isinstance(node, ast.Attribute) and node.attr == name for node in scene.on_line)
+    if name.startswith("_") and not name.startswith("__") and made is not None and not is_own:
         base = [node for node in ast.walk(made) if isinstance(node, ast.Call) and (_attr(node.func) == "__init__")]
         if not base:
             text = "__init__ never calls super().__init__, which creates the node."

@@ -72,9 +72,19 @@ def _swapped(facts: Facts, _: re.Match[str], outcome: Outcome) -> bool:
     for size in (1, 2):
         here = "\n".join(new[where.line - 1 : where.line - 1 + size])
         there = ["\n".join(old[at : at + size]) for at in range(len(old))]
-        if any(each != here and Counter(WORD.findall(each)) == Counter(WORD.findall(here)) for each in there):
+        if any(each != here and _is_other_order(WORD.findall(each), WORD.findall(here)) for each in there):
             return True
     return False
+
+
+def _is_other_order(right: list[str], wrong: list[str]) -> bool:
+    """Return whether the same words are in another order. Another mistake may have changed one of the words."""
+    removed, added = Counter(right) - Counter(wrong), Counter(wrong) - Counter(right)
+    if removed.total() > 1 or added.total() > 1:
+        return False
+    return [word for word in right if word not in removed] != [word for word in wrong if word not in added] or (
+        not removed and not added
+    )
 
 
 def _timers(facts: Facts, match: re.Match[str], _: Outcome) -> bool:

@@ -243,3 +243,11 @@ def test_an_attribute_that_a_base_class_misses_is_told(set_there: str, *, found:
     circle = f"class Circle(Driver):\n    def start(self):\n        {set_there}\n"
     given = reported(source, NO_ATTRIBUTE.format("'Circle' object", "pub"), {"my_robot_controller/circle.py": circle})
     assert (given.cause == "Nothing sets self.pub, and the class has no method with that name.") == found
+
+
+@pytest.mark.parametrize(
+    ("line", "found"), [("self.create_timer(1.0, self.send)", True), ("self._timer.cancel()", False)]
+)
+def test_an_attribute_of_rclpy_is_not_confused_with_the_students(line: str, *, found: bool) -> None:
+    given = cause(line, NO_ATTRIBUTE.format("'Driver' object", "_default_callback_group" if found else "_timer"))
+    assert ("super().__init__ creates the node." in given) == found
