@@ -21,7 +21,6 @@ from grader.exercise.completion import steps as known_steps
 from grader.gradebook import cli as gradebook
 from grader.learner import cli as learner
 from grader.open import cli as open_course
-from grader.setup import bootstrap
 from grader.setup import cli as setup
 from grader.view import cli as view
 
@@ -218,6 +217,8 @@ def main() -> None:
     except Exception as error:
         if os.environ.get("GRADER_DEBUG"):
             raise
+        from grader.setup import bootstrap
+
         refused = refusal(error) or bootstrap.outdated(error)
         if refused:
             typer.secho(f"grader: {refused}", err=True)
