@@ -1,4 +1,4 @@
 # Adds ROS 2, its commands and `grader` to this terminal. Type this in each new terminal, with your path:
 #     source ~/ros2-course/.venv/setup.bash
-# The file is in the root of the environment, as in /opt/ros/jazzy. If a ROS 2 Jazzy is sourced, that one is used.
+# The file is in the root of the environment, as in /opt/ros/jazzy. If a ROS 2 Jazzy is sourced, the sourced ROS 2 is used.
 eval "$("$(CDPATH= cd -- "$(dirname -- "${BASH_SOURCE[0]}")" > /dev/null && pwd)/bin/grader" env)"

@@ -12,7 +12,7 @@ _NONE: Mapping[str, str] = MappingProxyType({})
 
 
 class Group(NamedTuple):
-    """A command group, which is the word after `ros2`. It is not a dataclass, whose import would slow each command.
+    """A command group, which is the word after `ros2`. A dataclass would slow each command by its import.
 
     `verbs` maps the words that may follow the group to their help. A group without verbs is a command. `flags`
     maps options that may come before the verb to their help. With `runs_itself`, the group also works without a verb.

@@ -1,4 +1,4 @@
-// A copy button next to each block of code. For a terminal, it copies only the commands, without prompt and output.
+// A copy button next to each block of code. For a terminal, the button copies only the commands, not the output.
 
 const SHOWN_MS = 2000;
 

@@ -1,5 +1,5 @@
-// Figures that the reader changes with sliders. Each is a pure function from the values to shapes and a text with
-// the same content.
+// Figures that the reader changes with sliders. Each figure is a pure function from the values to shapes and a text
+// with the same content.
 
 import { drive, errors, SIDE_M, START, toWorld } from "./motion.js";
 import { element } from "./svg.js";

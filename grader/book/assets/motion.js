@@ -1,5 +1,5 @@
 // The motion of the turtle for the figures, with the rules of the simulator (grader/turtlesim/turtle.py). A test
-// compares them.
+// compares the two motions.
 
 export const SIDE_M = 11.088889122009277;
 export const FRAME_S = 0.016;
@@ -10,7 +10,7 @@ export function normalize(angle) {
   return Math.atan2(Math.sin(angle), Math.cos(angle));
 }
 
-// Return the pose one frame later, at v m/s and w rad/s. The turtle first turns and then moves. Walls stop it.
+// Return the pose one frame later, at v m/s and w rad/s. The turtle first turns and then moves. Walls stop the turtle.
 export function step({ x, y, theta }, v, w) {
   const turned = normalize(theta + w * FRAME_S);
   const wanted = { x: x + Math.cos(turned) * v * FRAME_S, y: y + Math.sin(turned) * v * FRAME_S };

@@ -21,7 +21,7 @@ export function find(index, query) {
   return found.slice(0, MOST).map((each) => each.entry);
 }
 
-// Return the text around the first word. It begins and ends with whole words.
+// Return the text around the first word. The text begins and ends with whole words.
 export function excerpt(text, query) {
   const at = Math.max(...words(query).map((word) => text.toLowerCase().indexOf(word)), 0);
   const from = at > AROUND ? text.indexOf(" ", at - AROUND) + 1 : 0;
@@ -73,7 +73,7 @@ export function addSearch(box, root) {
   }
 
   input.addEventListener("input", show);
-  // The arrow keys move through the results, and Enter follows the first one.
+  // The arrow keys move through the results, and Enter opens the first result.
   function move(by) {
     const places = [input, ...found.querySelectorAll("a")];
     places[places.indexOf(document.activeElement) + by]?.focus();

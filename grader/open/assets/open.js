@@ -44,7 +44,7 @@ function showHints(state) {
   find("hint").disabled = !state.more_hints;
 }
 
-// Show the checks with their lesson. The verdict is always that of the current step.
+// Show the checks with their lesson. The verdict is always the verdict of the current step.
 function show(state) {
   if (!state.steps) return;
   showSteps(state.steps);
@@ -69,7 +69,7 @@ async function next() {
   else location.href = `/${answer.step}/index.html`;
 }
 
-// The pane that a narrow page shows. A phone shows one at a time, and a wide screen several.
+// The pane that a narrow page shows. A phone shows one pane at a time, and a wide screen shows several panes.
 function addTabs() {
   const buttons = [...document.querySelectorAll("[data-shows]")];
   const choose = (name) => {

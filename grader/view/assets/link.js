@@ -1,4 +1,5 @@
-// The connection to the server. It reconnects automatically, and reports when the page is hidden or shown.
+// The connection to the server. A lost connection is restored automatically, and the server is told when the page is
+// hidden or shown.
 
 const AGAIN_MS = 700;
 

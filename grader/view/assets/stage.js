@@ -51,7 +51,7 @@ export class Stage {
     below.src = `data:image/png;base64,${picture}`;
   }
 
-  // Draw strokes. Each one is an array of red, green, blue, width, and the x, y of its points.
+  // Draw strokes. Each stroke is an array of red, green, blue, width, and the x, y of its points.
   draw(strokes) {
     const scale = this.canvas.width / UNITS;
     const pen = this.pen;

@@ -1,4 +1,4 @@
-// The last command as two arrows: a straight arrow for the linear velocity, and a curved one for the angular velocity.
+// The last command as two arrows: a straight arrow for the linear velocity, a curved arrow for the angular velocity.
 
 import { element } from "./svg.js";
 
