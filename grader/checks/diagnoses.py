@@ -55,7 +55,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "topic-namespace": "the topic is in a namespace",
         "qos-mismatch": "the QoS settings of publisher and subscription are not compatible",
         "blocks-in-init": "__init__ never returns",
-        "waits-in-callback": "a callback waits for a response that it prevents from arriving",
+        "waits-in-callback": "a callback waits, so the node cannot receive what the callback waits for",
         "service-not-there": "the node waits for a service that does not exist",
         "method-never-called": "the method that publishes or logs is never called",
         "never-publishes": "the line that publishes never runs, or only runs at the start",

@@ -40,6 +40,7 @@ from grader.checks.subjects import (
     tests_written,
     topic,
     values,
+    waits,
 )
 
 if TYPE_CHECKING:
@@ -83,6 +84,7 @@ KINDS: Mapping[str, Kind[Any]] = {
         answers.GRAPH,
         answers.RATE,
         no_calls.NO_CALLS,
+        waits.NEVER_WAITS,
         arc.ARC,
         services.CALLS,
         services.ANSWERS,

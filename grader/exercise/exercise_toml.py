@@ -35,6 +35,7 @@ from grader.exercise.own_numbers import NumbersSpec, Own
 from grader.exercise.presets import expand, problem_of
 from grader.exercise.scenario_toml import ID, NAME, ROS_NAME, read_trials
 from grader.exercise.tables import Table, read_toml, shown
+from grader.exercise.tests_toml import unknown_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -99,7 +100,7 @@ def _read(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) 
     numbers = _numbers(top.table("numbers"), id_) if "numbers" in top.values else None
     trials = read_trials(top, package)
     checks = _checks(top, tuple(trial.id for trial in trials), kinds, numbers)
-    for problem in unknown_calls(trials, checks):
+    for problem in (*unknown_calls(trials, checks), *unknown_numbers(trials, numbers)):
         top.problem(problem)
     exercise = Exercise(
         id=id_,

@@ -6,7 +6,13 @@ node differs from the correct node in at least one field.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from grader.exercise.own_numbers import Value
 
 WALLS = ("left", "right", "bottom", "top")
 MESSAGES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
@@ -29,6 +35,8 @@ class Behaviour:
     """The speed near a wall."""
     turn_rad_s: float = 1.5
     """The angular speed near a wall. A positive value turns left."""
+    turns_left: bool = True
+    """Whether the sign of `turn_rad_s` is kept. If not, the node turns in the other direction."""
     speed_field: str = "linear.x"
     turn_field: str = "angular.z"
     margin_m: float = 1.0
@@ -58,7 +66,8 @@ class TestsSpec:
     """The table `[trial.tests]`: the student's tests run on the correct node and on every broken node.
 
     The tests import the class `name` from `module`. The tests run `right_runs` times on the correct node. `duration_s`
-    (s) is the maximum duration of one run.
+    (s) is the maximum duration of one run. `own` contains the fields of `Behaviour` in which the student's own numbers
+    of the same names replace the values of `right`.
     """
 
     __test__ = False  # keeps pytest from collecting this class
@@ -69,3 +78,19 @@ class TestsSpec:
     duration_s: float
     right: Behaviour
     broken: tuple[NodeUnderTest, ...] = field(default=())
+    own: tuple[str, ...] = ()
+
+    def with_numbers(self, numbers: Mapping[str, Value]) -> TestsSpec:
+        """Return the nodes with the student's own numbers. A broken node keeps the fields in which it is broken."""
+        drawn = {name: float(numbers[name]) for name in self.own}
+
+        def with_drawn(behaviour: Behaviour) -> Behaviour:
+            kept = {name: value for name, value in drawn.items() if _same(behaviour, self.right, name)}
+            return replace(behaviour, **kept)  # type: ignore[arg-type]
+
+        broken = tuple(NodeUnderTest(each.id, with_drawn(each.behaviour)) for each in self.broken)
+        return replace(self, right=with_drawn(self.right), broken=broken)
+
+
+def _same(behaviour: Behaviour, right: Behaviour, name: str) -> bool:
+    return bool(getattr(behaviour, name) == getattr(right, name))

@@ -6,9 +6,14 @@ import re
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING
 
+from grader.common.words import shorten
 from grader.exercise.node_under_test import FIELDS, MESSAGES, WALLS, Behaviour, NodeUnderTest, TestsSpec
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from grader.exercise.model import TrialSpec
+    from grader.exercise.own_numbers import NumbersSpec
     from grader.exercise.tables import Table
 
 MODULE = re.compile(r"[a-z]\w*(\.[a-z]\w*)+")
@@ -34,9 +39,20 @@ def read_tests(table: Table) -> TestsSpec:
         duration_s=duration_s,
         right=right,
         broken=tuple(_broken(each, right) for each in broken),
+        own=tests.strings("own"),
     )
     tests.finish()
     return spec
+
+
+def unknown_numbers(trials: Sequence[TrialSpec], numbers: NumbersSpec | None) -> Iterator[str]:
+    """Yield a message for each value of `own` that is not a number of the right node and of `[numbers]`."""
+    options = {} if numbers is None else numbers.options
+    for tests in (trial.tests for trial in trials if trial.tests is not None):
+        for name in tests.own:
+            drawn = options.get(name, ())
+            if not drawn or isinstance(drawn[0], str) or not isinstance(getattr(tests.right, name, None), float):
+                yield f'[trial.tests]: "own" contains {shorten(name)}; it must be a number of the node and [numbers].'
 
 
 def _broken(table: Table, right: Behaviour) -> NodeUnderTest:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
+from grader.checks.own_values import drawn_numbers
 from grader.common.words import count
 from grader.evidence.evidence import Run
+from grader.exercise.own_numbers import OwnNumbers
 from grader.grading.clock import Attempt
 from grader.submission.reader import read
 from grader.testbench.bench import Bench
@@ -17,10 +19,22 @@ if TYPE_CHECKING:
 
     from grader.checks.outcome import Finding
     from grader.evidence.evidence import Evidence
+    from grader.exercise.node_under_test import TestsSpec
     from grader.grading.judging import Judging
     from grader.grading.options import Options
     from grader.grading.stopwatch import Stopwatch
     from grader.ros.installation import Ros
+
+
+def tests_of(evidence: Evidence) -> TestsSpec:
+    """Return the nodes on which the tests run, with the student's own numbers.
+
+    If these numbers cannot be read, a check fails, and the other checks are not judged.
+    """
+    spec = evidence.trial.tests
+    assert spec is not None
+    drawn = drawn_numbers(evidence) if spec.own else None
+    return spec.with_numbers(drawn.values) if isinstance(drawn, OwnNumbers) else spec
 
 
 class Tests:
@@ -48,8 +62,7 @@ class Tests:
     def start(self, views: Iterable[Evidence]) -> None:
         """Start the student's tests in each of these trials. The tests do not need the build."""
         for view in views:
-            spec = view.trial.tests
-            assert spec is not None
+            spec = read(tests_of, view)
             bench = self._started[view.trial.id] = Bench(
                 spec,
                 view.trial.node,

@@ -9,15 +9,19 @@ from grader.checks.exercises import find_exercise
 from grader.common.words import printable
 from grader.errors import UsageError
 from grader.exercise.markers import MEANT, solved, syntax_of
+from grader.exercise.model import catalogue
 from grader.learner import progress, workspace
 from grader.learner.in_words import difference
 from grader.submission import tree
 from grader.submission.reader import read
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from rich.console import Console
+
+    from grader.exercise.model import Exercise
 
 WIDE = 120
 """The number of columns that a terminal needs to show both files side by side.
@@ -42,7 +46,9 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
         raise UsageError(message)
     ideal = workspace.solution(exercise)
     # Later steps change the rest of the package, so compare only files that the learner had to write.
-    ours = _texts(ideal / exercise.package if exercise.package else ideal, marked=True)
+    asked = _asked(exercise)
+    texts = _texts(ideal / exercise.package if exercise.package else ideal)
+    ours = {path: text for path, text in texts.items() if path in asked}
     theirs = _texts(workspace.work_folder(exercise, root))
     same = [path for path in ours if theirs.get(path) == ours[path]]
     for path in ours:
@@ -56,8 +62,21 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
         console.print("\n" + text.replace("\n   ", " "), markup=False)  # the console wraps lines
 
 
-def _texts(folder: Path, *, marked: bool = False) -> dict[str, str]:
-    """Return the text of each file by path. With `marked`, return only files in which the student must write code."""
+def _asked(exercise: Exercise) -> set[str]:
+    """Return the files in which this step asks for code. A later step repeats the tasks of an earlier one unchanged."""
+    ours = _solution_files(exercise)
+    marked = [path for path in ours if syntax_of(path) and MEANT.search(ours[path].decode("utf-8", "ignore"))]
+    earlier = [_solution_files(find_exercise(id_)) for id_ in catalogue() if id_ < exercise.id]
+    return {path for path in marked if all(files.get(path) != ours[path] for files in earlier)}
+
+
+def _solution_files(exercise: Exercise) -> Mapping[str, bytes]:
+    folder = workspace.solution(exercise)
+    return read(tree.read_folder, folder / exercise.package if exercise.package else folder).files
+
+
+def _texts(folder: Path) -> dict[str, str]:
+    """Return the text of each file by path."""
     files = read(tree.read_folder, folder).files
     texts = {}
     for path in sorted(files, key=tree.sort_key):
@@ -66,8 +85,7 @@ def _texts(folder: Path, *, marked: bool = False) -> dict[str, str]:
         except UnicodeDecodeError:
             continue
         syntax = syntax_of(path)
-        if not marked or (syntax and MEANT.search(text)):
-            texts[path] = solved(text, syntax, path) if syntax else text
+        texts[path] = solved(text, syntax, path) if syntax else text
     return texts
 
 

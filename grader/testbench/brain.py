@@ -84,5 +84,5 @@ class Brain:
     def _command(self, speed_m_s: float, turn_rad_s: float) -> Values:
         values = dict.fromkeys(FIELDS, 0.0)
         values[self._behaviour.speed_field] = speed_m_s
-        values[self._behaviour.turn_field] = turn_rad_s
+        values[self._behaviour.turn_field] = turn_rad_s if self._behaviour.turns_left else -turn_rad_s
         return list(values.values())

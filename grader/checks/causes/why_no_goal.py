@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.waiting import waits_in_callback
 from grader.checks.causes.why_silent import why_nothing
-from grader.checks.causes.why_unasked import waits_in_callback
 from grader.common.words import shorten
 
 if TYPE_CHECKING:

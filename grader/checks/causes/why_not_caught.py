@@ -6,8 +6,9 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.waiting import waits_in_callback
 from grader.checks.causes.why_silent import why_nothing
-from grader.checks.causes.why_unasked import waits_in_callback, why_unasked
+from grader.checks.causes.why_unasked import why_unasked
 from grader.common.lazy import np
 from grader.common.words import a_list, shorten
 from grader.evidence import activity

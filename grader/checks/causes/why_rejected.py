@@ -23,6 +23,8 @@ OUTSIDE = re.compile(
     r"no display|cannot connect to X|DISPLAY|tkinter|TclError|Network is unreachable|Name or service not known|"
     r"Temporary failure in name resolution|gaierror|Connection refused"
 )
+OF_THE_NODE = re.compile(r"cannot import name '(?P<name>[A-Z][A-Z0-9_]*)'")
+"""A constant of the node's module."""
 ERROR = re.compile(r"^E\s+(?P<text>\w*(?:Error|Exception|Interrupt)\b.*)$", re.MULTILINE)
 
 
@@ -35,8 +37,11 @@ def place_of(run: NodeRun, code: TestCode) -> Where | None:
     return next((Where(module.file) for module in code.modules if module.file == name), None)
 
 
-def why_rejected(run: NodeRun, code: TestCode) -> Cause:
-    """Return the reason why this run of the tests on the correct node did not pass."""
+def why_rejected(run: NodeRun, code: TestCode, numbers: str = "") -> Cause:
+    """Return the reason why this run of the tests on the correct node did not pass.
+
+    `numbers` are the student's own numbers, as in "speed_m_s = 1.1".
+    """
     where = place_of(run, code)
     if run.over:
         text = "A loop that waits for a message needs a deadline. rclpy.spin never returns."
@@ -57,16 +62,22 @@ def why_rejected(run: NodeRun, code: TestCode) -> Cause:
     if OUTSIDE.search(run.message):
         text = "A test must also run without a display and without a network."
         return Cause("needs-the-outside", text, where)
+    constant = OF_THE_NODE.search(run.message)
+    if constant is not None:
+        text = f"Only the class is promised, not {shorten(constant['name'], 60)}. Write your numbers into the tests."
+        return Cause("test-import", text, where)
     if run.outcome == "import":
         return Cause("test-import", shorten(last_error(run.message), 150), where)
     false = always_false(code)
     if false is not None:
         return false
     text = "Compare the test with the promise in wall_guard.py. Does the test give the node enough time?"
+    if numbers:
+        text = f"Compare the test with the promise, and with your numbers: {numbers}. Does the node get enough time?"
     return Cause("rejects-right", text, where)
 
 
 def last_error(message: str) -> str:
     """Return the exception from an excerpt of pytest's output, on one line."""
     found = [match["text"] for match in ERROR.finditer(message)]
-    return found[-1] if found else " ".join(message.split())[:150]
+    return found[-1] if found else " ".join(message.removeprefix("E ").split())[:150]

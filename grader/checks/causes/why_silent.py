@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.timers import timer_fault
+from grader.checks.causes.waiting import waits_in_callback
 from grader.checks.causes.why_ended import SPINS, named_only
 from grader.checks.causes.why_inactive import never_activated
-from grader.checks.causes.why_rate import callbacks_of
 from grader.common.words import nearest, shorten
 from grader.submission.constants import dotted, evaluate
 from grader.submission.where import Where
@@ -79,7 +79,6 @@ def _nothing_to_spin(evidence: Evidence) -> Cause | None:
 
 def _stuck(evidence: Evidence) -> Cause | None:
     """Return the cause if a loop or wait in __init__, or a wait in a callback, never returns. Otherwise return None."""
-    callbacks = {name for _, name in callbacks_of(evidence, "create_timer", "create_subscription")}
     for module, method in methods_of(evidence):
         for node in ast.walk(method):
             where = Where(module.file, getattr(node, "lineno", None))
@@ -96,10 +95,7 @@ def _stuck(evidence: Evidence) -> Cause | None:
                 return Cause(
                     "blocks-in-init", "This loop in __init__ may never end, so rclpy.spin is never reached.", where
                 )
-            if method.name in callbacks and waits_inside(node):
-                text = "This callback waits for a response, but rclpy.spin cannot receive it while the callback waits."
-                return Cause("waits-in-callback", text, where)
-    return None
+    return waits_in_callback(evidence)
 
 
 def _waits(node: ast.AST, module: Module) -> Cause | None:
@@ -149,20 +145,6 @@ def _only_waits(loop: ast.While) -> bool:
     return all(isinstance(each, ast.Pass | ast.Expr) for each in loop.body) and all(
         isinstance(call, ast.Call) and getattr(call.func, "attr", "") == "sleep" for call in calls
     )
-
-
-WAITS = ("spin_until_future_complete", "send_goal", "cancel_goal", "get_result")
-"""Methods that wait for a response. The methods for actions also exist with the ending _async."""
-
-
-def waits_inside(node: ast.AST) -> bool:
-    """Return whether the code waits for a response: spin_until_future_complete, Client.call, or a loop on done()."""
-    if isinstance(node, ast.While):
-        return _calls(node.test, "done")
-    if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
-        return False
-    owner = dotted(node.func.value) or ""
-    return node.func.attr in WAITS or (node.func.attr == "call" and owner.startswith("self."))
 
 
 def _never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:

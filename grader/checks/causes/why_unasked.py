@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
-from grader.checks.causes.why_rate import callbacks_of
-from grader.checks.causes.why_silent import methods_of, waits_inside, why_nothing
+from grader.checks.causes.waiting import waits_in_callback
+from grader.checks.causes.why_silent import why_nothing
 from grader.common.words import nearest, shorten
 from grader.submission.constants import evaluate
-from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
-
-CALLBACKS = ("create_timer", "create_subscription", "create_service", "add_done_callback")
 
 
 def why_unasked(evidence: Evidence, service: str) -> Cause:
@@ -27,30 +23,6 @@ def why_unasked(evidence: Evidence, service: str) -> Cause:
         or why_nothing(evidence, ("call_async", "call"))
         or _never_called(evidence)
     )
-
-
-def waits_in_callback(evidence: Evidence) -> Cause | None:
-    """Return the cause if a callback, or a method called by a callback, waits for a response. Otherwise return None."""
-    methods = {method.name: (module, method) for module, method in methods_of(evidence)}
-    reached = {name for _, name in callbacks_of(evidence, *CALLBACKS)}
-    waiting = sorted(reached)
-    while waiting:
-        name = waiting.pop()
-        if name not in methods or name == "__init__":
-            continue
-        module, method = methods[name]
-        for node in ast.walk(method):
-            if waits_inside(node):
-                text = (
-                    "A callback waits for a response. While the callback waits, rclpy.spin cannot receive the "
-                    "response. "
-                    "Use the method whose name ends in _async, and pass the next step to add_done_callback."
-                )
-                return Cause("waits-in-callback", text, Where(module.file, getattr(node, "lineno", None)))
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr not in reached:
-                reached.add(node.func.attr)
-                waiting.append(node.func.attr)
-    return None
 
 
 def _wrong_name(evidence: Evidence, wanted: str) -> Cause | None:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.waiting import waits_in_callback
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_no_goal import why_aborted
-from grader.checks.causes.why_unasked import waits_in_callback
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.subjects.goals import goals_of, no_goal

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.waiting import waits_in_callback
 from grader.checks.causes.why_crashed import crash_finding
-from grader.checks.causes.why_unasked import waits_in_callback, why_unasked
+from grader.checks.causes.why_unasked import why_unasked
 from grader.checks.kind import Kind, number, string, table
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.tolerance import Band

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.waiting import waits_in_callback
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_killed import why_killed
 from grader.checks.causes.why_rate import callbacks_of
 from grader.checks.causes.why_silent import methods_of, why_nothing
-from grader.checks.causes.why_unasked import waits_in_callback, why_unasked
+from grader.checks.causes.why_unasked import why_unasked
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.services import calls_of, no_response

@@ -25,6 +25,10 @@ TEXT = (
     "If somebody renames a method of the node, the tests fail, although the node is correct. Send a pose on its "
     "topic, advance the clock, and look at the messages that arrive."
 )
+NUMBERS = (
+    "A test that takes the expected number from the node accepts every number, wrong ones too. Write the numbers into "
+    "the tests."
+)
 
 
 def promises(evidence: Evidence, _: NoParams) -> Finding:
@@ -38,6 +42,12 @@ def promises(evidence: Evidence, _: NoParams) -> Finding:
     nodes = {spec.name}.union(*(_names_of_nodes(module, spec.name) for module in modules))
     for module in modules:
         for use in module.nodes:
+            if isinstance(use, ast.ImportFrom) and use.module == spec.module:
+                other = next((each.name for each in use.names if each.name not in (spec.name, "main", "*")), None)
+                if other is not None and other in _constants(evidence, spec.module):
+                    cause = Cause("uses-own-names", NUMBERS, Where(module.file, use.lineno))
+                    observed = f"The tests import {shorten(other)} from the node, which does not promise it."
+                    return failed(observed, expected, cause)
             if isinstance(use, ast.Attribute) and use.attr in own and _last(use.value) in nodes:
                 written = shorten(ast.unparse(use), 60)
                 cause = Cause("uses-own-names", TEXT, Where(module.file, use.lineno))
@@ -57,6 +67,16 @@ def _own_names(evidence: Evidence, module: str, name: str) -> set[str]:
             names |= {each.name for each in node.body if isinstance(each, Function)}
             names |= {each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute) and _sets_own(each)}
     return {each for each in names if not each.startswith("__")}
+
+
+def _constants(evidence: Evidence, module: str) -> set[str]:
+    """Return the names that this module assigns at its top level."""
+    files = evidence.submission.files
+    file = module_file(module, files)
+    if file is None:
+        return set()
+    assigned = (each for each in read_module(file, files[file]).body if isinstance(each, ast.Assign))
+    return {target.id for each in assigned for target in each.targets if isinstance(target, ast.Name)}
 
 
 def _sets_own(node: ast.Attribute) -> bool:

@@ -11,8 +11,10 @@ from grader.checks.causes.why_no_test import why_no_test
 from grader.checks.causes.why_rejected import last_error, why_rejected
 from grader.checks.kind import Kind, NoParams, string
 from grader.checks.outcome import Finding, failed, passed
+from grader.checks.own_values import drawn_numbers
 from grader.checks.subjects.tests_written import code_of
 from grader.common.words import count, shorten
+from grader.exercise.own_numbers import OwnNumbers
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -56,7 +58,15 @@ def pass_(evidence: Evidence, _: NoParams) -> Finding:
         cause = Cause("unsteady-tests", UNSTEADY, why_rejected(rejected[0], code).where)
         observed = f"The tests pass on the correct node in {len(runs) - len(rejected)} of {count(len(runs), 'run')}."
         return failed(observed, expected, cause)
-    return failed(_observed(rejected[0]), expected, why_rejected(rejected[0], code))
+    return failed(_observed(rejected[0]), expected, why_rejected(rejected[0], code, _numbers(evidence)))
+
+
+def _numbers(evidence: Evidence) -> str:
+    """Return the student's own numbers in words, or an empty string if the exercise has none."""
+    drawn = drawn_numbers(evidence) if evidence.exercise.numbers is not None else None
+    if not isinstance(drawn, OwnNumbers):
+        return ""
+    return ", ".join(f"{name} = {value}" for name, value in drawn.values.items())
 
 
 LEFT_OUT = "Options in setup.cfg or pytest.ini can exclude tests, and a test can end pytest itself."

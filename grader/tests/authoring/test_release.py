@@ -24,6 +24,16 @@ def root(tmp_path: Path) -> Path:
     return tmp_path
 
 
+def test_no_later_starting_point_contains_the_solution_of_a_step() -> None:
+    steps = sorted(folder.name for folder in (ROOT / "solutions").iterdir() if folder.name >= "07")
+    nodes = {step: {path.name: path for path in (ROOT / "solutions" / step).glob("*/*/*.py")} for step in steps}
+    for place, step in enumerate(steps):
+        own = [name for name, path in nodes[step].items() if place == 0 or name not in nodes[steps[place - 1]]]
+        marked = [name for name in own if "BEGIN STARTER" in nodes[step][name].read_text()]
+        later = [(other, name) for other in steps[place + 1 :] for name in marked if name in nodes[other]]
+        assert [each for each in later if nodes[each[0]][each[1]].read_text() != nodes[step][each[1]].read_text()] == []
+
+
 def test_exercises_are_up_to_date_with_solutions() -> None:
     assert stale(ROOT / "solutions", ROOT / "exercises") == ()
 

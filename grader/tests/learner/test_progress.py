@@ -248,6 +248,17 @@ def test_the_solution_shows_only_files_that_the_learner_had_to_write(home: Path)
     assert "Afterwards: answers to" in text
 
 
+def test_the_solution_does_not_show_the_nodes_of_earlier_steps() -> None:
+    steps.start("12", None)
+    passed("12-tests")
+    said = Console(width=100, record=True, file=io.StringIO())
+    print_solution("12", None, said)
+    text = said.export_text()
+    assert "test/test_wall_guard.py" in text
+    assert "wall_guard.py" in text
+    assert [name for name in ("two_pens", "tunable_circle", "draw_star", "circle_fit") if f"{name}.py" in text] == []
+
+
 def test_the_parts_of_the_course_are_shown_with_their_steps() -> None:
     said = Console(width=100, record=True, file=io.StringIO())
     steps.print_status(None, said)

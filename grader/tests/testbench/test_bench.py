@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.checks.exercises import find_exercise
+from grader.exercise.own_numbers import draw_numbers
 from grader.ros import underlay
 from grader.ros.installation import find_ros
 from grader.sandbox import bubblewrap
@@ -28,9 +29,12 @@ pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no san
 
 
 def spec(*broken: str, right_runs: int = 1, duration_s: float = 20.0) -> TestsSpec:
-    """Return the settings of the course's tests, but with only these broken nodes."""
-    whole = find_exercise(STEP).trials[0].tests
+    """Return the settings of the course's tests with the solution's numbers, but with only these broken nodes."""
+    exercise = find_exercise(STEP)
+    whole = exercise.trials[0].tests
     assert whole is not None
+    assert exercise.numbers is not None
+    whole = whole.with_numbers(draw_numbers(exercise.numbers, "example").values)
     chosen = tuple(each for each in whole.broken if each.id in broken)
     return dataclasses.replace(whole, broken=chosen, right_runs=right_runs, duration_s=duration_s)
 

@@ -47,7 +47,7 @@ def test_the_right_node_keeps_its_promises() -> None:
     ("changed", "poses", "expected"),
     [
         ({"publishes": False}, ((5.0, 5.0),), None),
-        ({"turn_rad_s": -1.5}, ((0.5, 5.0),), {"linear.x": 0.5, "angular.z": -1.5}),
+        ({"turns_left": False}, ((0.5, 5.0),), {"linear.x": 0.5, "angular.z": -1.5}),
         ({"turn_field": "angular.x"}, ((0.5, 5.0),), {"linear.x": 0.5, "angular.x": 1.5}),
         ({"walls": ("left", "right")}, ((5.0, 0.5),), {"linear.x": 1.0}),
         ({"straightens": False}, ((0.5, 5.0), (5.0, 5.0)), {"linear.x": 0.5, "angular.z": 1.5}),
@@ -67,6 +67,18 @@ def test_the_course_has_twelve_different_broken_nodes() -> None:
     assert caught == {each.id for each in spec.broken}
 
 
+def test_each_node_has_the_numbers_of_the_student_but_where_it_is_broken() -> None:
+    spec = find_exercise(STEP).trials[0].tests
+    assert spec is not None
+    drawn = spec.with_numbers({"speed_m_s": 0.8, "turn_rad_s": 1.8, "timeout_s": 1.4})
+    nodes = {each.id: each.behaviour for each in drawn.broken} | {"right": drawn.right}
+    assert {name for name, of in nodes.items() if of.speed_m_s != 0.8} == {"speed"}
+    assert {name for name, of in nodes.items() if of.timeout_s != 1.4} == {"stop"}
+    assert {of.turn_rad_s for of in nodes.values()} == {1.8}
+    assert commands(nodes["sign"], (0.5, 5.0)) == [{"linear.x": 0.5, "angular.z": -1.8}]
+    assert len({*nodes.values()}) == 13
+
+
 def test_a_run_cannot_create_nodes_without_end() -> None:
     brain = Brain(Behaviour(), "wall_guard")
     for _ in range(MOST_NODES + 5):
@@ -83,6 +95,8 @@ def test_a_run_cannot_create_nodes_without_end() -> None:
         ('turn_field = "angular.x"', 'turn_field = "z"', '"turn_field" must be one of'),
         ('walls = ["left", "right"]', 'walls = ["west"]', '"walls" must contain'),
         ("right_runs = 3", "right_runs = 0", '"right_runs" is 0'),
+        ('own = ["speed_m_s"', 'own = ["topic"', '"own" contains topic'),
+        ('own = ["speed_m_s"', 'own = ["slow_m_s"', '"own" contains slow_m_s'),
     ],
 )
 def test_a_mistake_of_the_author_is_told(old: str, new: str, problem: str) -> None:

@@ -5,9 +5,9 @@ from geometry_msgs.msg import Twist
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 
-from std_srvs.srv import SetBool
+# TODO 8: import SetBool from std_srvs.srv.
 
-RADIUS = 1.2  # m
+RADIUS = 1.0  # m; TODO 9: your radius_m from my_numbers_08.toml
 
 
 class PausableCircleNode(Node):
@@ -18,19 +18,12 @@ class PausableCircleNode(Node):
         self.paused = False
         self.publisher = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
         self.timer = self.create_timer(0.1, self.send_velocity_command)
-        self.service = self.create_service(SetBool, "/pause", self.pause)
-
-    def pause(self, request, response):
-        self.paused = request.data
-        response.success = True
-        response.message = "standing still" if self.paused else "driving"
-        return response
+        # TODO 10: create the service /pause, and write its callback: it gets a request and a response, and returns
+        # the response.
 
     def send_velocity_command(self):
         msg = Twist()
-        if not self.paused:
-            msg.linear.x = RADIUS
-            msg.angular.z = 1.0
+        # TODO 11: drive the circle of your radius to the left, but stand still while the node is paused.
         self.publisher.publish(msg)
 
 

@@ -10,8 +10,8 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from turtlesim.action import RotateAbsolute
 
-SIDE = 2.3  # m
-FIRST = math.radians(10)  # rad: the heading of the first side
+SIDE = 1.0  # m; TODO 9: your side_m and first_deg from my_numbers_10.toml
+FIRST = math.radians(0)  # rad: the heading of the first side
 SIDES = 5
 CORNER = math.radians(144)  # rad: the turn from one side to the next
 TICKS = 10  # calls of the timer in one side
@@ -33,19 +33,8 @@ class DrawStarNode(Node):
     def step(self):
         if self.publisher.get_subscription_count() == 0 or not self.client.server_is_ready():
             return  # the simulator is not running yet
-        if self.state == "corner":
-            self.state = "turn"
-            self.turn()
-        elif self.state == "drive":
-            self.drive(SIDE / (TICKS * PERIOD))
-            self.ticks += 1
-            if self.ticks == TICKS:
-                self.state = "end of the side"
-        elif self.state == "end of the side":
-            self.drive(0.0)
-            self.ticks = 0
-            self.sides += 1
-            self.state = "corner" if self.sides < SIDES else "done"
+        # TODO 10: what happens in each state? "corner": send the goal, once. "turn": nothing at all; a command would
+        # abort the goal. "drive": a side in TICKS calls, then a command with zeros, then the next corner or the end.
 
     def drive(self, speed):
         msg = Twist()
@@ -53,16 +42,10 @@ class DrawStarNode(Node):
         self.publisher.publish(msg)
 
     def turn(self):
-        goal = RotateAbsolute.Goal()
-        goal.theta = FIRST + self.sides * CORNER
-        self.client.send_goal_async(goal).add_done_callback(self.goal_accepted)
+        # TODO 11: send the goal for the next side, and ask for its result, as in lookout.py.
+        pass
 
-    def goal_accepted(self, future):
-        future.result().get_result_async().add_done_callback(self.goal_ended)
-
-    def goal_ended(self, future):
-        if future.result().status == GoalStatus.STATUS_SUCCEEDED:
-            self.state = "drive"
+    # TODO 12: when the goal has succeeded, drive.
 
 
 def main(args=None):

@@ -14,40 +14,20 @@ class TunableCircleNode(Node):
 
     def __init__(self):
         super().__init__("tunable_circle")
-        self.declare_parameter(
-            "radius",
-            1.8,
-            ParameterDescriptor(
-                description="radius of the circle, in m",
-                floating_point_range=[FloatingPointRange(from_value=0.2, to_value=3.0)],
-            ),
-        )
-        self.declare_parameter(
-            "speed",
-            1.0,
-            ParameterDescriptor(
-                description="forward speed, in m/s",
-                floating_point_range=[FloatingPointRange(from_value=0.1, to_value=3.0)],
-            ),
-        )
-        self.add_on_set_parameters_callback(self.check)
+        # TODO 2: declare the parameters radius and speed, with your own numbers from my_numbers_09.toml as defaults.
+        # Each gets a ParameterDescriptor with a description and a range: radius 0.2 to 3.0, speed 0.1 to 3.0.
+        # TODO 3: let rclpy call self.check before a parameter changes: add_on_set_parameters_callback.
         self.publisher = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
         self.timer = self.create_timer(0.1, self.send_velocity_command)
 
     def check(self, parameters):
-        wanted = {name: self.get_parameter(name).value for name in ("radius", "speed")}
-        wanted.update({parameter.name: parameter.value for parameter in parameters})
-        turn = wanted["speed"] / wanted["radius"]
-        if turn > FASTEST_TURN:
-            return SetParametersResult(successful=False, reason=f"{turn:.1f} rad/s is too fast a turn")
+        # TODO 4: refuse values with which the turtle would turn faster than FASTEST_TURN, and say why. The others are
+        # fine.
         return SetParametersResult(successful=True)
 
     def send_velocity_command(self):
         msg = Twist()
-        radius = self.get_parameter("radius").value
-        speed = self.get_parameter("speed").value
-        msg.linear.x = speed
-        msg.angular.z = speed / radius
+        # TODO 5: read both parameters, and drive the circle to the left.
         self.publisher.publish(msg)
 
 

@@ -16,8 +16,8 @@ from my_robot_controller.wall_guard import WallGuard
 
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "OFF"  # no other program takes part in the tests
 
-# TODO 2: write a class Bench with the guard, a listener beside it, and a clock that you move.
+# TODO 3: write a class Bench with the guard, a listener beside it, and a clock that you move.
 
-# TODO 3: write a fixture that gives each test a fresh bench.
+# TODO 4: write a fixture that gives each test a fresh bench.
 
-# TODO 4: write one test for each promise in wall_guard.py.
+# TODO 5: write one test for each promise in wall_guard.py.

@@ -8,7 +8,12 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from turtlesim.srv import SetPen, Spawn
 
+# BEGIN SOLUTION
 RADIUS = 1.2  # m
+# END SOLUTION
+# BEGIN STARTER
+# RADIUS = 1.0  # m; TODO 3: your radius_m from my_numbers_08.toml
+# END STARTER
 TICKS = 30  # calls of the timer in one arc
 PERIOD = 0.1  # s
 TURN = math.pi / (TICKS * PERIOD)  # rad/s: an arc is half a circle
@@ -21,7 +26,12 @@ class TwoPensNode(Node):
         super().__init__("two_pens")
         self.publisher = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
         self.pen = self.create_client(SetPen, "/turtle1/set_pen")
+        # BEGIN SOLUTION
         self.spawn = self.create_client(Spawn, "/spawn")
+        # END SOLUTION
+        # BEGIN STARTER
+        # # TODO 4: create a client for the service /spawn. Which type does it have?
+        # END STARTER
         self.timer = self.create_timer(PERIOD, self.step)
         self.state = "begin"
         self.ticks = 0
@@ -30,6 +40,7 @@ class TwoPensNode(Node):
         if self.publisher.get_subscription_count() == 0:
             return  # no subscriber yet: the command would be lost
         msg = Twist()
+        # BEGIN SOLUTION
         if self.state == "begin":
             if self.pen.service_is_ready() and self.spawn.service_is_ready():
                 self.state = "wait"
@@ -47,12 +58,24 @@ class TwoPensNode(Node):
             self.ticks += 1
             if self.ticks == TICKS:
                 self.state = "done"
+        # END SOLUTION
+        # BEGIN STARTER
+        # # TODO 5: what happens in each state? "begin": request the yellow pen as soon as both services are there.
+        # # "first arc": half a circle to the left in TICKS calls; then ask for the turtle.
+        # # "second arc": half a circle to the right. In all other states, stand still.
+        # END STARTER
         self.publisher.publish(msg)
 
     def ask_for_pen(self, red, green, blue, callback):
         request = SetPen.Request()
         request.r, request.g, request.b, request.width = red, green, blue, 4
+        # BEGIN SOLUTION
         self.pen.call_async(request).add_done_callback(callback)
+        # END SOLUTION
+        # BEGIN STARTER
+        # # TODO 6: make the call without waiting, and let rclpy call `callback` when the response arrives.
+        # END STARTER
+        # BEGIN SOLUTION
 
     def first_pen_is_set(self, future):
         self.state = "first arc"
@@ -69,6 +92,11 @@ class TwoPensNode(Node):
     def second_pen_is_set(self, future):
         self.ticks = 0
         self.state = "second arc"
+        # END SOLUTION
+        # BEGIN STARTER
+
+    # # TODO 7: write a method for each response: what is next? The requests need your numbers from my_numbers_08.toml.
+    # END STARTER
 
 
 def main(args=None):

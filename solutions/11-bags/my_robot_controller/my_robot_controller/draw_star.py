@@ -10,8 +10,14 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from turtlesim.action import RotateAbsolute
 
+# BEGIN SOLUTION
 SIDE = 2.3  # m
 FIRST = math.radians(10)  # rad: the heading of the first side
+# END SOLUTION
+# BEGIN STARTER
+# SIDE = 1.0  # m; TODO 9: your side_m and first_deg from my_numbers_10.toml
+# FIRST = math.radians(0)  # rad: the heading of the first side
+# END STARTER
 SIDES = 5
 CORNER = math.radians(144)  # rad: the turn from one side to the next
 TICKS = 10  # calls of the timer in one side
@@ -33,6 +39,7 @@ class DrawStarNode(Node):
     def step(self):
         if self.publisher.get_subscription_count() == 0 or not self.client.server_is_ready():
             return  # the simulator is not running yet
+        # BEGIN SOLUTION
         if self.state == "corner":
             self.state = "turn"
             self.turn()
@@ -46,6 +53,11 @@ class DrawStarNode(Node):
             self.ticks = 0
             self.sides += 1
             self.state = "corner" if self.sides < SIDES else "done"
+        # END SOLUTION
+        # BEGIN STARTER
+        # # TODO 10: what happens in each state? "corner": send the goal, once. "turn": nothing at all; a command would
+        # # abort the goal. "drive": a side in TICKS calls, then a command with zeros, then the next corner or the end.
+        # END STARTER
 
     def drive(self, speed):
         msg = Twist()
@@ -53,9 +65,16 @@ class DrawStarNode(Node):
         self.publisher.publish(msg)
 
     def turn(self):
+        # BEGIN SOLUTION
         goal = RotateAbsolute.Goal()
         goal.theta = FIRST + self.sides * CORNER
         self.client.send_goal_async(goal).add_done_callback(self.goal_accepted)
+        # END SOLUTION
+        # BEGIN STARTER
+        # # TODO 11: send the goal for the next side, and ask for its result, as in lookout.py.
+        # pass
+        # END STARTER
+        # BEGIN SOLUTION
 
     def goal_accepted(self, future):
         future.result().get_result_async().add_done_callback(self.goal_ended)
@@ -63,6 +82,11 @@ class DrawStarNode(Node):
     def goal_ended(self, future):
         if future.result().status == GoalStatus.STATUS_SUCCEEDED:
             self.state = "drive"
+        # END SOLUTION
+        # BEGIN STARTER
+
+    # # TODO 12: when the goal has succeeded, drive.
+    # END STARTER
 
 
 def main(args=None):

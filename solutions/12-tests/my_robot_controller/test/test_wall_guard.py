@@ -18,6 +18,9 @@ os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "OFF"  # no other program takes pa
 
 # BEGIN SOLUTION
 STEP = 100_000_000  # 0.1 s in nanoseconds
+SPEED = 1.1  # m/s: speed_m_s in my_numbers_12.toml
+TURN = 1.2  # rad/s: turn_rad_s
+TIMEOUT = 1.2  # s: timeout_s
 
 
 class Bench:
@@ -74,7 +77,7 @@ def test_straight_on_in_the_middle(bench):
     bench.pose(5.0, 5.0)
     bench.run(2)
     command = bench.heard[-1]
-    assert command.linear.x == pytest.approx(1.0)
+    assert command.linear.x == pytest.approx(SPEED)
     assert command.angular.z == pytest.approx(0.0)
 
 
@@ -84,7 +87,7 @@ def test_turns_left_at_each_wall(bench, x, y):
     bench.run(2)
     command = bench.heard[-1]
     assert command.linear.x == pytest.approx(0.5)
-    assert command.angular.z == pytest.approx(1.5)
+    assert command.angular.z == pytest.approx(TURN)
 
 
 def test_straight_on_again_after_the_wall(bench):
@@ -97,15 +100,18 @@ def test_straight_on_again_after_the_wall(bench):
 
 def test_stops_when_no_pose_comes(bench):
     bench.pose(5.0, 5.0)
-    bench.run(15)
+    steps = round(TIMEOUT / 0.1)
+    bench.run(steps - 2)
+    assert bench.heard[-1] != Twist()
+    bench.run(4)
     assert bench.heard[-1] == Twist()
 
 
 # END SOLUTION
 # BEGIN STARTER
-# # TODO 2: write a class Bench with the guard, a listener beside it, and a clock that you move.
+# # TODO 3: write a class Bench with the guard, a listener beside it, and a clock that you move.
 #
-# # TODO 3: write a fixture that gives each test a fresh bench.
+# # TODO 4: write a fixture that gives each test a fresh bench.
 #
-# # TODO 4: write one test for each promise in wall_guard.py.
+# # TODO 5: write one test for each promise in wall_guard.py.
 # END STARTER

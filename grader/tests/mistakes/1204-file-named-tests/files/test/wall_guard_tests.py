@@ -69,7 +69,7 @@ def test_straight_on_in_the_middle(bench):
     bench.pose(5.0, 5.0)
     bench.run(2)
     command = bench.heard[-1]
-    assert command.linear.x == pytest.approx(1.0)
+    assert command.linear.x == pytest.approx(1.1)
     assert command.angular.z == pytest.approx(0.0)
 
 
@@ -79,7 +79,7 @@ def test_turns_left_at_each_wall(bench, x, y):
     bench.run(2)
     command = bench.heard[-1]
     assert command.linear.x == pytest.approx(0.5)
-    assert command.angular.z == pytest.approx(1.5)
+    assert command.angular.z == pytest.approx(1.2)
 
 
 def test_straight_on_again_after_the_wall(bench):

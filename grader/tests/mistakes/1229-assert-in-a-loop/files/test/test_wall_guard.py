@@ -63,5 +63,5 @@ def test_straight_on_in_the_middle(bench):
     bench.pose(5.0, 5.0)
     bench.run(10)
     for command in bench.heard:
-        assert command.linear.x == pytest.approx(1.0)
+        assert command.linear.x == pytest.approx(1.1)
         assert command.angular.z == pytest.approx(0.0)

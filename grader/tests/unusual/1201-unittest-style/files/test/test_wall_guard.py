@@ -71,16 +71,16 @@ class TestWallGuard(unittest.TestCase):
         self.assertEqual(len(self.bench.heard), 10)
 
     def test_middle(self):
-        self.assertEqual(self.last(5.0, 5.0), (1.0, 0.0))
+        self.assertEqual(self.last(5.0, 5.0), (1.1, 0.0))
 
     def test_walls(self):
         for x, y in ((0.5, 5.0), (10.5, 5.0), (5.0, 0.5), (5.0, 10.5)):
             with self.subTest(x=x, y=y):
-                self.assertEqual(self.last(x, y), (0.5, 1.5))
+                self.assertEqual(self.last(x, y), (0.5, 1.2))
 
     def test_after_the_wall(self):
         self.last(0.5, 5.0)
-        self.assertEqual(self.last(5.0, 5.0), (1.0, 0.0))
+        self.assertEqual(self.last(5.0, 5.0), (1.1, 0.0))
 
     def test_stop(self):
         self.assertEqual(self.last(5.0, 5.0, steps=15), (0.0, 0.0))

@@ -1,0 +1,210 @@
+"""Waits inside callbacks: calls that return late, or never, while the executor can call no other callback."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.common.words import shorten
+from grader.submission.constants import dotted, evaluate
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from grader.evidence.evidence import Evidence
+    from grader.submission.code import Module
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+
+RESPONSES = ("call", "send_goal", "cancel_goal", "get_result")
+"""Methods of service and action clients that wait for the response. Each of them also exists with the ending _async."""
+SPINS = ("spin", "spin_once", "spin_until_future_complete")
+SERVERS = ("wait_for_service", "wait_for_server")
+SLEEPS = ("sleep", "sleep_for", "sleep_until")
+WAITS = (*RESPONSES, *SPINS, *SERVERS, *SLEEPS)
+LOOP = "while"
+"""The name of a wait that is a loop on done()."""
+THREADS = frozenset({"MultiThreadedExecutor", "Thread", "ThreadPoolExecutor", "Timer", "start_new_thread"})
+"""With one of these, another thread can receive the response while a callback waits."""
+STRAIGHT = frozenset({"__init__", "main"})
+"""Functions that run before rclpy.spin, even if their names are mentioned without a call."""
+OTHER_CALLS = frozenset({"subprocess", "self", "super", "cls"})
+"""Objects whose method `call` is not the one of a service client."""
+
+
+@dataclass(frozen=True)
+class Wait:
+    """A wait in a callback: the `name` of the function that waits, its name as `written`, and its place."""
+
+    name: str
+    written: str
+    where: Where
+
+    @property
+    def deadlock(self) -> bool:
+        """Whether the wait is for a response, which a node with one thread never receives."""
+        return self.name in (LOOP, *RESPONSES, *SPINS)
+
+    @property
+    def observed(self) -> str:
+        """What the callback does, after "A callback"."""
+        return "loops until a future is done" if self.name == LOOP else f"calls {shorten(self.written)}"
+
+    @property
+    def cause(self) -> Cause:
+        """The reason why a callback must not wait in this way, and the alternative."""
+        if self.deadlock:
+            text = (
+                f"{self._subject} waits inside a callback, so rclpy.spin cannot receive the response: a deadlock. "
+                f"{self._instead}"
+            )
+            return Cause("waits-in-callback", text, self.where)
+        if self.name in SERVERS:
+            ready = self.name.replace("wait_for_", "") + "_is_ready"
+            text = (
+                f"{self._subject} waits inside a callback until the server exists, perhaps for ever. Meanwhile, the "
+                f"node calls no other callback. {ready} returns at once."
+            )
+            return Cause("waits-in-callback", text, self.where)
+        text = "While a callback sleeps, the node calls no other callback. Let the timer count, or use a second timer."
+        return Cause("sleep-in-callback", text, self.where)
+
+    @property
+    def _subject(self) -> str:
+        if self.name == LOOP:
+            return "A loop on done()"
+        return self.name if self.name == self.written else f"{self.written}, which is {self.name},"
+
+    @property
+    def _instead(self) -> str:
+        asynchronous = f"{self.name}_async" if self.name in RESPONSES else "the method whose name ends in _async"
+        return f"Use {asynchronous}, and pass the next step to add_done_callback."
+
+
+def waits_in_callbacks(evidence: Evidence) -> list[Wait]:
+    """Return the waits in callbacks and in the functions that callbacks call, in the order of the source."""
+    modules = evidence.code.modules
+    aliases = _aliases(modules)
+    own = {node.name for module in modules for node in module.nodes if isinstance(node, ast.FunctionDef)}
+    found: list[Wait] = []
+    for module, function in _in_callbacks(modules):
+        looped = {id(each) for node in _inside(function) if isinstance(node, ast.While) for each in ast.walk(node.test)}
+        for node in _inside(function):
+            where = Where(module.file, getattr(node, "lineno", None))
+            if isinstance(node, ast.While) and "done" in (_last(each) for each in _calls_in(node.test)):
+                found.append(Wait(LOOP, LOOP, where))
+            elif isinstance(node, ast.Call):
+                written = _last(node)
+                name = aliases.get(written, "") if written not in own & set(WAITS) else ""
+                if isinstance(node.func, ast.Call):
+                    name, written = _function_named(node.func, module), _last(node.func)
+                if name and _really_waits(node, name, written, in_loop=id(node) in looped):
+                    found.append(Wait(name, written, where))
+    places = {module.file: index for index, module in enumerate(modules)}
+    return sorted(set(found), key=lambda wait: (places[wait.where.file], wait.where.line or 0))
+
+
+def has_threads(evidence: Evidence) -> bool:
+    """Return whether the node may receive messages in another thread than the one that waits."""
+    return any(
+        getattr(node, "id", getattr(node, "attr", getattr(node, "name", ""))) in THREADS
+        for module in evidence.code.modules
+        for node in module.nodes
+    )
+
+
+def waits_in_callback(evidence: Evidence) -> Cause | None:
+    """Return the cause if a callback, or a function that it calls, waits for a response. Otherwise return None."""
+    return next((wait.cause for wait in waits_in_callbacks(evidence) if wait.deadlock), None)
+
+
+def _really_waits(call: ast.Call, name: str, written: str, *, in_loop: bool) -> bool:
+    if name in SERVERS:
+        return in_loop or not _has_timeout(call)
+    if written != "call":
+        return True
+    owner = getattr(call.func, "value", None)
+    return isinstance(owner, ast.expr) and not isinstance(owner, ast.Call) and dotted(owner) not in OTHER_CALLS
+
+
+def _has_timeout(call: ast.Call) -> bool:
+    given = [*call.args, *(keyword.value for keyword in call.keywords if keyword.arg in ("timeout_sec", None))]
+    return any(not (isinstance(value, ast.Constant) and value.value is None) for value in given)
+
+
+def _aliases(modules: Iterable[Module]) -> dict[str, str]:
+    """Map each name under which the modules call a function that waits to the name of this function."""
+    aliases = {name: name for name in WAITS}
+    for module in modules:
+        for node in module.nodes:
+            if isinstance(node, ast.ImportFrom):
+                aliases |= {each.asname: each.name for each in node.names if each.asname and each.name in WAITS}
+            value = getattr(node, "value", None)
+            if isinstance(node, ast.Assign | ast.AnnAssign | ast.NamedExpr) and isinstance(value, ast.expr):
+                name = _function_named(value, module)
+                targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+                if name:
+                    aliases |= {(dotted(target) or "").rpartition(".")[2]: name for target in targets}
+    aliases.pop("", None)
+    return aliases
+
+
+def _function_named(value: ast.expr, module: Module) -> str:
+    """Return the function that waits and that the expression is: `client.call`, partial(...), getattr(...), or ""."""
+    if isinstance(value, ast.Attribute) and value.attr in WAITS:
+        return value.attr
+    if isinstance(value, ast.Call) and _last(value) == "partial" and value.args:
+        return _function_named(value.args[0], module)
+    if isinstance(value, ast.Call) and _last(value) == "getattr" and len(value.args) > 1:
+        name = evaluate(value.args[1], module.names)
+        return name if isinstance(name, str) and name in WAITS else ""
+    return ""
+
+
+def _in_callbacks(modules: Iterable[Module]) -> Iterator[tuple[Module, Function]]:
+    """Yield the functions that are passed on instead of called, lambdas, and all functions that these call."""
+    functions: dict[str, list[tuple[Module, Function]]] = {}
+    waiting: list[tuple[Module, Function]] = []
+    passed: set[str] = set()
+    for module in modules:
+        called = {id(node.func) for node in module.nodes if isinstance(node, ast.Call)}
+        for node in module.nodes:
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                functions.setdefault(node.name, []).append((module, node))
+            elif isinstance(node, ast.Lambda):
+                waiting.append((module, node))
+            elif (
+                isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load) and id(node) not in called
+            ):
+                passed.add(node.id if isinstance(node, ast.Name) else node.attr)
+    known = passed - STRAIGHT
+    waiting += [each for name in sorted(known) for each in functions.get(name, ())]
+    while waiting:
+        module, function = waiting.pop()
+        yield module, function
+        called_here = {_last(node) for node in _inside(function) if isinstance(node, ast.Call)}
+        new = (called_here & functions.keys()) - known - STRAIGHT
+        known |= new
+        waiting += [each for name in sorted(new) for each in functions[name]]
+
+
+def _inside(function: Function) -> Iterator[ast.AST]:
+    """Yield the syntax nodes of a function, without those of the functions that are defined in it."""
+    waiting: list[ast.AST] = list(function.body) if isinstance(function.body, list) else [function.body]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda | ast.ClassDef):
+            waiting += ast.iter_child_nodes(node)
+
+
+def _calls_in(node: ast.AST) -> Iterator[ast.Call]:
+    return (each for each in ast.walk(node) if isinstance(each, ast.Call))
+
+
+def _last(call: ast.Call) -> str:
+    """Return the last part of the called function's name."""
+    return getattr(call.func, "attr", getattr(call.func, "id", ""))

@@ -1,0 +1,73 @@
+"""Check that no callback of the node waits."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.waiting import has_threads, waits_in_callbacks
+from grader.checks.kind import Kind, NoParams
+from grader.checks.outcome import Finding, failed, passed
+from grader.evidence import activity
+
+if TYPE_CHECKING:
+    from grader.checks.causes.waiting import Wait
+    from grader.evidence.evidence import Evidence
+
+EXPECTED = "No callback of the node waits."
+SILENT_S = 2.0
+"""A node that does nothing for this time (s) after a response hangs."""
+ALSO_S = 0.05
+"""What the node sends this soon (s) after a response was on its way before the response."""
+SAME_GROUP = (
+    "Several threads do not help here: the executor never calls two callbacks of the same callback group at the same "
+    "time, so nothing receives the response: a deadlock. Use call_async, or give the client its own callback group."
+)
+
+
+def never_waits(evidence: Evidence, _: NoParams) -> Finding:
+    """No callback waits for a response, for a server or for time to pass."""
+    waits = waits_in_callbacks(evidence)
+    finding = _certain(evidence, waits)
+    if finding is not None:
+        return finding
+    if waits and _hangs(evidence):
+        cause = Cause("waits-in-callback", SAME_GROUP, waits[0].where)
+        return failed("After a response, the node did nothing more.", EXPECTED, cause)
+    return passed("Other threads receive what a callback waits for." if waits else EXPECTED)
+
+
+def _early(evidence: Evidence, _: NoParams) -> Finding | None:
+    return _certain(evidence, waits_in_callbacks(evidence))
+
+
+def _certain(evidence: Evidence, waits: list[Wait]) -> Finding | None:
+    """Return the failed finding that the source alone shows, or None."""
+    threads = has_threads(evidence)
+    first = next((wait for wait in waits if not (threads and wait.deadlock)), None)
+    return None if first is None else failed(f"A callback {first.observed}.", EXPECTED, first.cause)
+
+
+def _hangs(evidence: Evidence) -> bool:
+    """Return whether the node received a response, and sent nothing after it."""
+    recording = evidence.recording
+    made = [call for call in recording.calls if not call.by_trial]
+    answered = [call.answered_s for call in made if call.answered_s is not None]
+    last_s = max(answered, default=None)
+    if last_s is None or activity.end_s(recording) - last_s < SILENT_S:
+        return False
+    sent = (*(command.t_s for command in activity.commands(recording)), *(call.t_s for call in made))
+    return max(sent) <= last_s + ALSO_S
+
+
+NEVER_WAITS = Kind(
+    "never_waits",
+    "trial",
+    "The node never waits in a callback",
+    NoParams,
+    never_waits,
+    early=_early,
+    about="No callback waits for a response, for a server or for time to pass: `call`, "
+    "`spin_until_future_complete`, `wait_for_service` without a timeout, `sleep`, under any name. With several "
+    "threads, waiting for a response is allowed if the node goes on after the response.",
+)

@@ -1,0 +1,57 @@
+"""The check that no callback waits: from the source, and with several threads from what the node did."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.checks.outcome import Finding, Status
+from grader.checks.subjects.waits import NEVER_WAITS
+from grader.tests.checks.made import NODE, NODE_FILE, every, evidence, found, recording, submission
+from grader.trial.observed import Call
+
+WAITS = "        self.pen.call(request)"
+THREADS = "\nexecutor = MultiThreadedExecutor(4)\n"
+PEN = Call(1.0, "/turtle1/set_pen", "turtlesim/srv/SetPen", {}, {}, 1.6)
+
+
+def judged(line: str, *, more: str = "", until_s: float = 10.0) -> Finding:
+    """Return the finding about a node whose callback contains this line, and that drives until a time (s)."""
+    source = NODE.replace("        msg = Twist()", f"{line}\n        msg = Twist()") + more
+    trial = recording(every(0.5, 2.0, 1.0, until_s), calls=(PEN,))
+    return found(NEVER_WAITS, evidence(trial, submission({NODE_FILE: source})))
+
+
+@pytest.mark.parametrize(
+    ("line", "diagnosis", "words"),
+    [
+        (WAITS, "waits-in-callback", "deadlock"),
+        ("        self.pen.wait_for_service()", "waits-in-callback", "service_is_ready"),
+        ("        time.sleep(1.0)", "sleep-in-callback", "sleeps"),
+    ],
+)
+def test_a_wait_in_a_callback_fails_at_its_line(line: str, diagnosis: str, words: str) -> None:
+    finding = judged(line)
+    assert (finding.diagnosis, str(finding.where)) == (diagnosis, f"{NODE_FILE}:13")
+    assert words in finding.cause
+
+
+def test_the_files_alone_show_it() -> None:
+    source = NODE.replace("        msg = Twist()", f"{WAITS}\n        msg = Twist()")
+    early = NEVER_WAITS.judge_early(evidence(None, submission({NODE_FILE: source})), {})
+    assert early is not None
+    assert early.status is Status.FAILED
+    assert NEVER_WAITS.judge_early(evidence(None, submission({NODE_FILE: source + THREADS})), {}) is None
+
+
+def test_with_threads_the_node_may_wait_if_it_goes_on() -> None:
+    assert judged(WAITS, more=THREADS).status is Status.PASSED
+
+
+def test_with_threads_in_one_group_the_node_hangs() -> None:
+    finding = judged(WAITS, more=THREADS, until_s=1.2)
+    assert finding.diagnosis == "waits-in-callback"
+    assert "callback group" in finding.cause
+
+
+def test_a_node_without_a_wait_passes() -> None:
+    assert judged("        pass").status is Status.PASSED
