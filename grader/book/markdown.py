@@ -70,6 +70,7 @@ def anchor_of(title: str) -> str:
 def _parser() -> MarkdownIt:
     markdown = MarkdownIt("commonmark", {"html": False}).enable("table")
     markdown.add_render_rule("fence", _fence)
+    markdown.add_render_rule("code_block", _fence)
     markdown.add_render_rule("image", _image)
     markdown.add_render_rule("table_open", _table_open)
     markdown.add_render_rule("table_close", _table_close)
@@ -174,7 +175,7 @@ def _sections(tokens: list[Token], title: str) -> Iterator[Section]:
             heading = _plain(token)
         elif token.type == "inline":
             texts.append(_plain(token))
-        elif token.type == "fence":
+        elif token.type in ("fence", "code_block"):
             texts.append(" ".join(token.content.split()))
     yield Section(level, heading, anchor, " ".join(texts))
 

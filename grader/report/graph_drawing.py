@@ -1,5 +1,7 @@
 """The ROS graph as SVG: publishers on the left, topics with their types in the middle, subscribers on the right.
 
+For a narrow page there is a second picture with two columns: nodes and topics.
+
 Unlike rqt_graph, this module does not use Graphviz for the layout. A page needs light and dark colours and must be
 generated quickly, and a C library should not process names that a student chose.
 """
@@ -25,17 +27,25 @@ SIDE, MIDDLE = 150.0, 216.0
 """The widths of a node and of a topic."""
 MOST_TOPICS, MOST_NODES = 10, 12
 NODE, TOPIC = "#1c7ed6", "#e8590c"
-NODE_CHARS, TOPIC_CHARS = 21, 31
+NARROW = 360.0
+NARROW_SIDE, NARROW_MIDDLE = 124.0, 184.0
+CHAR = 7.0
+"""The approximate width of a character."""
+ASIDE = 8.0
+"""The distance of an arrow's end from the middle of its box, if the arrows of both directions end on the same side."""
 
 
 @dataclass(frozen=True)
 class GraphDrawing:
-    """The graph as a picture and as rows; `left_out` is the number of topics and nodes that did not fit.
+    """The graph as a wide picture, as a narrow one, and as rows.
+
+    `left_out` is the number of topics and nodes that did not fit.
 
     A row is (node, "publishes on" or "subscribes to", topic, type).
     """
 
     svg: str
+    narrow: str
     rows: tuple[tuple[str, str, str, str], ...]
     left_out: int
 
@@ -63,8 +73,10 @@ def draw_graph(recording: Recording, name: str = "graph") -> GraphDrawing | None
     left = _ordered([name for topic in shown for name in topic.publishers]) + [node.name for node in graph.alone]
     right = _ordered([name for topic in shown for name in topic.subscribers])
     dropped = len(topics) - len(shown) + sum(max(len(names) - MOST_NODES, 0) for names in (left, right))
-    svg = _draw(shown, types, left[:MOST_NODES], right[:MOST_NODES], name)
-    return GraphDrawing(svg, tuple(rows[:60]), dropped)
+    left, right = left[:MOST_NODES], right[:MOST_NODES]
+    svg = _draw(shown, types, left, right, name)
+    narrow = _draw_narrow(shown, types, _ordered([*left, *right]), f"{name}-narrow")
+    return GraphDrawing(svg, narrow, tuple(rows[:60]), dropped)
 
 
 def _of_student(topic: Topic, own: set[str]) -> bool:
@@ -87,13 +99,38 @@ def _draw(topics: Sequence[Topic], types: dict[str, list[str]], left: list[str],
         parts.append(_topic(topic.name, types.get(topic.name, []), middle_x, y))
     parts += [_node(node, 2.0, y) for node, y in lefts.items()]
     parts += [_node(node, right_x, y) for node, y in rights.items()]
+    return _picture(parts, topics, WIDTH, height, name)
+
+
+def _draw_narrow(topics: Sequence[Topic], types: dict[str, list[str]], nodes: list[str], name: str) -> str:
+    """Draw nodes on the left and topics on the right. The direction of an arrow is that of the messages."""
+    height = max(len(nodes), len(topics), 1) * ROW + 34
+    topic_x = NARROW - NARROW_MIDDLE - 2
+    node_x = 2 + NARROW_SIDE
+    parts = [
+        words(text, x, 16, "middle", font_weight="bold")
+        for text, x in (("node", 2 + NARROW_SIDE / 2), ("topic", topic_x + NARROW_MIDDLE / 2))
+    ]
+    lefts, rights = _places(nodes, height), _places([topic.name for topic in topics], height)
+    for topic in topics:
+        y = rights[topic.name]
+        out = [lefts[node] for node in topic.publishers if node in lefts]
+        back = [lefts[node] for node in topic.subscribers if node in lefts]
+        parts += [_arrow(node_x, place - ASIDE, topic_x, y - ASIDE) for place in out]
+        parts += [_arrow(topic_x, y + ASIDE, node_x, place + ASIDE) for place in back]
+        parts.append(_topic(topic.name, types.get(topic.name, []), topic_x, y, NARROW_MIDDLE))
+    parts += [_node(node, 2.0, y, NARROW_SIDE) for node, y in lefts.items()]
+    return _picture(parts, topics, NARROW, height, name)
+
+
+def _picture(parts: Sequence[str], topics: Sequence[Topic], width: float, height: float, name: str) -> str:
     about = " ".join(
         f"On {shorten(topic.name)} publishers: {_who(topic.publishers)}; subscribers: {_who(topic.subscribers)}."
         for topic in topics
     )
     return picture(
         *parts,
-        width=WIDTH,
+        width=width,
         height=height,
         title="The ROS graph: nodes and topics",
         about=about,
@@ -116,25 +153,25 @@ def _places(names: Sequence[str], height: float) -> dict[str, float]:
     return {name: 30 + room * (index + 0.5) for index, name in enumerate(names)}
 
 
-def _node(name: str, x: float, y: float) -> str:
+def _node(name: str, x: float, y: float, width: float = SIDE) -> str:
     shape = tag(
-        "rect", x=x, y=y - BOX / 2, width=SIDE, height=BOX, rx=BOX / 2, fill=NODE, fill_opacity=0.14, stroke=NODE
+        "rect", x=x, y=y - BOX / 2, width=width, height=BOX, rx=BOX / 2, fill=NODE, fill_opacity=0.14, stroke=NODE
     )
-    return tag(
-        "g", tag("title", _plain(name)), shape, words(shorten(name, NODE_CHARS), x + SIDE / 2, y + 4.5, "middle")
-    )
+    text = shorten(name, int(width / CHAR))
+    return tag("g", tag("title", _plain(name)), shape, words(text, x + width / 2, y + 4.5, "middle"))
 
 
-def _topic(name: str, types: Sequence[str], x: float, y: float) -> str:
-    shape = tag("rect", x=x, y=y - BOX / 2, width=MIDDLE, height=BOX, fill=TOPIC, fill_opacity=0.12, stroke=TOPIC)
+def _topic(name: str, types: Sequence[str], x: float, y: float, width: float = MIDDLE) -> str:
+    shape = tag("rect", x=x, y=y - BOX / 2, width=width, height=BOX, fill=TOPIC, fill_opacity=0.12, stroke=TOPIC)
     several = f"{len(types)} types: " if len(types) > 1 else ""
-    kind = shorten(several + ", ".join(types), TOPIC_CHARS + 3)
+    most = int(width / CHAR)
+    kind = shorten(several + ", ".join(types), most + 3)
     return tag(
         "g",
         tag("title", _plain(f"{name} ({', '.join(types)})")),
         shape,
-        words(shorten(name, TOPIC_CHARS), x + MIDDLE / 2, y - 3, "middle"),
-        words(kind, x + MIDDLE / 2, y + 13, "middle", font_size=11.5),
+        words(shorten(name, most), x + width / 2, y - 3, "middle"),
+        words(kind, x + width / 2, y + 13, "middle", font_size=11.5),
     )
 
 
@@ -145,10 +182,10 @@ def _plain(text: str) -> str:
 
 
 def _arrow(x1: float, y1: float, x2: float, y2: float) -> str:
-    bend = (x1 + x2) / 2
+    bend, back = (x1 + x2) / 2, 1 if x2 > x1 else -1
     path = (
         f"M{coordinate(x1)} {coordinate(y1)}C{coordinate(bend)} {coordinate(y1)} {coordinate(bend)} {coordinate(y2)} "
-        f"{coordinate(x2 - 7)} {coordinate(y2)}"
+        f"{coordinate(x2 - 7 * back)} {coordinate(y2)}"
     )
-    tip = f"M{coordinate(x2)} {coordinate(y2)}l-9-4.5v9z"
+    tip = f"M{coordinate(x2)} {coordinate(y2)}l{-9 * back}-4.5v9z"
     return tag("path", d=path, fill="none", stroke="currentColor") + tag("path", d=tip, fill="currentColor")

@@ -63,6 +63,7 @@ class Run:
     goals: tuple[tuple[str, ...], ...]
     graph: GraphDrawing | None
     graph_svg: Markup
+    graph_narrow: Markup
     data: dict[str, object]
 
 
@@ -102,6 +103,7 @@ def _run(evidence: Evidence, key: str, several: bool, among: int) -> Run:
         idle=must_drive(evidence) and not evidence.commands,
         graph=graph,
         graph_svg=Markup(graph.svg if graph else ""),
+        graph_narrow=Markup(graph.narrow if graph else ""),
         data=_data(evidence, among),
     )
 

@@ -75,7 +75,11 @@ class Page:
         ):
             door = Door(place.address.token)
             hands = Hands(ears, self._state, self._feed, listen=lambda: ears.later(listen, node))
-            app = application(self._hub, hands, door)
+            app = (
+                application(self._hub, hands, door, "turtlesim")
+                if self._feed is not None
+                else application(self._hub, hands, door, "The ROS graph", parts="graph-only")
+            )
             if self._feed is not None:
                 self._feed.settimeout(0.0)
                 loop.add_reader(self._feed, self._hear)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 from contextlib import suppress
 from pathlib import Path
+from string import Template
 from typing import TYPE_CHECKING, Any, Protocol
 
 from starlette.applications import Starlette
@@ -44,11 +46,21 @@ class Controls(Protocol):
         """Handle the closing of this page."""
 
 
-def application(hub: Hub, controls: Controls, door: Door, index: str = "index.html") -> ASGIApp:
-    """Return the application, protected by the guard. `index` is the file in assets/ that "/" serves."""
+def application(
+    hub: Hub, controls: Controls, door: Door, title: str, *, index: str = "index.html", parts: str = ""
+) -> ASGIApp:
+    """Return the application, protected by the guard.
+
+    "/" serves the file `index` in assets/, filled with the title, the ROS domain, and `parts`, a class for its body.
+    """
+    filled = {"title": title, "domain": os.environ.get("ROS_DOMAIN_ID", "0"), "parts": parts}
+
+    def whole(_: Request) -> Response:
+        text = Template((ASSETS / index).read_text("utf-8")).substitute(filled)
+        return Response(text, media_type="text/html")
 
     def file(request: Request) -> Response:
-        name = request.path_params.get("name", index)
+        name = request.path_params["name"]
         path = STYLE if name == STYLE.name else ASSETS / name
         # Only these files are served. No other path can be requested.
         if path != STYLE and path not in set(ASSETS.iterdir()):
@@ -67,7 +79,7 @@ def application(hub: Hub, controls: Controls, door: Door, index: str = "index.ht
             await socket.send_text(json.dumps({"kind": "token", "token": door.token}))
         await _Page(socket, hub, controls).run()
 
-    routes = [Route("/", file), Route("/{name}", file), WebSocketRoute("/live", live)]
+    routes = [Route("/", whole), Route("/{name}", file), WebSocketRoute("/live", live)]
     return Guard(Starlette(routes=routes))
 
 

@@ -18,6 +18,7 @@ from grader.exercise.model import catalogue
 from grader.tests.book.served import served
 from grader.tests.browser import browser_or_reason, launched, violations
 from grader.tests.case import ROOT
+from grader.tests.narrow import cut
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -164,6 +165,13 @@ def test_axe_finds_nothing_and_nothing_is_cut(page: Page, url: str, scheme: str,
         page.locator(".search").wait_for()
         assert violations(page) == []
         assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_no_page_is_cut_on_a_phone(page: Page, url: str) -> None:
+    for name in ("index.html", *(f"{step}/index.html" for step in catalogue())):
+        page.goto(url + name)
+        page.locator(".search").wait_for()
+        assert cut(page) == [], name
 
 
 def test_a_printed_lesson_is_only_the_lesson(page: Page, url: str) -> None:

@@ -284,7 +284,9 @@ def test_goals_are_in_a_table_and_on_the_time_line_of_the_replay() -> None:
     goal = Goal(1.0, action, type_, {"theta": 1.5}, "canceled", {"delta": 0.51234}, 2.5, 1.1, 2.4)
     page = page_of(evidence(recording(every(0.5, 2.0, 1.0), goals=(goal,))))
     cells = ("1.00", "theta=1.5", "canceled", "2.50", "delta=0.512", action)
-    assert "<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>" in page
+    labels = ("sent (s)", "goal", "status", "ended (s)", "result", "action")
+    row = (f'<td data-label="{label}"><span>{cell}</span></td>' for label, cell in zip(labels, cells, strict=True))
+    assert "<tr>" + "".join(row) + "</tr>" in page
     assert "<li>1 goal: 1 canceled</li>" in page
     assert [1.0, f"the node sends a goal to {action}: theta=1.5"] in moments_of(page)
     assert [2.4, f"the node asks {action} to cancel the goal"] in moments_of(page)

@@ -9,6 +9,7 @@ import pytest
 
 from grader.tests.both_worlds import of_the_wheels
 from grader.tests.browser import violations
+from grader.tests.narrow import cut
 from grader.tests.ros2.world import SOLUTION, World, world
 from grader.tests.view.tab import opened, url
 from grader.view.rqt.plot_fields import expand, topic_of
@@ -138,11 +139,9 @@ def test_axe_finds_nothing(whole: Page, scheme: str) -> None:
     assert violations(whole) == []
 
 
-def test_on_a_phone_nothing_is_wider_than_the_screen(whole: Page) -> None:
-    whole.set_viewport_size({"width": 390, "height": 800})
+def test_on_a_phone_nothing_is_cut(whole: Page) -> None:
     whole.get_by_role("row", name="turtlesim").first.wait_for()
-    assert whole.evaluate("document.documentElement.scrollWidth") <= 390
-    whole.set_viewport_size({"width": 1000, "height": 700})
+    assert cut(whole) == []
 
 
 def test_over_ssh_the_line_that_leads_to_the_page_is_printed(driven: World) -> None:

@@ -26,6 +26,10 @@ def test_what_was_long_ago_does_not_count() -> None:
     assert arrivals(*slow_then_fast).hertz(slow_then_fast[-1]) == pytest.approx(10.0)
 
 
+def test_after_a_pause_the_rate_is_that_of_the_new_messages() -> None:
+    assert arrivals(0.0, 20.0, 20.5).hertz(20.6) == pytest.approx(2.0)
+
+
 def test_a_topic_that_fell_silent_has_no_rate() -> None:
     twice_a_second = arrivals(0.0, 0.5, 1.0)
     assert twice_a_second.hertz(2.0) == pytest.approx(2.0)

@@ -20,11 +20,7 @@ function hear(news) {
   if (news.kind === "all") {
     document.body.classList.toggle("graph-only", !news.simulator);
     find("domain").textContent = news.domain;
-    if (!news.simulator) {
-      document.title = "The ROS graph, live";
-      find("title").textContent = "The ROS graph";
-      say("Live", "runs");
-    }
+    if (!news.simulator) say("Live", "runs");
   }
   simulator.show(news);
 }

@@ -9,7 +9,6 @@ import { Topics } from "./topics.js";
 
 const find = (id) => document.getElementById(id);
 const [status, notice, hold] = ["status", "notice", "hold"].map(find);
-const TITLES = { graph: "rqt_graph", console: "rqt_console", plot: "rqt_plot", services: "Service caller" };
 
 const graph = new Graph(find("graph"));
 const topics = new Topics(find("topics"));
@@ -30,9 +29,6 @@ function say(text, kind, problem = "") {
 function arrange(parts) {
   for (const section of document.querySelectorAll("[data-part]")) section.hidden = !parts.includes(section.dataset.part);
   find("main").classList.toggle("several", parts.length > 1);
-  const title = parts.length > 1 ? "rqt" : TITLES[parts[0]];
-  find("title").textContent = title;
-  document.title = `${title}, live`;
 }
 
 function hear(news) {

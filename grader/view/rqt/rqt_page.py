@@ -34,6 +34,12 @@ FLUSH_S = 0.1
 """The interval at which new values and log messages are sent to the pages (s)."""
 KEPT_S = 60.0
 """For pages that are opened later, this many seconds of each plot are kept."""
+_TITLES: dict[Part, str] = {
+    "graph": "rqt_graph",
+    "console": "rqt_console",
+    "plot": "rqt_plot",
+    "services": "Service caller",
+}
 _MOST_SAMPLES = 6000
 _LARGEST_REQUEST = 8000
 
@@ -82,7 +88,8 @@ class RqtPage:
             looking = "graph" in self._parts
             with Ears(node, look, looking=lambda: looking and self._hub.pages > 0) as ears:
                 door = Door(place.address.token)
-                app = application(self._hub, _Controls(ears, plot, caller), door, "rqt.html")
+                title = _TITLES[self._parts[0]] if len(self._parts) == 1 else "rqt"
+                app = application(self._hub, _Controls(ears, plot, caller), door, title, index="rqt.html")
                 return await serve(place, app, door, self._hub, ended, stays=stays)
 
     def _logged(self, lines: list[Line]) -> None:
