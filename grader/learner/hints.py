@@ -45,8 +45,14 @@ def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
 
 
 def read_hints(exercise: Exercise, known: StepProgress) -> list[str]:
-    """Return the texts of the hints that the learner has read, in the order of reading."""
-    return [flowing(exercise.hints[index].text) for index in known.read if index < len(exercise.hints)]
+    """Return the texts of the hints that the learner has read, in the order of reading.
+
+    Hints for work that is done are omitted.
+    """
+    if known.passed and not known.failed:
+        return []
+    read = [exercise.hints[index] for index in known.read if index < len(exercise.hints)]
+    return [flowing(each.text) for each in read if not _is_done(each, known)]
 
 
 def has_next(exercise: Exercise, known: StepProgress) -> bool:

@@ -167,10 +167,11 @@ class Watched:
         self,
         tell: Callable[[str], None] = lambda _: None,
         early: Callable[[Sequence[Outcome]], object] = lambda _: None,
+        opened: Callable[[Submission], object] = lambda _: None,
     ) -> Graded:
         """Grade the current content of the folder. See `grader.grading.grade.grade` for `tell` and `early`.
 
-        Show the verdict first, and then call `prepare`.
+        `opened` is called with the submission before it is graded. Show the verdict first, and then call `prepare`.
 
         Raises:
             UsageError: there is no package in the folder.
@@ -181,6 +182,7 @@ class Watched:
             self._judged = str(error)
             raise
         self._judged = submission.digest
+        opened(submission)
         self._wanted = self._unproved = None
         graded = grade(
             self.exercise,

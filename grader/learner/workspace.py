@@ -101,7 +101,7 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
         numbers = {own.file: to_toml(draw_numbers(own, student)).encode()} if own is not None else {}
         added, present = add_missing(source, folder, numbers)
         changed = [path for path in present if path in _PACKAGE_FILES]
-        lacking = {path: lines for path in changed if (lines := _lacking(source / path, folder / path))}
+        lacking = lacking_lines(exercise, {path: (folder / path).read_bytes() for path in changed})
         tasks = {path: lines for path in changed if added and (lines := _tasks(source / path, folder / path))}
     except (FileExistsError, NotADirectoryError) as error:
         message = f"{error.filename} is a file, but it must be a folder. Choose another workspace with --workspace."
@@ -138,7 +138,23 @@ def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tup
     return tuple(added), tuple(present)
 
 
-def _lacking(theirs: Path, mine: Path) -> tuple[str, ...]:
+def lacking_lines(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, tuple[str, ...]]:
+    """Return the lines of the step's package files that are missing in the learner's files, by the path of the file.
+
+    `files` has the content of the learner's files by path. Files that are not in `files` are left out. A step with a
+    package of its own lacks nothing: the learner's task is to change its files.
+
+    Raises:
+        OSError: a file of the starting point cannot be read.
+    """
+    if not exercise.package or exercise.apart:
+        return {}
+    source = starting_point(exercise) / exercise.package
+    wanted = [path for path in _PACKAGE_FILES if path in files and (source / path).is_file()]
+    return {path: lines for path in wanted if (lines := _lacking(source / path, files[path]))}
+
+
+def _lacking(theirs: Path, mine: bytes) -> tuple[str, ...]:
     """Return the lines of the step's file that are missing in the learner's file.
 
     Comments, spaces, commas at the end of a line and the kind of quotes are ignored.
@@ -147,7 +163,7 @@ def _lacking(theirs: Path, mine: Path) -> tuple[str, ...]:
     def plain(text: str) -> str:
         return "".join(text.replace("'", '"').split()).rstrip(",")
 
-    known = plain(mine.read_text(encoding="utf-8", errors="replace"))
+    known = plain(mine.decode("utf-8", "replace"))
     lines = (line.strip() for line in theirs.read_text(encoding="utf-8").splitlines())
     return tuple(line for line in lines if not line.startswith(("#", "<!--")) and plain(line) not in known)
 

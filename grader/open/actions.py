@@ -27,12 +27,14 @@ if TYPE_CHECKING:
 class Actions:
     """The actions of a page. Each action returns data for JSON, or raises GraderError with a message for the page.
 
-    `tell` sends a command that grading.py defines to the process that grades.
+    `tell` sends a command that grading.py defines to the process that grades. `digest` returns the digest of the
+    learner's code.
     """
 
     tell: Callable[[str], object]
     workspace: Path | None
     programs: Programs
+    digest: Callable[[], str]
 
     def all(self) -> Mapping[str, Callable[[Request], Any]]:
         """Return the actions by name. Some actions are coroutines."""
@@ -47,8 +49,7 @@ class Actions:
             raise UsageError(message)
         begun = steps.start(step, self.workspace)
         self.tell(STEP)
-        lacking = [{"file": path, "lines": list(lines)} for path, lines in begun.started.lacking.items()]
-        return {"step": begun.exercise.id, "folder": str(begun.started.folder), "lacking": lacking}
+        return {"step": begun.exercise.id}
 
     def hint(self, _: Request) -> object:
         """Return the next hint of the current step."""
@@ -68,27 +69,33 @@ class Actions:
 
     async def turtlesim(self, request: Request) -> object:
         """Start or stop turtlesim."""
-        if request.get("on") is True:
-            if await self.programs.beside_another():
+        on = request.get("on") is True
+        with self.programs.doing("Starting turtlesim" if on else "Stopping turtlesim"):
+            if not on:
+                await self.programs.turtlesim.stop()
+            elif await self.programs.beside_another():
                 message = (
                     "A turtlesim runs already, in a terminal. To see a turtlesim here, first end the other turtlesim "
                     "with Ctrl-C."
                 )
                 raise UsageError(message)
-            await self.programs.start_turtlesim()
-        else:
-            await self.programs.turtlesim.stop()
+            else:
+                await self.programs.start_turtlesim()
         return {}
 
     async def node(self, request: Request) -> object:
-        """Start or stop a node of the current step."""
+        """Start, stop or restart a node of the current step."""
         if request.get("on") is not True:
-            await self.programs.node.stop()
+            with self.programs.doing("Stopping your node"):
+                await self.programs.node.stop()
             return {}
         current = steps.current(self.workspace)
         name = request.get("executable")
         if current is None or name not in executables(current[0]):
             message = "This step has no program with this name."
             raise UsageError(message)
-        await self.programs.start_node(current[0].id, str(name))
+        with self.programs.doing(f"Starting {name}"):
+            if request.get("again") is True:
+                await self.programs.node.stop()
+            await self.programs.start_node(current[0].id, str(name), self.digest())
         return {}

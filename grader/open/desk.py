@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from grader.checks.exercises import find_exercise
@@ -48,6 +48,10 @@ class Content:
     verdict: Verdict | None = None
     early: dict[str, dict[str, object]] | None = None
     """Checks that fail because of the files, shown until the verdict is ready."""
+    digest: str = ""
+    """The digest of the submission that was read last."""
+    lacking: list[dict[str, object]] = field(default_factory=list)
+    """For each package file, the lines that the step needs and the learner's file does not have."""
 
 
 class Desk:
@@ -66,6 +70,10 @@ class Desk:
         """Show the current stage of grading."""
         if doing != self._content.doing:
             self._set(replace(self._content, doing=doing))
+
+    def read(self, digest: str, lacking: list[dict[str, object]]) -> None:
+        """Show the lines that the submission with this digest lacks."""
+        self._set(replace(self._content, digest=digest, lacking=lacking))
 
     def early(self, outcomes: Sequence[Outcome]) -> None:
         """Show the checks that fail because of the files."""
@@ -89,7 +97,7 @@ class Desk:
 
     def _final(self, *, verdict: Verdict | None = None, problem: str = "") -> Content:
         now = self._content
-        return Content(now.exercise, now.folder, "", problem, now.number + 1, verdict)
+        return replace(now, doing="", problem=problem, number=now.number + 1, verdict=verdict, early=None)
 
     def _set(self, content: Content) -> None:
         self._content = content
@@ -113,6 +121,8 @@ def page_data(now: Content, workspace: Path) -> dict[str, object]:
     known = progress.load(workspace)
     exercise = find_exercise(now.exercise) if now.exercise else None
     step = known.step(now.exercise)
+    checks = _checks(exercise, now) if exercise else []
+    wrong = {check["file"] for check in checks if check["kind"] == Status.FAILED.value}
     return {
         "exercise": now.exercise,
         "title": exercise.title if exercise else "",
@@ -123,9 +133,11 @@ def page_data(now: Content, workspace: Path) -> dict[str, object]:
         "line": now.verdict.line if now.verdict else "",
         "tone": now.verdict.tone if now.verdict else "",
         "passed": now.verdict is not None and now.verdict.tone == "passed",
-        "checks": _checks(exercise, now) if exercise else [],
+        "checks": checks,
         "hints": hints.read_hints(exercise, step) if exercise else [],
         "more_hints": exercise is not None and hints.has_next(exercise, step),
+        # A line that is written in another way lacks nothing, so the file must also be the reason of a failed check.
+        "lacking": [each for each in now.lacking if each["file"] in wrong],
         "executables": executables(exercise) if exercise else [],
         "steps": [_step(name, known) for name in catalogue()],
     }
@@ -140,6 +152,7 @@ def _check(outcome: Outcome) -> dict[str, object]:
         "max": outcome.max,
         "kind": shown.kind,
         "text": shown.observed if outcome.status is not Status.PASSED else "",
+        "file": outcome.finding.where.file if outcome.finding.where and not outcome.hidden else "",
     }
 
 
@@ -155,6 +168,7 @@ def _checks(exercise: Exercise, now: Content) -> list[dict[str, object]]:
             "max": spec.points,
             "kind": OPEN,
             "text": "",
+            "file": "",
         }
         for spec in exercise.checks
     ]

@@ -5,16 +5,19 @@ from __future__ import annotations
 from contextlib import closing
 from typing import TYPE_CHECKING
 
-from grader.errors import GraderError
+from grader.errors import GraderError, MachineError
 from grader.grading.options import Options
 from grader.learner import steps
 from grader.learner.watch import Watched
+from grader.learner.workspace import lacking_lines
 from grader.open.verdict_html import verdict_html
 from grader.sandbox import bubblewrap
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
+    from grader.exercise.model import Exercise
     from grader.learner.watch import Events
     from grader.open.desk import Desk
 
@@ -61,7 +64,9 @@ def _grade_until_another(desk: Desk, events: Events, watched: Watched, workspace
 def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
     desk.tell("Reading")
     try:
-        graded = watched.grade(desk.tell, desk.early)
+        graded = watched.grade(
+            desk.tell, desk.early, lambda opened: desk.read(opened.digest, _lacking(watched.exercise, opened.files))
+        )
         # Store the progress before the verdict is shown, even on a slow disk: the verdict's button for the next step
         # needs it.
         steps.note(watched.exercise, watched.folder, graded.report, workspace)
@@ -70,6 +75,15 @@ def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
     except GraderError as error:
         desk.failed(str(error))
     watched.prepare()
+
+
+def _lacking(exercise: Exercise, files: Mapping[str, bytes]) -> list[dict[str, object]]:
+    """Return the lines that the step needs and the learner's package files do not have yet."""
+    try:
+        found = lacking_lines(exercise, files)
+    except (OSError, MachineError):
+        return []
+    return [{"file": path, "lines": list(lines)} for path, lines in found.items()]
 
 
 def _prove(desk: Desk, events: Events, watched: Watched) -> None:

@@ -63,7 +63,7 @@ class PageProcess:
             in_loop(loop, writer.write, f"{word}\n".encode())
 
         door = Door(self._place.address.token)
-        requests = Actions(tell, self._workspace, self._programs).all()
+        requests = Actions(tell, self._workspace, self._programs, lambda: self._content.digest).all()
         pages, address = LessonPages(), self._programs.address
         app = DeskServer(lambda: self._content, self._hub, door, pages, requests, address)
         ended = asyncio.Event()
@@ -97,7 +97,8 @@ class PageProcess:
                 tell(STEP)
 
     def _data(self) -> dict[str, object]:
-        return {**page_data(self._content, self._root), "programs": self._programs.data()}
+        now = self._content
+        return {**page_data(now, self._root), "programs": self._programs.data(now.exercise, now.digest)}
 
     def _tell(self) -> None:
         if self._hub.pages:

@@ -8,7 +8,7 @@ import os
 import re
 import signal
 from collections import deque
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
 from grader.common.interpreter import interpreter
@@ -18,7 +18,7 @@ from grader.ros.shell import users_environment
 from grader.view.address import Address, remembered
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
 KEPT = 200
@@ -47,6 +47,8 @@ class Program:
 
     def __init__(self, changed: Callable[[], object]) -> None:
         self.lines: deque[str] = deque(maxlen=KEPT)
+        self.was_stopped = False
+        """Whether `stop` has ended the program, or it has not been started."""
         self._changed = changed
         self._process: asyncio.subprocess.Process | None = None
         self._reading: asyncio.Task[None] | None = None
@@ -71,6 +73,7 @@ class Program:
         own = {"PYTHONUNBUFFERED": "1", "GRADER_ROS2_DAEMON": "0"}
         start = interpreter(*arguments, env={**env, **own}, searches=True)
         self.lines.clear()
+        self.was_stopped = False
         if says:
             self.lines.extend([says, ""])
         self._process = await asyncio.create_subprocess_exec(
@@ -89,6 +92,7 @@ class Program:
         process, reading = self._process, self._reading
         if process is None or reading is None:
             return
+        self.was_stopped = True
         with suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGINT)
         try:
@@ -121,6 +125,10 @@ class Programs:
         self.turtlesim = Program(changed)
         self.node = Program(changed)
         self._workspace = workspace
+        self._changed = changed
+        self._doing = ""
+        self._ran = ("", "")
+        """The step of the node, and the digest of its code when the node was started."""
 
     def address(self) -> Address | None:
         """Return the address of turtlesim's view, whether turtlesim was started here or in a terminal."""
@@ -137,6 +145,19 @@ class Programs:
         """
         return not self.turtlesim.running and await asyncio.to_thread(_turtle_is_there)
 
+    @contextmanager
+    def doing(self, text: str) -> Iterator[None]:
+        """Show the text on the page as long as the `with` block runs, because starting a program takes seconds."""
+        self._tell(text)
+        try:
+            yield
+        finally:
+            self._tell("")
+
+    def _tell(self, text: str) -> None:
+        self._doing = text
+        self._changed()
+
     async def start_turtlesim(self) -> None:
         """Start `grader sim --view`."""
         await self.turtlesim.start("-m", "grader.cli", "sim", "--view")
@@ -146,10 +167,18 @@ class Programs:
                 return
             await asyncio.sleep(_LOOK_S)
 
-    async def start_node(self, step: str, executable: str) -> None:
-        """Start this executable of the step with turtlesim: in a cell if possible, or else like `grader run`."""
+    async def start_node(self, step: str, executable: str, digest: str) -> None:
+        """Start this executable of the step with turtlesim: in a cell if possible, or else like `grader run`.
+
+        `digest` is the digest of the code.
+        """
+        if not self.node.running:
+            self.node.lines.clear()
         if not await self.beside_another():
+            self._tell("Starting turtlesim")
             await self.start_turtlesim()
+        self._tell(f"Starting {executable}")
+        self._ran = (step, digest)
         workspace = str(self._workspace) if self._workspace else None
         if await asyncio.to_thread(linkable):
             settings = {"step": step, "executable": executable, "workspace": workspace}
@@ -162,11 +191,18 @@ class Programs:
         """Stop both programs."""
         await asyncio.gather(self.node.stop(), self.turtlesim.stop())
 
-    def data(self) -> Mapping[str, object]:
-        """Return the data for a page, ready for JSON."""
+    def data(self, step: str, digest: str) -> Mapping[str, object]:
+        """Return the data for a page, ready for JSON. `digest` is the digest of the code of the current step now."""
+        ran_step, ran_digest = self._ran
+        failed = not self.turtlesim.running and not self.turtlesim.was_stopped
+        # The address of the view contains its token.
+        lines = [line for line in self.turtlesim.lines if not _ADDRESS.search(line)]
         return {
             "turtlesim": self.turtlesim.running,
-            "problem": "" if self.turtlesim.running else "\n".join(self.turtlesim.lines).strip()[-LONGEST:],
+            "problem": "\n".join(lines).strip()[-LONGEST:] if failed else "",
             "node": self.node.running,
+            "old": self.node.running and ran_step == step and "" not in (digest, ran_digest) and ran_digest != digest,
+            "busy": self._doing != "",
+            "doing": self._doing or ("Starting your node" if self.node.running and not self.node.lines else ""),
             "lines": list(self.node.lines),
         }

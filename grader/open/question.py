@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.common.interpreter import interpreter
+from grader.common.words import nearest, shorten
 from grader.errors import UsageError
 
 if TYPE_CHECKING:
@@ -24,6 +25,14 @@ VERBS: Mapping[str, tuple[str, ...]] = {
     "action": ("list", "info", "type"),
 }
 """The allowed groups and verbs."""
+_REFUSED: Mapping[str, tuple[str, ...]] = {
+    "topic": ("pub", "bw", "delay"),
+    "interface": ("proto",),
+    "service": ("call", "echo"),
+    "param": ("set", "delete", "load", "dump"),
+    "action": ("send_goal", "echo"),
+}
+"""Other verbs of these groups, which need a terminal."""
 _OPTIONS = frozenset(
     {*("-t", "-v", "-c", "-a"), *("--show-types", "--verbose", "--count-topics", "--no-comments", "--all", "--once")}
 )
@@ -59,6 +68,10 @@ def arguments(text: str) -> list[str]:
         raise UsageError(message) from error
     words = words[1:] if words[:1] == ["ros2"] else words
     if len(words) < 2 or words[1] not in VERBS.get(words[0], ()):
+        guess = _meant(words)
+        if guess:
+            message = f"`ros2 {shorten(' '.join(words[:2]))}` is not a command. Did you mean `ros2 {guess}`?"
+            raise UsageError(message)
         allowed = "; ".join(f"{group} {', '.join(verbs)}" for group, verbs in VERBS.items())
         message = f"Only commands that change nothing can be run here: {allowed}."
         raise UsageError(message)
@@ -69,6 +82,20 @@ def arguments(text: str) -> list[str]:
     if words[:2] == ["topic", "echo"] and "--once" not in words:
         words.append("--once")
     return words
+
+
+def _meant(words: list[str]) -> str:
+    """Return the group and the verb that are similar to the first two words, or an empty string.
+
+    A command of `ros2` that cannot be run here is not taken for a typing error.
+    """
+    group = nearest(words[0], VERBS) if words else None
+    if group is None or words[1:2] in ([], [""]):
+        return ""
+    if group == words[0] and words[1] in _REFUSED.get(group, ()):
+        return ""
+    verb = nearest(words[1], VERBS[group])
+    return f"{group} {verb}" if verb else ""
 
 
 def answer(words: list[str], env: Mapping[str, str]) -> Answer:

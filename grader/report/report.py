@@ -110,8 +110,7 @@ def _with_try(outcome: Outcome, evidence: Evidence) -> Outcome:
         return outcome
     made = tries.of(outcome.id, finding.diagnosis)
     if made is None:
-        untried = f"No change could prove this cause: {tries.stopped}." if tries.stopped and finding.fix else ""
-        return replace(outcome, finding=replace(finding, tried=untried))
+        return replace(outcome, finding=replace(finding, tried=""))
     if made.result == "refuted":
         return replace(outcome, finding=replace(finding, cause="", tried=REFUTED))
     tried = PASSES if made.result == "passes" else FURTHER

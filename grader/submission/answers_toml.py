@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -29,11 +30,13 @@ class Answers:
     Values of other types, empty answers and 0 are left out.
 
     `lines` are the line numbers of the answers, counted from 1. `problem` is the reason why the file cannot be read.
+    `line` is the line of this problem, if known.
     """
 
     given: Mapping[str, Answer] = field(default_factory=dict)
     lines: Mapping[str, int] = field(default_factory=dict)
     problem: str | None = None
+    line: int | None = None
 
 
 def read_answers(data: bytes) -> Answers:
@@ -46,7 +49,9 @@ def read_answers(data: bytes) -> Answers:
     except UnicodeDecodeError:
         return Answers(problem="it is not UTF-8")
     except (ValueError, RecursionError) as error:
-        return Answers(problem=shorten(str(error), 120))
+        # TOMLDecodeError has the line only in its text.
+        line = re.search(r"\(at line (\d+)", str(error))
+        return Answers(problem=shorten(str(error), 120), line=int(line[1]) if line else None)
     if not isinstance(table, dict):
         return Answers(problem="it has no table [answers]")
     given = {key: answer for key, value in table.items() if (answer := _answer(value)) is not None}

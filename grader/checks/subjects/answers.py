@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 KEY = "the name of the answer in answers.toml"
 STRING = "a string in quotation marks"
 LIST_OF_STRINGS = "a list of strings in quotation marks"
+NUMBER = "a number, without quotation marks"
+EXAMPLES = {STRING: '"answer"', LIST_OF_STRINGS: '["first", "second"]', NUMBER: "12.5"}
+"""How an answer of each form is written."""
 KEEP_LOOKING = "Run the `ros2` command again and compare letter by letter."
 
 
@@ -38,7 +41,9 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
     if found.problem is not None:
         cause = 'Write a string in "quotation marks", a list in [brackets], and a number without either.'
         return failed(
-            f"{FILE} cannot be read: {found.problem}.", expected, Cause("answers-unreadable", cause, Where(FILE))
+            f"{FILE} cannot be read: {found.problem}.",
+            expected,
+            Cause("answers-unreadable", cause, Where(FILE, found.line)),
         )
     questions = {str(check.params["answer"]) for check in evidence.exercise.checks if "answer" in check.params}
     other = sorted(set(found.given) - questions)
@@ -69,7 +74,8 @@ def answer_text(evidence: Evidence, params: OneOf) -> Finding:
         return given
     if _plain(str(given)) in {_plain(each) for each in params.accepts}:
         return passed(f'"{shorten(str(given))}" is right.')
-    return _wrong(evidence, params.answer, given, Cause("wrong-answer", params.cause.strip()))
+    expected = f"{params.answer} is the right answer to this question."
+    return _wrong(evidence, params.answer, given, expected, Cause("wrong-answer", params.cause.strip()))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,9 +130,9 @@ def answer_graph(evidence: Evidence, params: GraphQuestion) -> Finding:
     answer = str(given)
     if answer in truth:
         return passed(f"{shorten(answer)} is right.")
-    return _wrong(
-        evidence, params.answer, answer, _why(answer, params.find, truth, _all(evidence.recording, params.find))
-    )
+    expected = f"{params.answer} is the {params.find} that the question asks for, spelled as `ros2` prints it."
+    why = _why(answer, params.find, truth, _all(evidence.recording, params.find))
+    return _wrong(evidence, params.answer, answer, expected, why)
 
 
 def _right_answers(recording: Recording, params: GraphQuestion) -> tuple[str, ...]:
@@ -192,7 +198,7 @@ def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
         )
         raise MachineError(message)
     truth = len(steps) / sum(steps)
-    given = _given(evidence, params.answer, "a number, without quotation marks", float)
+    given = _given(evidence, params.answer, NUMBER, float)
     if isinstance(given, Finding):
         return given
     assert isinstance(given, float)
@@ -205,7 +211,7 @@ def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
             "period-for-rate",
             "This is the period, the time between two messages in seconds. The rate is 1 divided by the period.",
         )
-    return _wrong(evidence, params.answer, given, why)
+    return _wrong(evidence, params.answer, given, f"{params.answer} is the rate that `ros2 topic hz` measures.", why)
 
 
 def _given(evidence: Evidence, name: str, form: str, kind: type) -> Answer | Finding:
@@ -217,9 +223,8 @@ def _given(evidence: Evidence, name: str, form: str, kind: type) -> Answer | Fin
         return failed(f"{name} is not answered yet.", f"{name} is {form}.", Cause("no-answer", where=where))
     if not isinstance(answer, kind):
         observed = f"{name} is {_shown(answer)}."
-        return failed(
-            observed, f"{name} is {form}.", Cause("answer-form", "The lesson shows how to write an answer.", where)
-        )
+        cause = f"Such an answer is written like this: `{name} = {EXAMPLES[form]}`."
+        return failed(observed, f"{name} is {form}.", Cause("answer-form", cause, where))
     return answer
 
 
@@ -239,9 +244,9 @@ def _compare(evidence: Evidence, name: str, given: Answer, truth: Collection[str
     )
 
 
-def _wrong(evidence: Evidence, name: str, given: Answer, why: Cause) -> Finding:
+def _wrong(evidence: Evidence, name: str, given: Answer, expected: str, why: Cause) -> Finding:
     where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
-    return failed(f"{name} is {_shown(given)}.", "The value that ROS 2 reports.", why.at(where))
+    return failed(f"{name} is {_shown(given)}.", expected, why.at(where))
 
 
 def _plain(answer: str) -> str:

@@ -125,7 +125,7 @@ def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
         where = _line(evidence, rf">\s*{re.escape(late[0])}\s*<")
         return failed(observed, expected, Cause("depend-kind", cause, where))
     observed = f"{FILE} does not declare {a_list(missing)}."
-    return failed(observed, expected, _why_not_declared(evidence, manifest, missing[0], needed, imported))
+    return failed(observed, expected, _why_not_declared(evidence, manifest, missing, needed, imported))
 
 
 def _imported(evidence: Evidence) -> dict[str, Where]:
@@ -158,9 +158,10 @@ def _has_none_of_these(code: Code, package: str) -> bool:
 
 
 def _why_not_declared(
-    evidence: Evidence, manifest: Manifest, name: str, needed: Sequence[str], imported: Mapping[str, Where]
+    evidence: Evidence, manifest: Manifest, missing: Sequence[str], needed: Sequence[str], imported: Mapping[str, Where]
 ) -> Cause:
-    """Return the reason why package.xml does not declare the package `name` at all."""
+    """Return the reason why package.xml does not declare the packages in `missing` at all."""
+    name = missing[0]
     guess = nearest(name, [each for each in manifest.run_depends if each not in needed and not _used(evidence, each)])
     if guess is not None:
         cause = f'The file declares "{shorten(guess)}". Is that a typing error?'
@@ -176,11 +177,13 @@ def _why_not_declared(
         return Cause(
             "depend-in-setup-py", f"install_requires in setup.py is for pip packages. ROS 2 reads {FILE}.", where
         )
+    names, them = a_list(missing), "it" if len(missing) == 1 else "them"
     cause = "On another computer, rosdep installs only the packages that package.xml declares."
-    if name in imported:
-        cause = f"{imported[name]} imports the package. {cause}"
+    used = [each for each in missing if each in imported]
+    if used:
+        cause = f"{imported[used[0]]} imports {used[0]}. {cause}"
     elif imported:
-        cause = f"Your code does not import the package, but the task needs the package. {cause}"
+        cause = f"The task needs {names}, although your code does not import {them} yet. {cause}"
     return Cause("missing-depend", cause, where)
 
 

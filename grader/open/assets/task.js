@@ -1,6 +1,7 @@
 // The state of the lesson's step: started or not, graded or not, and the buttons to start it.
 
 import { showText } from "./code_text.js";
+import { addCopyButtons } from "./copy.js";
 import { act } from "./requests.js";
 
 function paragraph(text, name = "") {
@@ -29,10 +30,16 @@ function lacking({ file, lines }) {
   code.textContent = lines.join("\n");
   const block = document.createElement("pre");
   block.tabIndex = 0;
+  block.setAttribute("role", "group");
+  block.setAttribute("aria-label", `Lines for ${file}`);
   block.append(code);
+  const frame = document.createElement("div");
+  frame.className = "code";
+  frame.append(block);
   const box = document.createElement("div");
   box.className = "box";
-  box.append(paragraph(`This step needs more lines in ${file}. Add these lines to your file:`), block);
+  box.append(paragraph(`This step needs more lines in \`${file}\`. Add these lines to your file:`), frame);
+  addCopyButtons(box);
   return box;
 }
 
@@ -41,18 +48,19 @@ export class Task {
     this.place = place;
     this.step = step;
     this.told = null;
-    this.more = [];
+    this.problem = "";
   }
 
   show(state) {
     const step = state.steps.find((each) => each.id === this.step);
     const here = state.exercise === this.step;
-    const text = JSON.stringify([step, here, here && state.folder, this.more]);
+    const text = JSON.stringify([step, here, here && [state.folder, state.lacking], this.problem]);
     if (!step || text === this.told) return;
     this.told = text;
     const parts = [];
     if (here) {
-      parts.push(paragraph("Edit these files in your own editor. Each save is graded:"), this.folder(state.folder));
+      parts.push(paragraph("Edit these files in your own editor. Each save is graded:"), this.folder(state.folder),
+        ...state.lacking.map(lacking));
     } else if (step.state === "new") {
       parts.push(paragraph("You can read the lesson first. Starting the step adds its files to your workspace."),
         button("Start this step", () => this.start()));
@@ -60,7 +68,7 @@ export class Task {
       parts.push(paragraph(step.state === "passed" ? "You have passed this step." : "You have started this step."),
         button("Grade this step", () => this.start()));
     }
-    parts.push(...this.more);
+    if (this.problem) parts.push(paragraph(this.problem, "box failed"));
     this.place.replaceChildren(...parts);
   }
 
@@ -74,9 +82,8 @@ export class Task {
   }
 
   async start() {
-    const answer = await act("start", { step: this.step });
-    this.told = null;
-    this.more = answer.problem ? [paragraph(answer.problem, "box failed")] : (answer.lacking ?? []).map(lacking);
-    this.place.append(...this.more);
+    const { problem } = await act("start", { step: this.step });
+    this.problem = problem ?? "";
+    if (problem) this.place.append(paragraph(problem, "box failed"));
   }
 }

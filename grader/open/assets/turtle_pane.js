@@ -20,6 +20,8 @@ export class TurtlePane {
     find("sim-switch").addEventListener("click", () => this.change("turtlesim", { on: !this.running.turtlesim }));
     find("node-switch").addEventListener("click", () => this.change("node",
       { on: !this.running.node, executable: find("executable").value }));
+    find("again").addEventListener("click", () => this.change("node",
+      { on: true, again: true, executable: find("executable").value }));
     find("ask").addEventListener("submit", (event) => {
       event.preventDefault();
       this.ask(find("question").value);
@@ -29,20 +31,31 @@ export class TurtlePane {
   async change(name, wanted) {
     const { problem } = await act(name, wanted);
     this.refused = problem ?? "";
-    if (problem) showText(this.status, problem);
+    if (this.state) this.show(this.state);
   }
 
-  show({ programs, executables }) {
+  show(state) {
+    const { programs, executables } = this.state = state;
     this.running = programs;
     showText(find("sim-switch"), programs.turtlesim ? "Stop turtlesim" : "Start turtlesim");
     showText(find("node-switch"), programs.node ? "Stop it" : "Run it");
     find("node-buttons").hidden = executables.length === 0 && !programs.node;
     this.choose(executables);
+    for (const name of ["sim-switch", "node-switch", "again"]) find(name).disabled = programs.busy;
     find("node-part").hidden = programs.lines.length === 0;
+    find("old").hidden = !programs.old;
     this.lines(programs.lines.join("\n"));
     if (programs.turtlesim && !this.link) this.connect();
     if (!programs.turtlesim && this.link) this.disconnect();
-    if (!this.link) showText(this.status, programs.problem || this.refused || "No turtlesim was started here.");
+    this.tell();
+  }
+
+  // Show what the programs do, or why they do not run.
+  tell() {
+    const { programs } = this.state;
+    const now = this.link ? (this.drawn ? "turtlesim is running." : "turtlesim is starting.") : "No turtlesim was started here.";
+    const doing = programs.doing && `${programs.doing} …`;
+    showText(this.status, doing || this.refused || programs.problem || now);
   }
 
   choose(names) {
@@ -63,12 +76,15 @@ export class TurtlePane {
   }
 
   connect() {
-    showText(this.status, "turtlesim is starting.");
+    this.drawn = false;
     this.link = new Link({
       news: (news) => {
-        find("live").hidden = false;
-        showText(this.status, "turtlesim is running.");
         this.simulator.show(news);
+        if (!this.drawn && news.turtles) {
+          this.drawn = true;
+          this.live(true);
+          this.tell();
+        }
         if (news.log && news.kind === "all") this.log.whole(news.log);
         else if (news.log) this.log.add(news.log);
       },
@@ -83,7 +99,11 @@ export class TurtlePane {
   disconnect() {
     this.link.close();
     this.link = null;
-    find("live").hidden = true;
+    this.live(false);
+  }
+
+  live(on) {
+    for (const part of document.querySelectorAll("[data-live]")) part.hidden = !on;
   }
 
   async ask(text) {

@@ -213,7 +213,7 @@ def test_without_a_sandbox_the_page_says_that_the_node_runs_as_the_user(monkeypa
     monkeypatch.setattr(programs.Program, "running", True)
     monkeypatch.setattr(programs, "linkable", lambda: False)
     monkeypatch.setattr(programs, "_turtle_is_there", lambda: False)
-    asyncio.run(programs.Programs(lambda: None, None).start_node(CIRCLE, "draw_circle"))
+    asyncio.run(programs.Programs(lambda: None, None).start_node(CIRCLE, "draw_circle", ""))
     assert started[-1] == ("-m", "grader.cli", "run", "--no-view", CIRCLE, "draw_circle", programs.NO_CELL)
     assert "under your account" in programs.NO_CELL
 

@@ -25,6 +25,28 @@ def test_a_question(text: str, words: list[str]) -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "guess"),
+    [
+        ("topics list", "topic list"),
+        ("ros2 topic lsit", "topic list"),
+        ("nodes info /turtlesim", "node info"),
+        ("interface shwo geometry_msgs/msg/Twist", "interface show"),
+    ],
+)
+def test_a_typing_error_gets_a_suggestion(text: str, guess: str) -> None:
+    with pytest.raises(UsageError, match=f"Did you mean `ros2 {guess}`"):
+        arguments(text)
+
+
+@pytest.mark.parametrize(
+    "text", ["topic pub /a", "param set /a b 1", "service call /clear", "topic bw /a", "bag record"]
+)
+def test_a_command_that_needs_a_terminal_is_no_typing_error(text: str) -> None:
+    with pytest.raises(UsageError, match="Only commands that change nothing can be run here"):
+        arguments(text)
+
+
+@pytest.mark.parametrize(
     "text",
     [
         "",
@@ -57,4 +79,4 @@ def test_a_question(text: str, words: list[str]) -> None:
 def test_anything_else_is_refused_with_a_sentence(text: str) -> None:
     with pytest.raises(UsageError) as refused:
         arguments(text)
-    assert str(refused.value).endswith(".")
+    assert str(refused.value).endswith((".", "?"))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.tests.browser import violations
+from grader.tests.narrow import cut
 from grader.tests.open.course import CIRCLE
 
 if TYPE_CHECKING:
@@ -112,16 +113,38 @@ def test_the_files_are_judged_before_the_trial(begun: Course, browser: Browser) 
     page.close()
 
 
+def test_lines_that_the_step_needs_are_shown_until_they_are_added_and_hints_begin_with_them(
+    begun: Course, browser: Browser
+) -> None:
+    setup = begun.node.parents[1] / "setup.py"
+    whole = setup.read_text()
+    begun.save()
+    page = begun.opened(browser)
+    setup.write_text("".join(line for line in whole.splitlines(keepends=True) if "draw_circle:main" not in line))
+    page.locator("#task-state").get_by_text("This step needs more lines in setup.py.").wait_for()
+    page.get_by_role("article").filter(has_text="The package has no executable draw_circle.").first.wait_for()
+    page.get_by_role("button", name="Hint").click()
+    page.locator("#hints li").get_by_text("A line in setup.py is missing").wait_for()
+    page.reload()
+    page.locator("#task-state").get_by_text('"draw_circle = my_robot_controller.draw_circle:main"').wait_for()
+    assert cut(page) == []
+    setup.write_text(whole)
+    verdict(page, "Passed: 100 of 100 points.")
+    assert not page.locator("#task-state").get_by_text("This step needs more lines").is_visible()
+    assert page.locator("#hints li").count() == 0
+    page.close()
+
+
 @pytest.mark.parametrize(("scheme", "width"), [("dark", 1400), ("light", 360)])
 def test_axe_finds_nothing_and_nothing_is_cut(begun: Course, browser: Browser, scheme: str, width: int) -> None:
     page = begun.opened(browser, width=width)
     page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
-    for name in ("Lesson", "Verdict"):
+    for name in ("Lesson", "Verdict", "Turtle"):
         button = page.get_by_role("button", name=name, exact=True)
         if button.is_visible():
             button.click()
         assert violations(page) == []
-        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert cut(page) == []
     page.close()
 
 

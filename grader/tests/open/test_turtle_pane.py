@@ -17,6 +17,7 @@ from grader.open.programs import NO_CELL
 from grader.sandbox import bubblewrap
 from grader.tests.browser import violations
 from grader.tests.domains import own_domain
+from grader.tests.narrow import cut
 from grader.tests.open.course import CIRCLE, GRADER, Course, course
 from grader.tests.waiting import HANG_S, until, until_gone
 
@@ -125,7 +126,17 @@ def drive(learner: Course, browser: Browser) -> None:
     page.get_by_label("ros2").fill("topic pub /turtle1/cmd_vel")
     page.keyboard.press("Enter")
     page.locator("#asked").get_by_text("Only commands that change nothing").wait_for()
+    page.get_by_label("ros2").fill("topics list")
+    page.keyboard.press("Enter")
+    page.locator("#asked").get_by_text("Did you mean `ros2 topic list`?").wait_for()
     assert violations(page) == []
+    assert cut(page) == []
+
+    learner.save("2.0", "1.0")
+    page.get_by_text("This node still runs the code from before your last save.").wait_for()
+    page.get_by_role("button", name="Run the new code").click()
+    page.get_by_text("This node still runs").wait_for(state="hidden")
+    page.get_by_role("img", name="Linear: linear.x 1.00 m/s").wait_for()
 
     page.get_by_role("button", name="Stop it").click()
     page.get_by_role("button", name="Run it").wait_for()
@@ -133,7 +144,10 @@ def drive(learner: Course, browser: Browser) -> None:
         assert '"kind":"all"' in str(link.recv())
     page.get_by_role("button", name="Stop turtlesim").click()
     page.get_by_role("button", name="Start turtlesim").wait_for()
+    page.get_by_text("No turtlesim was started here.").wait_for()
+    assert "See it move" not in page.content()
     page.get_by_role("button", name="Run it").click()
+    page.get_by_text("Starting turtlesim …").wait_for()
     page.locator("#node-lines").get_by_text("[draw_circle]").wait_for()
     assert problems == []
     page.close()
