@@ -15,6 +15,7 @@ from websockets.typing import Origin
 
 from grader.open.programs import NO_CELL
 from grader.sandbox import bubblewrap
+from grader.tests.both_worlds import HERE, REAL_ROS2
 from grader.tests.browser import violations
 from grader.tests.domains import own_domain
 from grader.tests.narrow import cut
@@ -22,6 +23,8 @@ from grader.tests.open.course import CIRCLE, GRADER, Course, course
 from grader.tests.waiting import HANG_S, until, until_gone
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import pytest
     from playwright.sync_api import Browser, Page
 
@@ -40,6 +43,13 @@ def of_home(home: Path) -> list[int]:
         if f"HOME={home}\0".encode() in env:
             found.append(int(place.name))
     return found
+
+
+def stop_real_daemon(env: Mapping[str, str]) -> None:
+    """Stop the daemon that the real `ros2` starts for its next commands. It would run for two hours."""
+    if REAL_ROS2:
+        stop = [str(HERE.prefix / "bin/ros2"), "daemon", "stop"]
+        subprocess.run(stop, env=env, stdout=subprocess.DEVNULL, check=True)
 
 
 def reset(page: Page) -> bool:
@@ -61,6 +71,7 @@ def test_the_turtle_in_the_page(browser: Browser, tmp_path: Path, monkeypatch: p
         learner.start()
         learner.save()
         drive(learner, browser)
+        stop_real_daemon(learner.env)
         started = of_home(tmp_path)
         assert started
         assert learner.end() == 0
@@ -90,6 +101,7 @@ def test_a_second_turtlesim_is_not_started_beside_one_in_a_terminal(
             page.close()
             terminal.send_signal(signal.SIGINT)
             assert terminal.wait(HANG_S) == 0
+        stop_real_daemon(learner.env)
 
 
 def drive(learner: Course, browser: Browser) -> None:
