@@ -116,7 +116,7 @@ def as_user(request: pytest.FixtureRequest) -> bool:
 
 @pytest.fixture
 def folder() -> Iterator[Path]:
-    """Return a folder that other users can enter, unlike pytest's own."""
+    """Return a folder that other users can enter, unlike pytest's own folders."""
     with tempfile.TemporaryDirectory(prefix="hostile-class-") as named:
         Path(named).chmod(0o755)
         yield Path(named)

@@ -81,7 +81,7 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
 
 
 def _is_subclass_elsewhere(scene: CrashScene, owner: str, name: str) -> bool:
-    """Return whether another module defines this class of the object, and nothing there sets the attribute."""
+    """Return whether another module defines the class of the object, and nothing in that module sets the attribute."""
     classes = [
         node for module in scene.evidence.code.modules for node in module.nodes if isinstance(node, ast.ClassDef)
     ]

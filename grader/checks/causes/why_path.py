@@ -36,7 +36,7 @@ def radius_of_commands(evidence: Evidence) -> str:
 
 
 def why_radius(evidence: Evidence) -> str:
-    """Return a sentence about a wrong radius: how it follows from the commands, or that the commands change."""
+    """Return a sentence about a wrong radius: how the radius follows from the commands, or that the commands change."""
     return CHANGE if steady_command(evidence) is None else radius_of_commands(evidence)
 
 

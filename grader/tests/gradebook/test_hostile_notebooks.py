@@ -216,7 +216,7 @@ def of_version(version: object) -> Callable[[Path, Path], object]:
 
 
 def with_a_picture(folder: Path, _: Path) -> None:
-    """Add a picture that the student has attached to a cell, and one that does not exist."""
+    """Add a picture that the student has attached to a cell, and a picture that does not exist."""
     cell = new_markdown_cell("![mine](attachment:a.png) ![none](attachment:b.png)")  # type: ignore[no-untyped-call]
     cell.attachments = {"a.png": {"image/png": "AAAA"}}
     edited(folder, lambda notebook: notebook.cells.append(cell))

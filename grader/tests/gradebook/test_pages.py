@@ -31,7 +31,7 @@ SIZES: tuple[dict[str, Any], ...] = (
     {"width": "1 onerror=steal()", "needs_background": "x onerror=steal()", "alt": "' onerror='steal()"},
     {"image/png": ["onerror=steal()"]},
 )
-"""Metadata of pictures, which a kernel may send with each picture."""
+"""Metadata that a kernel can send with each picture."""
 RESOURCES = {
     "nbgrader": {"notebook": "n", "assignment": "a", "student": "s"},
     **dict.fromkeys(("notebook_id", "assignment_id", "submission_id", "base_url", "mathjax_url"), "x"),

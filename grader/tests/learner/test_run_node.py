@@ -1,4 +1,4 @@
-"""`grader run` builds the learner's package and runs its node together with a turtlesim. Ctrl-C ends them."""
+"""`grader run` builds the learner's package and runs its node together with a turtlesim. Ctrl-C ends both programs."""
 
 from __future__ import annotations
 

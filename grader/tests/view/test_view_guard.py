@@ -76,7 +76,7 @@ CONNECTS = "import socket, sys; link = socket.create_connection(('127.0.0.1', in
 
 @contextmanager
 def connected(*become: str) -> Iterator[tuple[str, int]]:
-    """Connect from another process, which may be another user's. Yield the address and port of its end."""
+    """Connect from another process, which can belong to another user. Yield the address and port of its end."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         command = [*become, sys.executable, "-I", "-c", CONNECTS, str(server.getsockname()[1])]
         with subprocess.Popen(command, stdin=subprocess.PIPE) as program:

@@ -22,7 +22,7 @@ ROSPY = (
     ("logerr", "the logger has the method error"),
     ("Rate", "a node does regular work in the callback of a timer"),
 )
-"""Names of rospy with what replaces them in ROS 2."""
+"""Names of rospy, with their replacements in ROS 2."""
 
 
 def cause(line: str, error: str) -> str:
