@@ -15,6 +15,7 @@ from grader.checks.causes.why_imports import why_no_import
 from grader.checks.causes.why_interface import why_interface
 from grader.checks.causes.why_names import why_no_name, why_unbound
 from grader.checks.causes.why_response import why_response
+from grader.checks.causes.why_transition import why_no_transition
 from grader.checks.outcome import Finding, failed
 from grader.common.words import a_list, shorten
 
@@ -89,7 +90,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "NameError": why_no_name,
     "NotInitializedException": _why_no_init,
     "ParameterNotDeclaredException": _why_undeclared,
-    "RCLError": why_refused,
+    "RCLError": lambda scene: why_no_transition(scene) or why_refused(scene),
     "RuntimeError": why_refused,
     "TypeError": why_type,
     "UnboundLocalError": why_unbound,
