@@ -217,9 +217,11 @@ def main() -> None:
     except Exception as error:
         if os.environ.get("GRADER_DEBUG"):
             raise
-        from grader.setup import bootstrap
+        refused = refusal(error)
+        if isinstance(error, ImportError):
+            from grader.setup import bootstrap
 
-        refused = refusal(error) or bootstrap.outdated(error)
+            refused = bootstrap.outdated(error)
         if refused:
             typer.secho(f"grader: {refused}", err=True)
             _drop_unwritten()

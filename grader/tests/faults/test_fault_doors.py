@@ -31,6 +31,7 @@ EVERY_DAY = [
     ("class", "open", errno.EMFILE, 1),
     ("class", "mkdir", errno.ENOSPC, 1),
     ("start", "mkdir", errno.ENOSPC, 1),
+    ("start", "open", errno.EPERM, 1),
     ("env", "open", errno.EMFILE, 1),
     ("list", "open", errno.EMFILE, 1),
     ("create", "mkdir", errno.ENOSPC, 1),
