@@ -280,20 +280,9 @@ def _show(
     from rich.console import Console
 
     from grader.report import terminal
+    from grader.report.report_files import save_files
 
-    if json:
-        from grader.report.json import to_json
-        from grader.report.output_file import write
-
-        write(json, to_json(report).encode())
-    if image:
-        from grader.report.picture import save_picture
-
-        save_picture(evidence, report, image)
-    if html:
-        from grader.report.html import save_html
-
-        save_html(evidence, report, html)
+    save_files(evidence, report, json, image, html)
     console = Console(highlight=False)
     terminal.render(report, console, verbose=verbose)
     if changes:

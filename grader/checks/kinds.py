@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.checks.subjects import (
     advice,
+    announcing,
     answers,
     arc,
     bag_answers,
@@ -100,7 +101,7 @@ KINDS: Mapping[str, Kind[Any]] = {
         star.STAR,
         spawning.SPAWNS,
         spawning.PLACES_DIFFER,
-        spawning.ANNOUNCES,
+        announcing.ANNOUNCES,
         spawning.REMOVES,
         catching.CATCHES,
         catching.NEAREST_FIRST,

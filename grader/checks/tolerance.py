@@ -1,4 +1,4 @@
-"""Decide whether a measured value is within its tolerance, or so near an edge that wall time must decide."""
+"""Decide whether a measured value is within its tolerance, and whether wall time must decide near the limits."""
 
 from __future__ import annotations
 

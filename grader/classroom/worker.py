@@ -109,7 +109,7 @@ def main(descriptor: int) -> None:
 
 
 def _import_all() -> None:
-    """Import the modules that grading needs now, so that the time of the first task does not include the import."""
+    """Import the modules that grading needs in advance, so that the first task does not have to wait for the import."""
     import grader.report.html  # noqa: F401
 
     load_catkin_pkg()

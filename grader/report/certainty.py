@@ -67,7 +67,7 @@ OF_RECORDINGS = frozenset(
         "exit-code",
     }
 )
-"""Diagnoses that only repeat what the recording shows, with a rule of ROS 2 or of mathematics."""
+"""Diagnoses that state only what the recording shows. Some of them add a rule of ROS 2 or of mathematics."""
 FACTS = OF_EXCEPTIONS.union(OF_RECORDINGS, *OF_FILES.values())
 
 

@@ -158,8 +158,8 @@ def _s(seconds: float) -> str:
 def values(evidence: Evidence, name: str = "values", bins: int = BINS) -> Chart | None:
     """Draw the values of the commands over time.
 
-    There is one row for each field that the exercise requires or that was not always 0, and always a row for linear.x
-    and a row for angular.z.
+    The fields linear.x and angular.z always have a row. Another field has a row if the exercise requires the field or
+    if its value was not always 0.
     """
     commands = evidence.commands
     if not commands:

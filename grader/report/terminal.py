@@ -48,7 +48,10 @@ def render(report: Report, console: Console, *, brief: bool = False, verbose: bo
     console.print()
     if brief:
         amount = count(len(report.with_status(Status.PASSED)), "check")
-        _line(console, Text(f"{amount} passed. `grader check` or a taller window shows these checks.", style="dim"))
+        _line(
+            console,
+            Text(f"{amount} passed. To see these checks, run `grader check` or make the window taller.", style="dim"),
+        )
     _line(console, _verdict(report))
     for text in _footnotes(report, verbose=verbose):
         _line(console, Text(text, style="dim"))

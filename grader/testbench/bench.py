@@ -1,8 +1,8 @@
 """The bench: run a student's tests on the correct node several times and on each broken node once, in random order.
 
 The student's process reports whether the tests passed, and this process could lie. The process that runs the tests does
-not know which node it tests, so false results do not help: tests that always pass, always fail, or pass by chance earn
-no points.
+not know which node it tests, so a false report earns nothing: tests that always pass, always fail, or pass by chance
+get no points.
 """
 
 from __future__ import annotations

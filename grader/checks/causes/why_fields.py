@@ -65,7 +65,7 @@ def _why_no_float(field: str, value: ast.expr | None) -> Cause:
         if known is not None:
             return known
     if isinstance(value, ast.Tuple):
-        text = f"The field {field} is a float, but a comma makes a tuple of several values. A decimal point is a dot."
+        text = f"The field {field} is a float, but a comma makes a tuple. Write a dot, not a comma, in decimal numbers."
         return Cause("field-type", text)
     names = [dotted(call.func) or "" for call in ast.walk(value) if isinstance(call, ast.Call)] if value else []
     if any(name.startswith(("np.", "numpy.")) for name in names):

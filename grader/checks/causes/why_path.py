@@ -41,7 +41,7 @@ def why_radius(evidence: Evidence) -> str:
 
 
 def why_elsewhere(evidence: Evidence) -> Cause:
-    """Return the cause of a circle that has the right size but the wrong place."""
+    """Return the reason why a circle has the right size but is in the wrong place."""
     steady = steady_command(evidence)
     if steady is None:
         first, last = evidence.commands[0], evidence.commands[-1]

@@ -153,7 +153,7 @@ def _extremes(measured: Measured) -> tuple[float, float]:
 
 
 def _slow_timer(evidence: Evidence, params: Rate, amount: int) -> Cause | None:
-    """Return the cause if a timer is too slow for more than this number of messages to arrive, else None."""
+    """Return the cause if a timer is so slow that only about `amount` messages arrive, else None."""
     for timer, period in _timers(evidence):
         if period is not None and abs(evidence.recording.duration_s / period - amount) <= 1.0:
             why = Cause("timer-period", PERIOD, timer.where).fixed_by(_right_period(timer, params))

@@ -297,5 +297,4 @@ def moments_of(page: str) -> list[list[object]]:
     """Return the texts of the replay with their times (s)."""
     found = re.search(r'"calls": ?(\[.*?\]\])', page)
     assert found is not None
-    moments: list[list[object]] = json.loads(found[1])
-    return moments
+    return list(json.loads(found[1]))

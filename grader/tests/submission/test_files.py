@@ -87,7 +87,7 @@ def test_pipes_and_sockets_are_rejected_and_never_waited_for(package: Path) -> N
 def _may_write(monkeypatch: pytest.MonkeyPatch) -> None:
     """Allow the reading process to change files, because these tests replace a file there."""
     monkeypatch.setattr(reader, "forbid_all_but_reading", lambda: None)
-    monkeypatch.setattr(reader, "allow_only_reading", lambda _: None)
+    monkeypatch.setattr(reader, "allow_only_reading", lambda _: True)
 
 
 def test_a_file_swapped_for_a_link_is_not_read(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:

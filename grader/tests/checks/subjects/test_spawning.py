@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from grader.checks.outcome import Status
-from grader.checks.subjects.spawning import ANNOUNCES, PLACES_DIFFER, REMOVES, SPAWNS
+from grader.checks.subjects.announcing import ANNOUNCES
+from grader.checks.subjects.spawning import PLACES_DIFFER, REMOVES, SPAWNS
 from grader.tests.checks.made import DURATION_S, NODE, NODE_FILE, evidence, found, recording, submission
 from grader.trial.observed import Call, Track
 from grader.trial.recording import Message

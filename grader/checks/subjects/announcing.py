@@ -1,0 +1,118 @@
+"""Check the announcements of the remaining turtles: their names, and how often they arrive."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.waiting import waits_in_callback
+from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_silent import why_nothing
+from grader.checks.kind import Kind, number, string
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.subjects.services import calls_of
+from grader.checks.tolerance import Band, unless_starved
+from grader.common.words import a_list, shorten
+from grader.evidence import activity
+from grader.evidence.targets import announcements, is_there
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.evidence.targets import Announcement
+
+LATE_S = 1.05
+"""The maximum delay of an announcement (s): two periods of the topic."""
+AT_ONCE_S = 0.1
+"""The maximum time between the last announcement of a turtle and its removal (s)."""
+OFTEN = 3
+"""The maximum number of messages, as a multiple of the timer's messages. A node may also publish after each change."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Announces:
+    """The topic with the names of the remaining turtles, and the time between two messages (s)."""
+
+    topic: str = string(
+        "the full name of a topic", start="/", about="The topic on which the node announces the turtles."
+    )
+    period_s: float = number(0.5, above=0, about="The time between two messages.")
+
+
+def announces(evidence: Evidence, params: Announces) -> Finding:
+    """Each message on the topic contains the names of all remaining turtles, and no other names."""
+    expected = (
+        f"Every {params.period_s:g} s, the node publishes the names of all remaining targets, separated by spaces."
+    )
+    heard = announcements(evidence.recording, params.topic)
+    where = evidence.place("publish", "create_publisher")
+    if not heard:
+        crash = crash_of(evidence)
+        if crash is not None:
+            return crash_finding(evidence, crash, end_observed(evidence), expected)
+        why = why_nothing(evidence, ("publish",)) or Cause("never-publishes", "", where)
+        return failed(f"No String arrived on {params.topic}.", expected, why)
+    for message in heard:
+        finding = _wrong_names(evidence, message, expected)
+        if finding is not None:
+            return finding
+    times_s = [*(message.t_s for message in heard), activity.end_s(evidence.recording)]
+    begin_s, longest_s = max(((at_s, later_s - at_s) for at_s, later_s in pairwise(times_s)), key=lambda gap: gap[1])
+    most = Band.at_most(1.4 * params.period_s)
+    if not most.holds(longest_s):
+        observed = f"After the message at {begin_s:.1f} s, no message arrived for {longest_s:.1f} s."
+        crash = crash_of(evidence)
+        if crash is not None:
+            return crash_finding(evidence, crash, end_observed(evidence), expected)
+        cause = Cause("timer-period", "Publish in each call of the timer.", evidence.place("create_timer"))
+        finding = failed(observed, expected, waits_in_callback(evidence) or cause, near_edge=most.near(longest_s))
+        return unless_starved(finding, evidence.recording, off=longest_s - 1.4 * params.period_s, per_s=1.0)
+    often = OFTEN * (times_s[-1] - times_s[0]) / params.period_s
+    if len(heard) > max(often, OFTEN):
+        observed = f"{len(heard)} messages arrived in {times_s[-1] - times_s[0]:.1f} s."
+        cause = Cause("timer-period", "Publish in the callback of one timer.", evidence.place("create_timer"))
+        return failed(observed, expected, cause)
+    return passed("The node announces the remaining targets.", near_edge=most.near(longest_s))
+
+
+def _wrong_names(evidence: Evidence, message: Announcement, expected: str) -> Finding | None:
+    """Return a failed finding if the announcement was wrong for more than a second, or else None."""
+    tracks = evidence.recording.tracks
+    from_s, to_s = message.t_s - LATE_S, message.t_s
+    where = evidence.place("publish")
+    around = {track.turtle for track in tracks if is_there(track, from_s, to_s + AT_ONCE_S)}
+    called = {str(call.request.get("name")) for call in calls_of(evidence) if call.by_trial and call.t_s <= to_s}
+    throughout = {
+        track.turtle
+        for track in tracks
+        if track.rows[0][0] <= from_s and (track.gone_s is None or track.gone_s > to_s + AT_ONCE_S)
+    }
+    at = f"The message at {message.t_s:.1f} s"
+    strange = [name for name in message.names if name not in around]
+    known = {track.turtle for track in tracks}
+    if strange and any(part in name for name in strange for part in known | {"target"} if name not in known):
+        text = 'The text consists of the names, separated by single spaces: " ".join(names).'
+        return failed(f'{at} is "{shorten(message.text)}".', expected, Cause("target-format", text, where))
+    if strange:
+        text = "Remove a name when its turtle is caught, and add a name when the response of /spawn arrives."
+        observed = f"{at} names {a_list([shorten(name) for name in strange])}, which does not exist."
+        return failed(observed, expected, Cause("still-announced", text, where))
+    missing = sorted(throughout - called - set(message.names))
+    if missing:
+        observed = f"{at} does not name {a_list([shorten(name) for name in missing])}."
+        stuck = waits_in_callback(evidence)
+        text = "Add the name of a turtle to the list in the callback that receives the response of /spawn."
+        return failed(observed, expected, stuck or Cause("target-unannounced", text, where))
+    return None
+
+
+ANNOUNCES = Kind(
+    "announces_targets",
+    "trial",
+    "The node announces the turtles",
+    Announces,
+    announces,
+    about="The node regularly publishes a String with the names of all remaining turtles, separated by spaces.",
+)
