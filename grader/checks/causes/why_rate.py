@@ -1,4 +1,7 @@
-"""Why messages or log lines arrive too often: loops, subscription callbacks, or timers that are created repeatedly."""
+"""Why messages or log lines arrive too often: loops, subscription callbacks, or timers that are created repeatedly.
+
+The wrong period of a timer is in grader.checks.causes.why_period.
+"""
 
 from __future__ import annotations
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,47 +9,35 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed, ended_early
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
+from grader.checks.causes.why_period import why_mean, why_slow_timer
 from grader.checks.causes.why_rate import (
     late_cause,
-    sends_each_time,
     why_often,
     why_publishers_grow,
     why_rate_in_callback,
-    why_several_calls,
-    why_sleep_in_callback,
     why_timers_grow,
 )
 from grader.checks.causes.why_stopped import CANCELS, cancelled, why_stopped
-from grader.checks.edit import at
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.requested import Interval, Requested
 from grader.checks.tolerance import Band
 from grader.common.words import count
 from grader.evidence import activity
-from grader.submission.constants import number as constant
-from grader.submission.constants import written
-from grader.submission.where import Where
 from grader.turtlesim.turtle import FRAME_S
 
 if TYPE_CHECKING:
-    from grader.checks.edit import Edit
     from grader.evidence.arrivals import Measured
     from grader.evidence.evidence import Evidence
-    from grader.submission.code import Call
 
 FEWEST = 3
 """With fewer commands there is at most one interval, which is not enough for a rate."""
 TRUSTED = 0.5
 """If the machine stalled in a trial in wall time, the intervals without a stall are judged if they are at least this
 fraction of all intervals."""
-SAME = 0.1
-"""A number in the source code explains a measured interval if they differ by less than this share."""
-
 POSES_HZ = 1.0 / FRAME_S
 """turtlesim publishes one pose per frame."""
 
-PERIOD = "The first argument of create_timer is the timer period in seconds."
 FASTEST_HZ = 40.0
 """Simulated time advances in steps of 16 ms, so a higher rate than this appears lower than it is."""
 
@@ -152,31 +139,6 @@ def _extremes(measured: Measured) -> tuple[float, float]:
     return min(measured.intervals), max(measured.intervals)
 
 
-def _slow_timer(evidence: Evidence, params: Rate, amount: int) -> Cause | None:
-    """Return the cause if a timer is so slow that only about `amount` messages arrive, else None."""
-    for timer, period in _timers(evidence):
-        if period is not None and abs(evidence.recording.duration_s / period - amount) <= 1.0:
-            why = Cause("timer-period", PERIOD, timer.where).fixed_by(_right_period(timer, params))
-            return _period_cause(why, period, params)
-    return None
-
-
-def _period_cause(cause: Cause, period: float, params: Rate) -> Cause:
-    """Return the cause of a wrong timer period, for example that the rate was passed instead of the period."""
-    if abs(period - params.rate_hz) > SAME * params.rate_hz:
-        return cause
-    text = "create_timer takes the period in seconds, not the rate. The period is 1 divided by the rate."
-    return Cause("rate-for-period", text, cause.where, cause.fix)
-
-
-def _right_period(timer: Call, params: Rate) -> tuple[Edit, ...]:
-    """Return the edit that sets the period of the exercise, if the period in the source is a constant."""
-    node = written(timer.argument(0, "timer_period_sec"), timer.module.names)
-    if node is None:
-        return ()
-    return at(Where(timer.module.file, node.lineno), ast.unparse(node), f"{1.0 / params.rate_hz:g}")
-
-
 def _few(evidence: Evidence, params: Rate, what: Subject, measured: Measured, expected: str) -> Finding:
     amount = len(measured.arrivals)
     crash = crash_of(evidence)
@@ -187,7 +149,7 @@ def _few(evidence: Evidence, params: Rate, what: Subject, measured: Measured, ex
     if evidence.recording.end.by == "itself":
         why = why_ended(evidence)
         return failed(f"{observed} {end_observed(evidence)}", expected, why)
-    slow = _slow_timer(evidence, params, amount)
+    slow = why_slow_timer(evidence, params.rate_hz, amount)
     if slow is not None:
         return failed(observed, expected, slow)
     asleep = why_rate_in_callback(evidence)
@@ -220,45 +182,9 @@ def _wrong_mean(
         observed = f"{what.plural} arrived every {mean:.2f} s ({1.0 / mean:.1f} Hz)."
     if often is not None:
         return failed(observed, expected, often, near_edge=near_edge)
-    why = _why_mean(evidence, what, mean, params)
-    if why.diagnosis == "timer-period":
-        why = _period_cause(why, mean, params)
-    return failed(observed, expected, why, near_edge=near_edge)
-
-
-def _timers(evidence: Evidence) -> list[tuple[Call, float | None]]:
-    """Return the calls to create_timer, each with its period (s) if that is a constant."""
-    calls = evidence.code.calls("create_timer")
-    return [(call, constant(call.argument(0, "timer_period_sec"), call.module.names)) for call in calls]
-
-
-def _why_mean(evidence: Evidence, what: Subject, mean: float, params: Rate) -> Cause:
-    """Return the cause of a wrong mean rate, for example a timer or a sleep with a wrong period."""
-    code = evidence.code
-    timers = _timers(evidence)
-    for timer, period in timers:
-        if period is not None and abs(period - mean) <= SAME * mean:
-            return Cause("timer-period", PERIOD, timer.where).fixed_by(_right_period(timer, params))
-    asleep = why_sleep_in_callback(evidence)
-    if asleep is not None:
-        return asleep
-    for sleep in code.calls("sleep"):
-        length = constant(sleep.argument(0, "secs"), sleep.module.names)
-        if length is not None and abs(length - mean) <= SAME * mean:
-            return Cause("sleep-period", f"The node sleeps for {length:g} s between two {what.noun}s.", sleep.where)
-    several = why_several_calls(evidence, what.call, mean, 1.0 / params.rate_hz)
-    if several is not None:
-        return several
-    if len(timers) > 1:
-        return Cause(
-            "several-timers",
-            f"There are {len(timers)} timers. Each timer calls its method at its own rate.",
-            timers[1][0].where,
-        )
-    if timers and timers[0][1] is None and sends_each_time(evidence, what.call):
-        return Cause("timer-period", PERIOD, timers[0][0].where)
-    where = timers[0][0].where if timers else evidence.place(what.call)
-    return Cause("wrong-rate", f"The time between two calls of {what.call} sets the rate.", where)
+    return failed(
+        observed, expected, why_mean(evidence, what.noun, what.call, mean, params.rate_hz), near_edge=near_edge
+    )
 
 
 def _uneven_cause(evidence: Evidence, what: Subject) -> str:

@@ -1,0 +1,97 @@
+"""Why messages arrive at a wrong mean rate: the period of a timer or a sleep, or several timers."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.why_rate import sends_each_time, why_several_calls, why_sleep_in_callback
+from grader.checks.edit import at
+from grader.submission.constants import number as constant
+from grader.submission.constants import written
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from grader.checks.edit import Edit
+    from grader.evidence.evidence import Evidence
+    from grader.submission.code import Call
+
+SAME = 0.1
+"""A number in the source code explains a measured interval if they differ by less than this share."""
+
+PERIOD = "The first argument of create_timer is the timer period in seconds."
+
+
+def why_mean(evidence: Evidence, noun: str, call: str, mean: float, rate_hz: float) -> Cause:
+    """Return the cause of a wrong mean interval between two messages.
+
+    Args:
+        evidence: everything that is known about the submission.
+        noun: the name of the messages, such as "command".
+        call: the method of the student's code that sends them, such as "publish".
+        mean: the measured mean interval (s).
+        rate_hz: the rate that the exercise requires (Hz).
+    """
+    why = _why_mean(evidence, noun, call, mean, rate_hz)
+    return _period_cause(why, mean, rate_hz) if why.diagnosis == "timer-period" else why
+
+
+def why_slow_timer(evidence: Evidence, rate_hz: float, amount: int) -> Cause | None:
+    """Return the cause if a timer is so slow that only about `amount` messages arrive, else None."""
+    for timer, period in _timers(evidence):
+        if period is not None and abs(evidence.recording.duration_s / period - amount) <= 1.0:
+            why = Cause("timer-period", PERIOD, timer.where).fixed_by(_right_period(timer, rate_hz))
+            return _period_cause(why, period, rate_hz)
+    return None
+
+
+def _why_mean(evidence: Evidence, noun: str, call: str, mean: float, rate_hz: float) -> Cause:
+    """Return the cause of a wrong mean rate, for example a timer or a sleep with a wrong period."""
+    code = evidence.code
+    timers = _timers(evidence)
+    for timer, period in timers:
+        if period is not None and abs(period - mean) <= SAME * mean:
+            return Cause("timer-period", PERIOD, timer.where).fixed_by(_right_period(timer, rate_hz))
+    asleep = why_sleep_in_callback(evidence)
+    if asleep is not None:
+        return asleep
+    for sleep in code.calls("sleep"):
+        length = constant(sleep.argument(0, "secs"), sleep.module.names)
+        if length is not None and abs(length - mean) <= SAME * mean:
+            return Cause("sleep-period", f"The node sleeps for {length:g} s between two {noun}s.", sleep.where)
+    several = why_several_calls(evidence, call, mean, 1.0 / rate_hz)
+    if several is not None:
+        return several
+    if len(timers) > 1:
+        return Cause(
+            "several-timers",
+            f"There are {len(timers)} timers. Each timer calls its method at its own rate.",
+            timers[1][0].where,
+        )
+    if timers and timers[0][1] is None and sends_each_time(evidence, call):
+        return Cause("timer-period", PERIOD, timers[0][0].where)
+    where = timers[0][0].where if timers else evidence.place(call)
+    return Cause("wrong-rate", f"The time between two calls of {call} sets the rate.", where)
+
+
+def _period_cause(cause: Cause, period: float, rate_hz: float) -> Cause:
+    """Return the cause of a wrong timer period, for example that the rate was passed instead of the period."""
+    if abs(period - rate_hz) > SAME * rate_hz:
+        return cause
+    text = "create_timer takes the period in seconds, not the rate. The period is 1 divided by the rate."
+    return Cause("rate-for-period", text, cause.where, cause.fix)
+
+
+def _right_period(timer: Call, rate_hz: float) -> tuple[Edit, ...]:
+    """Return the edit that sets the period of the exercise, if the period in the source is a constant."""
+    node = written(timer.argument(0, "timer_period_sec"), timer.module.names)
+    if node is None:
+        return ()
+    return at(Where(timer.module.file, node.lineno), ast.unparse(node), f"{1.0 / rate_hz:g}")
+
+
+def _timers(evidence: Evidence) -> list[tuple[Call, float | None]]:
+    """Return the calls to create_timer, each with its period (s) if that is a constant."""
+    calls = evidence.code.calls("create_timer")
+    return [(call, constant(call.argument(0, "timer_period_sec"), call.module.names)) for call in calls]
