@@ -194,7 +194,7 @@ book.add_to(app)
 
 
 def main() -> None:
-    """Run the command. An error is printed as a sentence; docs/design.md, decision 9, lists the exit codes."""
+    """Run the command. An error is printed as a sentence. Decision 9 in docs/design.md lists the exit codes."""
     clean_own()
     words = sys.argv[1:]
     if "_GRADER_COMPLETE" in os.environ:  # the shell requests completions (grader.ros.shell)

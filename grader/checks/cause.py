@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Cause:
-    """A diagnosis id, the cause in words (empty if the observation is enough), and the place in the code to look at.
+    """The cause of a failed check: the id of the diagnosis, a text that explains the cause, and the place in the code.
 
-    `fix` is the smallest change that would fix the mistake, if known. The grader tests this change but never shows it
-    to a student.
+    The text is empty if the observation needs no explanation. `fix` is the smallest change that would fix the mistake,
+    if known. The grader tests this change but never shows it to a student.
     """
 
     diagnosis: Diagnosis

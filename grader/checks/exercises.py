@@ -41,7 +41,7 @@ def find_exercise(name: str, course: Path | None = None) -> Exercise:
 
 
 def _nearest(name: str, known: Iterable[str]) -> str | None:
-    """Return the id that `name` probably means: `name` may have a typing error, be a word of an id, or have O for 0."""
+    """Return the id that is probably meant by a name with a typing error, with O for 0, or with one word of the id."""
     number = name.translate(str.maketrans("OoIl", "0011"))
     same = [each for each in known if name and (name.lower() in each.split("-") or each.startswith(f"{number}-"))]
     return nearest(name, known) or (same[0] if len(same) == 1 else None)
@@ -76,7 +76,7 @@ def load_exercise(path: Path) -> Exercise:
 
 
 def title_of(path: Path) -> str:
-    """Return the title of the exercise in a file exercise.toml. If possible, only the first tables are read.
+    """Return the title of the exercise in a file exercise.toml. If possible, only the beginning of the file is read.
 
     Raises UsageError, which lists every problem in the file.
     """
@@ -88,7 +88,7 @@ def title_of(path: Path) -> str:
 
 
 def exercise_from(sources: Sources) -> Exercise:
-    """Return an exercise of the course, to which an instructor's private checks are added.
+    """Return an exercise of the course together with an instructor's private checks.
 
     Raises UsageError, which lists every problem in the files.
     """

@@ -1,4 +1,4 @@
-"""Judge a submission: run every check of the exercise, after the checks that it needs."""
+"""Judge a submission: run every check of the exercise, each check after the checks that it needs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Judgement:
-    """The findings of the checks so far.
+    """The findings of all checks, judged from the evidence that exists at a certain stage.
 
     `findings` contains a finding for every check. The findings in `settled` are final, because the evidence of their
     stage was complete. A finding that is not in `settled` says that the node was not run, or that a required check has
@@ -95,7 +95,7 @@ def judge_so_far(evidence: Evidence, settled: Mapping[str, Finding]) -> Judgemen
 
 @dataclass(frozen=True)
 class Early:
-    """The results before any of the submission's code runs: failed outcomes, and ids of checks that cannot pass."""
+    """The results that are certain before any code runs: failed outcomes, and ids of checks that cannot pass."""
 
     failed: tuple[Outcome, ...]
     blocked: frozenset[str]
@@ -192,7 +192,7 @@ def unreadable(how: str) -> Finding:
 
 
 def in_words(error: Exception) -> str:
-    """Return the type and text of the exception on one line, or only the text if it is an UnreadableError."""
+    """Return the type and text of the exception on one line, or only the text of an UnreadableError."""
     if isinstance(error, UnreadableError):
         return str(error).rstrip(".")
     return f"{type(error).__name__}: {error}".rstrip(" :.")

@@ -1,8 +1,8 @@
 """A kind is a type of check, with the parameters that exercise.toml may set.
 
-The parameters of a kind are a dataclass next to the check function. The functions `number`, `string`, `strings` and
-`choice` create the fields of the dataclass with their defaults and allowed values. Therefore, the author of a new
-exercise writes no Python code.
+A dataclass next to the check function defines the parameters of a kind. The functions `number`, `string`, `strings` and
+`choice` create the fields of the dataclass with their defaults and allowed values. The author of a new exercise that
+uses these kinds writes no Python code.
 """
 
 # ruff: noqa: ANN401 (the functions below return what dataclasses.field returns)
@@ -39,7 +39,7 @@ class Kind(Generic[P]):
     """A type of check. `check` is a pure function: the same evidence and parameters give the same finding.
 
     `title` is the title that a student reads if exercise.toml sets no title. `about` describes the check for authors of
-    exercises (docs/kinds.md). A kind with `advice` is worth no points and never fails a submission.
+    exercises (docs/kinds.md). A check whose kind has `advice` is worth no points, and never fails a submission.
     """
 
     name: str
@@ -90,7 +90,7 @@ class Kind(Generic[P]):
         return None if self.radius_m is None or isinstance(params, Finding) else self.radius_m(params)
 
     def _params(self, evidence: Evidence, values: Mapping[str, Param]) -> P | Finding:
-        """Return the parameters with the student's own values, or a failed finding if these cannot be read."""
+        """Return the parameters with the student's own values, or a failed finding if the values cannot be read."""
         filled = with_own_values(evidence, values)
         return filled if isinstance(filled, Finding) else self.params(**filled)
 

@@ -1,4 +1,4 @@
-"""All kinds of checks by name: the values that `kind` may have in exercise.toml."""
+"""All kinds of checks, by the names that the key `kind` in exercise.toml may have as its value."""
 
 from __future__ import annotations
 

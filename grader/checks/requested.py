@@ -28,7 +28,9 @@ class Interval:
 
 @dataclass(frozen=True)
 class Requested:
-    """The required path of the turtle as `circles` (centre, radius in m) and `lines` (m); `path` is the path in words.
+    """The required path of the turtle as `circles` (centre, radius in m) and `lines` (m).
+
+    `path` describes the path in words.
 
     If `fits` is True, the path is one circle, so the best-fitting circle is drawn too. `interval` is the time between
     two commands. `values` are the six values of each command (three in m/s, three in rad/s).

@@ -1,4 +1,4 @@
-"""Decide whether a measured value is within its tolerance, and whether wall time must decide near the limits."""
+"""Decide whether a value is within its tolerance, and whether it is so near a limit that wall time must decide."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ NEAR = 0.2
 
 @dataclass(frozen=True)
 class Band:
-    """The values from `low` to `high`; `low_width` and `high_width` are the tolerances that define these edges.
+    """The values from `low` to `high`. The tolerances `low_width` and `high_width` define these edges.
 
-    An edge that is None does not exist. NaN is never inside a band: every comparison with NaN is False, so each
-    comparison below states what must be true.
+    An edge that is None does not exist. NaN is never inside a band: every comparison with NaN is False, so the methods
+    check that a value is inside, and not that it is outside.
     """
 
     low: float | None

@@ -119,7 +119,7 @@ class DaskEngine:
         future.add_done_callback(lambda ended: self._ended.put(ended.key))
 
     def events(self, timeout_s: float) -> list[Event]:
-        """Return the events since the last call; see Engine."""
+        """Return the events since the last call, as described in Engine."""
         happened: list[Event] = []
         try:
             first = self._ended.get(timeout=timeout_s)

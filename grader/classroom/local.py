@@ -92,7 +92,7 @@ class LocalEngine:
         worker.send(task)
 
     def events(self, timeout_s: float) -> list[Event]:
-        """Return the events since the last call; see Engine."""
+        """Return the events since the last call, as described in Engine."""
         happened: list[Event] = []
         by_connection = {worker.connection: worker for worker in self._busy}
         for ready in wait(list(by_connection), timeout_s):

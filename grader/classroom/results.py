@@ -41,7 +41,7 @@ _LONGEST = 120
 
 @dataclass(frozen=True)
 class Result:
-    """A graded submission; `page` is the name of its page in reports/."""
+    """A graded submission. `page` is the name of the submission's page in reports/."""
 
     student: str
     report: Report

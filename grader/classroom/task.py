@@ -123,7 +123,7 @@ def _confined(*, trusted: bool) -> bool:
 
 
 def set_aside(task: Task, why: str) -> Done:
-    """Return the result, an `error`, of a submission that could not be graded."""
+    """Return a result with the status `error` for a submission that could not be graded."""
     exercise = exercise_from(task.sources)
     return _with_page(_unjudged(task, exercise, Finding(Status.ERROR, why)))
 

@@ -1,7 +1,7 @@
 """Read an archive that a student handed in, in the process that reads students' files (submission/reader.py).
 
-The result contains only plain files and folders, with checked paths, within the limits below. archives.py writes them
-to the disk.
+The result contains only plain files and folders, with checked paths, within the limits that this module defines.
+archives.py writes the result to the disk.
 """
 
 from __future__ import annotations

@@ -78,7 +78,7 @@ def _installed(path: str, built: runner.Built) -> str | None:
 
 
 def _with_texts(tree: bytes, texts: dict[str, bytes]) -> bytes:
-    """Return the tree with the content of these members replaced."""
+    """Return a copy of the tree in which these members have new contents."""
     renewed = io.BytesIO()
     with tarfile.open(fileobj=io.BytesIO(tree)) as old, tarfile.open(fileobj=renewed, mode="w") as new:
         for member in old:

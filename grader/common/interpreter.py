@@ -41,7 +41,7 @@ def interpreter(
 ) -> Start:
     """Return the command that starts Python with `-m MODULE ...`, `-c CODE ...` or the absolute path of a script.
 
-    `python` is the path of the interpreter; `env` defaults to the caller's environment. With `searches`, Python uses
+    `python` is the path of the interpreter. `env` defaults to the caller's environment. With `searches`, Python uses
     PYTHONPATH, which programs that import rclpy need. Without `searches`, the interpreter is isolated (-I). `root` is
     the folder that contains the module's package, if the package is not installed yet.
 

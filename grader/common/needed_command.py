@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def needed_command(app: typer.Typer, words: Sequence[str]) -> TyperGroup:
-    """Return the application with only the command that the words name, or with all commands if they name none.
+    """Return the application with only the command that the words name, or with all commands if the words name none.
 
     To create a command, typer evaluates the annotations of all its options. For all commands, this takes longer than
     most commands need.

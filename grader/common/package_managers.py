@@ -25,7 +25,7 @@ class Need(NamedTuple):
 
 
 class Manager(NamedTuple):
-    """A package manager. The commands are shell lines; `quiet` contains options for unattended use."""
+    """A package manager. The commands are shell lines, and `quiet` contains options for unattended use."""
 
     program: str
     systems: Tuple[str, ...]

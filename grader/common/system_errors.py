@@ -41,7 +41,7 @@ def of_the_machine(error: OSError) -> bool:
 def sentence(number: int, where: str = "", room: str = ROOM) -> str:
     """Return the sentence that describes a system error (errno) to users.
 
-    `where` is the path that caused the error; `room` says what to do if a disk is full.
+    `where` is the path that caused the error. `room` says what to do if a disk is full.
     """
     at = f" for {where}" if where else ""
     if number in (errno.ENOSPC, errno.EDQUOT):

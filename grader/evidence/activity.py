@@ -35,8 +35,8 @@ def ended_at_start(recording: Recording) -> bool:
     A node that raised an exception inside rclpy's spin did run, no matter how soon it exited. A node that raised an
     exception in a constructor and sent no command did not run, no matter how late it exited: on a busy machine, the
     start takes longer than the initial period (START_S). These rules depend neither on the clock nor on the time of the
-    first observation. If no exception decides, a node that exits in the initial period counts as a node that did not
-    run.
+    first observation. If there is no such exception, a node that exits in the initial period counts as a node that did
+    not run.
     """
     end = recording.end
     if end.by != "itself" or spun(recording):

@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Measured:
-    """The times of arrivals (s), the intervals between them, and the periods before the first and after the last.
+    """The times of arrivals (s), the intervals between them, and the periods before and after all arrivals.
 
-    `intervals` and `mean_s` leave out the intervals that were changed by a stall of the machine, and those that begin
-    in the initial period (`activity.START_S`). `begins` contains the start times of the intervals. `trusted` is the
-    share of intervals that were not changed by a stall.
+    `intervals` and `mean_s` leave out the intervals that were changed by a stall of the machine, and the intervals that
+    begin in the initial period (`activity.START_S`). `begins` contains the start times of the intervals. `trusted` is
+    the share of intervals that were not changed by a stall.
     """
 
     arrivals: tuple[float, ...]

@@ -99,7 +99,7 @@ class Evidence:
         return self if id_ == self.trial.id else self._views[id_]
 
     def views(self) -> tuple[Evidence, ...]:
-        """Return one view of the evidence for each trial that was run, and always one for the first trial."""
+        """Return one view of the evidence for the first trial, and one for each other trial that was run."""
         ids = [trial.id for trial in self.exercise.trials]
         return tuple(self.from_trial(id_) for id_ in ids if id_ in self.runs or id_ == ids[0])
 

@@ -1,4 +1,4 @@
-"""Stage: which part of the evidence a check needs."""
+"""Stage: the part of the evidence that a check needs."""
 
 from __future__ import annotations
 

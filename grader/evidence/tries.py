@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 Result = Literal["passes", "further", "refuted"]
-"""The result of testing a change: the check passes, fails later for another reason, or the cause is refuted."""
+"""The result of testing a change: the check passes, it fails later for another reason, or the cause is refuted."""
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,7 @@ class Own:
 
 @dataclass(frozen=True)
 class NumbersSpec:
-    """The table `[numbers]` of the exercise `step`: the file in the package, and the possible values of each name."""
+    """The table `[numbers]` of the exercise `step`: the file in the package, and the possible values of each number."""
 
     step: str
     file: str
@@ -51,7 +51,7 @@ class NumbersSpec:
 
 @dataclass(frozen=True)
 class OwnNumbers:
-    """The values of one student, by their names, which contain their units."""
+    """The numbers of one student, each with its name. The name contains the unit of the number."""
 
     student: str
     values: Mapping[str, Value]

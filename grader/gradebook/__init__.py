@@ -1,1 +1,1 @@
-"""nbgrader for this course: releases, kernels in cells, scores confirmed by the grader, and feedback."""
+"""nbgrader for this course: releases, kernels in sandbox cells, scores confirmed by the grader, and feedback."""

@@ -27,7 +27,7 @@ def add_to(app: typer.Typer) -> None:
 
 
 def _group() -> None:
-    """Do nothing; typer requires such a callback."""
+    """Do nothing. The library typer requires such a callback."""
 
 
 Steps = Annotated[

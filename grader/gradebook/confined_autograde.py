@@ -1,6 +1,6 @@
 """The kernels of autograde.
 
-Each kernel runs in a sandbox cell (grader.sandbox), behind a relay with a budget (relay.py).
+Each kernel runs in a sandbox cell (grader.sandbox), and a relay limits its messages (relay.py).
 
 The cells of a notebook are student code. A sandbox cell has only a loopback network and separate disks, so the relay
 communicates with the kernel through pipes. Interrupts are sent as messages, because a signal would go to the relay.

@@ -1,4 +1,4 @@
-"""nbgrader's converters and collect step, limited to the files that the process for reading submissions returns."""
+"""Variants of nbgrader's converters and collect step, which use only files that the reading process accepts."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ ATTRIBUTES = {**bleach.sanitizer.ALLOWED_ATTRIBUTES, "span": ["class"], "div": [
 
 
 class _NoPictures(dict[str, dict[str, str]]):
-    """The pictures attached to a cell, all of them empty. Without it, nbconvert refuses a page with such a picture."""
+    """Empty pictures in place of the pictures attached to a cell. nbconvert refuses a page without such a picture."""
 
     def __contains__(self, name: object) -> bool:
         return True

@@ -173,7 +173,7 @@ def _put_together(
 
 
 def _of_the_machine(error: BaseException | None) -> bool:
-    """Return whether the disk caused the error rather than a student's files."""
+    """Return whether the disk, and not a student's file, caused the error."""
     while error is not None:
         if isinstance(error, OSError) and error.errno in OF_THE_DISK:
             return True

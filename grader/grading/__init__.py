@@ -1,1 +1,1 @@
-"""Grading: connect all the parts, from the folder of a submission to its report."""
+"""Grading: all steps from the folder of a submission to its report."""

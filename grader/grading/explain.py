@@ -51,7 +51,7 @@ def explain(
 
 
 def part_of(exercise: Exercise, check: str) -> Exercise:
-    """Return the exercise with the checks of this check's trial, the checks that these need, and all their trials."""
+    """Return the exercise with only the checks of this check's trial, all checks that these need, and their trials."""
     specs = {spec.id: spec for spec in exercise.checks}
     trial = specs[check].trial
     wanted: dict[str, CheckSpec] = {}

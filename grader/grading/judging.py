@@ -1,7 +1,8 @@
 """Judging: check a submission while it is being graded: first the files, then the build, then each trial.
 
 Judging reads files that a student wrote, so it runs in a child process (submission/reader.py). If the child process
-exceeds its limits, the submission is at fault: every check becomes `unreadable`, and nothing more is read.
+exceeds its limits, the submission is at fault: every check fails with the diagnosis `unreadable`, and nothing more is
+read.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ _WAIT_S = 1.0
 
 @contextmanager
 def passed_on(domain: int) -> Iterator[None]:
-    """Create the participant in this context; at the end, its announcement is sent to the other participants."""
+    """Create the participant in this context. When the context ends, the participant is announced to the others."""
     held = _held()
     list(_received(held))  # the announcements of earlier participants of this process
     yield

@@ -141,8 +141,8 @@ class Settling:
     def observe(self, due_s: float = math.inf) -> None:
         """Read the graph, and record whether anything is new since it was last read.
 
-        At most `due_s` of the time since then count as quiet. On a busy machine, a short wait takes longer than
-        requested, and other processes have to wait too.
+        At most `due_s` of the time since the last reading count as quiet. On a busy machine, a short wait takes longer
+        than requested, and other processes have to wait too.
         """
         graph, now = _graph(self._node), time.monotonic()
         self._quiet_s = 0.0 if graph - self._graph else self._quiet_s + min(due_s, now - self._read)
@@ -170,7 +170,7 @@ class Settling:
 
 
 def settle(node: Node, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> bool:
-    """Wait until the graph seen by a new node has settled or `enough` returns true; return False at the deadline."""
+    """Wait until the graph of a new node has settled or `enough` returns true. Return False at the deadline."""
     return Settling(node).settle(enough, deadline_s)
 
 
@@ -184,7 +184,7 @@ def published(node: Node, topic: str) -> bool:
 
 
 def spin_until(node: Node, done: Callable[[], bool], timeout_s: float | None = None) -> bool:
-    """Spin the node until `done` returns true or the timeout expires; return False on timeout."""
+    """Spin the node until `done` returns true or the timeout expires. Return False after a timeout."""
     end = None if timeout_s is None else time.monotonic() + timeout_s
     while not done():
         left = _WAKE_S if end is None else min(_WAKE_S, end - time.monotonic())

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def snapshot(node: Node) -> Look:
-    """Return the graph as `node` sees it now; call `discovery.settle` first to get the whole graph."""
+    """Return the graph as `node` sees it now. Call `discovery.settle` first to get the whole graph."""
     topics = _named(node.get_topic_names_and_types())
     services = _named(node.get_service_names_and_types())
     return Look(

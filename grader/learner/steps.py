@@ -205,7 +205,7 @@ def _next(known: progress.Progress) -> Exercise:
 
 
 def _waiting(known: progress.Progress) -> list[str]:
-    """Return the steps after the current one that have not passed yet; if all have passed, return all of them."""
+    """Return the steps after the current step that have not passed yet, or all later steps if all have passed."""
     names = list(catalogue())
     later = names[names.index(known.current or names[0]) + 1 :]
     return [name for name in later if not known.step(name).passed] or later

@@ -78,7 +78,7 @@ class Events:
     def watch(self, folder: Path) -> None:
         """Watch only this folder from now on.
 
-        The first event reports a save. The event is sent as soon as the watcher notices new saves.
+        As soon as the watcher is ready to notice new saves, it reports a first save.
         """
         self._stop.set()
         self._stop = Event()

@@ -33,7 +33,7 @@ class Started:
 
     `kept` is the folder to which older work was moved (with --fresh). `lacking` maps each package file that already
     existed to the lines of the step's version that the file does not contain. If the step is new to the folder, `tasks`
-    maps each such file to the tasks in the step's version (TODO 1: ...).
+    maps each of these package files to the tasks in the step's version (TODO 1: ...).
     """
 
     folder: Path
@@ -141,8 +141,8 @@ def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tup
 def lacking_lines(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, tuple[str, ...]]:
     """Return the lines of the step's package files that are missing in the learner's files, by the path of the file.
 
-    `files` has the content of the learner's files by path. Files that are not in `files` are left out. A step with a
-    package of its own lacks nothing: the learner's task is to change its files.
+    `files` has the content of the learner's files by path. Files that are not in `files` are left out. For a step with
+    a package of its own, no lines are returned, because the learner's task is to change those files.
 
     Raises:
         OSError: a file of the starting point cannot be read.

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 def load_ipython_extension(shell: InteractiveShell) -> None:
-    """Load the extension; `%load_ext grader.notebook` calls this function."""
+    """Load the extension. `%load_ext grader.notebook` calls this function."""
     from grader.notebook.extension import load
 
     load(shell)

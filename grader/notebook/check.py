@@ -63,7 +63,7 @@ class Verdict:
 
 
 class Checking:
-    """The `check` function of a kernel, with the verdicts so far."""
+    """The `check` function of a kernel, with the verdicts of its earlier calls."""
 
     def __init__(self, cells: Cells) -> None:
         self._cells = cells

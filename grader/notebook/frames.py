@@ -27,7 +27,7 @@ _SIZE = 4
 class FrameError(ValueError):
     """The data is not a frame, or the frame is too large.
 
-    The error message states whether the data is not a frame or the frame is too large.
+    The error message says which of the two is the case.
     """
 
 

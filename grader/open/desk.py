@@ -157,7 +157,7 @@ def _check(outcome: Outcome) -> dict[str, object]:
 
 
 def _checks(exercise: Exercise, now: Content) -> list[dict[str, object]]:
-    """Return all checks of the exercise in order: failed because of the files, judged before, or not judged yet."""
+    """Return all checks of the exercise in order, each with its status: failed early, judged, or not judged yet."""
     judged = {**(now.verdict.checks if now.verdict else {}), **(now.early or {})}
     return [
         judged.get(spec.id)

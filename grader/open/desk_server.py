@@ -1,4 +1,4 @@
-"""The server of the page: lessons, verdict, updates and actions, protected by the view's guard.
+"""The server of the page: lessons, verdict, updates and actions, protected by grader.view.guard.
 
 Lessons are public. A request for the learner's data must contain the token: in a header, which no other site can send,
 or in the address of the connection for updates, whose Origin the guard checks.

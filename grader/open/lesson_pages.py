@@ -1,4 +1,4 @@
-"""The files of the server: the pages of the lessons with the panes, and their pictures, style sheets and scripts."""
+"""The files that the server sends: pages with a lesson and panes, and their pictures, style sheets and scripts."""
 
 from __future__ import annotations
 

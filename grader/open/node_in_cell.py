@@ -114,7 +114,7 @@ def _until_it_ends(cell: LinkedCell, program: Program) -> int:
 
 
 def _read_order(cell: LinkedCell, stop: Callable[[], None]) -> None:
-    """At the end of standard input, which receives no data, call `stop`."""
+    """Call `stop` when standard input is closed. No data arrives on standard input."""
     if not os.read(sys.stdin.fileno(), _CHUNK):
         cell.selector.unregister(sys.stdin)
         stop()

@@ -192,7 +192,7 @@ class Programs:
         await asyncio.gather(self.node.stop(), self.turtlesim.stop())
 
     def data(self, step: str, digest: str) -> Mapping[str, object]:
-        """Return the data for a page, ready for JSON. `digest` is the digest of the code of the current step now."""
+        """Return the data for a page, ready for JSON. `digest` is the present digest of the current step's code."""
         ran_step, ran_digest = self._ran
         failed = not self.turtlesim.running and not self.turtlesim.was_stopped
         # The address of the view contains its token.

@@ -1,4 +1,4 @@
-"""Whether the cause of a failed check is a fact or a possibility.
+"""Decide whether the cause of a failed check is a fact or only a possibility.
 
 A cause is a fact if the files, the build, an exception or the recording show it directly, or if a test has proved it:
 after the suggested fix, the check passes or the node gets further. All other causes are conclusions from the source

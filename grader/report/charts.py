@@ -197,7 +197,7 @@ def _end_s(evidence: Evidence) -> float:
 
 
 def _steps(series: Series, wanted: float | None, label: str, end_s: float, where: tuple[float, int]) -> str:
-    """Draw one field: a step at each command, and a dashed line at the required value; `where` is (top, bins)."""
+    """Draw one field: a step at each command, and a dashed line at the required value. `where` is (top, bins)."""
     top, bins = where
     drawn = thin(series, end_s, bins)
     known = [value for _, value in drawn] + ([wanted] if wanted is not None else []) + [0.0]

@@ -25,7 +25,7 @@ NEWLINE = re.compile(r"\r\n|\r|\n")
 
 @dataclass(frozen=True)
 class CodeLine:
-    """A line with its number, in coloured pieces; `marked` is true for the line that a check points to."""
+    """A line with its number, in coloured pieces. `marked` is true for the line that a check points to."""
 
     number: int
     pieces: tuple[Piece, ...]

@@ -41,7 +41,7 @@ BAR = "#1c7ed6"
 
 @dataclass(frozen=True)
 class Entry:
-    """A report of the class; `link` is the link from the class page to the submission's page, or an empty string."""
+    """A report of the class. `link` is the link from the class page to the submission's page, or an empty string."""
 
     report: Report
     name: str
@@ -230,7 +230,7 @@ BINS = [f"{10 * each} to {10 * each + 9}" for each in range(10)] + ["100"]
 
 
 def counts(shares: Iterable[float]) -> list[int]:
-    """Count the submissions with 0 to 9 % of the points, 10 to 19 %, and so on; the last count is for full marks."""
+    """Count the submissions with 0 to 9 % of the points, 10 to 19 %, and so on. The last count is for full marks."""
     found = [0] * len(BINS)
     for share in shares:
         found[min(int(share * 10 + 1e-9), 10)] += 1

@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 
 
 def make_page(template: str, scripts: Sequence[str], data: object, values: Mapping[str, object]) -> str:
-    """Return a page with the style sheet, scripts and their data; `template` and `scripts` name files in assets/."""
+    """Return a page with the style sheet, scripts and their data.
+
+    `template` and `scripts` are the names of files in assets/.
+    """
     style, code = _text("page.css"), "".join(map(_text, scripts))
     policy = (
         f"default-src 'none'; style-src {_hash(style)}; script-src {_hash(code)}; img-src data:; base-uri 'none'; "

@@ -33,7 +33,7 @@ class Size:
 
 @dataclass(frozen=True)
 class Log:
-    """One log; `errors` are the lines that look like errors, with their numbers."""
+    """One log. `errors` contains the lines that look like errors, with their line numbers."""
 
     key: str
     title: str

@@ -39,7 +39,7 @@ BAD: Rgb = (176, 28, 28)
 
 @dataclass(frozen=True)
 class Panel:
-    """The position of a canvas on the page, in pixels; `left` and `top` do not include the axes and the legend."""
+    """The position of a canvas on the page, in pixels. `left` and `top` do not include the axes and the legend."""
 
     left: int
     top: int

@@ -21,7 +21,7 @@ GROWTH = {"&": 5, "<": 4, ">": 4, '"': 5, "'": 5}
 
 @dataclass(frozen=True)
 class Cut:
-    """Lines from the beginning and the end of a text; `left_out` is the number of lines between them."""
+    """Lines from the beginning and the end of a text. `left_out` is the number of lines between them."""
 
     head: tuple[str, ...]
     tail: tuple[str, ...] = ()

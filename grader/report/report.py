@@ -79,7 +79,10 @@ class Report:
 def report_of(
     evidence: Evidence, outcomes: tuple[Outcome, ...], ros: str, seconds: dict[str, float], *, confined: bool = True
 ) -> Report:
-    """Return the report on judged evidence. `ros` names the ROS 2 version; `seconds` is the wall time of each stage."""
+    """Return the report on judged evidence.
+
+    `ros` is the name of the ROS 2 installation, and `seconds` contains the wall time of each stage.
+    """
     recording = evidence.run.recording
     return Report(
         exercise=evidence.exercise.id,
@@ -129,7 +132,7 @@ def _in_one_line(difference: str) -> str:
 
 
 def _why_this_clock(evidence: Evidence) -> str:
-    """Return the reason for the clock of the first trial, and for the clock of each trial with another clock."""
+    """Return the reason for the clock of the first trial, and a reason for each trial with a different clock."""
     first = evidence.run.recording
     if first is None and evidence.run.called is not None:
         return "No node was run. Your code was called, without a simulator."

@@ -72,7 +72,10 @@ def points(of: Iterable[Point]) -> str:
 
 
 def picture(*children: str, width: float, height: float, title: str, key: str, name: str, about: str = "") -> str:
-    """Return a complete picture that scales with its page; `key` is its kind, and `name` is unique on the page."""
+    """Return a complete picture that scales with its page.
+
+    `key` is the kind of picture, and `name` is a unique name.
+    """
     named = [tag("title", escape(printable(title)), id=f"picture-{name}-title")]
     if about:
         named.append(tag("desc", escape(printable(about)), id=f"picture-{name}-about"))
@@ -98,7 +101,7 @@ def pixel(point: Point) -> Point:
 
 
 def scene_svg(scene: Scene, *, turtle: bool = False, name: str = "canvas") -> str:
-    """Draw the canvas with its axes; `turtle` adds a turtle that a player can move, and its trajectory so far."""
+    """Draw the canvas with its axes. `turtle` adds a turtle that a player can move, and the path behind that turtle."""
     scale = SIDE / SIDE_M
     shapes = "".join(_shape(shape, scale) for shape in scene.shapes)
     inside = [tag("rect", x=LEFT, y=TOP, width=SIDE, height=SIDE, fill=rgb(SEA)), tag("g", shapes)]

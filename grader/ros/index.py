@@ -19,7 +19,7 @@ KINDS = ("msg", "srv", "action")
 
 
 def prefixes() -> list[Path]:
-    """Return the existing folders on AMENT_PREFIX_PATH; overlays come first."""
+    """Return the existing folders on AMENT_PREFIX_PATH, in which overlays come first."""
     return [path for path in map(Path, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)) if path.is_dir()]
 
 

@@ -86,7 +86,7 @@ def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -
 
 
 def _start_up(text: str, name: str) -> str:
-    """Write a start-up file that removes itself and its folder when a shell reads it; return its path."""
+    """Write a start-up file, and return its path. When a shell reads the file, the file and its folder are removed."""
     file = Path(tempfile.mkdtemp(prefix="grader-shell-"), name)
     file.write_text(f"rm -rf {shlex.quote(str(file.parent))}\n{text}", encoding="utf-8")
     return str(file)

@@ -114,7 +114,7 @@ def _compiler(search: str) -> Path | None:
 def _built_by_another_compiler(ros: installation.Ros) -> Path | None:
     """Return a finished build whose compiler has since been removed.
 
-    The build can be used even if its compiler has been removed.
+    Such a build can still be used.
     """
     builds = xdg.cache().glob(f"turtlesim-{_key_of_sources(ros)}-*")
     return max(builds, key=lambda build: build.stat().st_mtime, default=None)

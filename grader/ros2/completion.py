@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def completes(argument: argparse.Action, names: Callable[..., Iterable[str]]) -> None:
-    """Set the completer of an argument. `names` is called with the keyword `parsed_args`, the arguments so far."""
+    """Set the completer of an argument. `names` gets the arguments typed before as `parsed_args`."""
     argument.completer = lambda **words: list(names(**words))  # type: ignore[attr-defined]
 
 

@@ -89,7 +89,7 @@ def _check_topics(node: Node) -> Examination:
 
 
 def _pairs(node: Node) -> Iterator[tuple[str, Any, Any, Any, str]]:
-    """Yield the topic, publisher, subscription, QoS compatibility, and the reason for any incompatibility."""
+    """Yield each topic with a publisher, a subscription, their QoS compatibility, and the reason for a problem."""
     from rclpy.qos import qos_check_compatible
 
     for topic in _topics(node):

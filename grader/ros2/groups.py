@@ -12,10 +12,13 @@ _NONE: Mapping[str, str] = MappingProxyType({})
 
 
 class Group(NamedTuple):
-    """A command group, which is the word after `ros2`. A dataclass would slow each command by its import.
+    """A command group, which is the word after `ros2`.
 
-    `verbs` maps the words that may follow the group to their help. A group without verbs is a command. `flags`
-    maps options that may come before the verb to their help. With `runs_itself`, the group also works without a verb.
+    The class is not a dataclass, because importing dataclasses would slow down every command.
+
+    `verbs` maps the words that may follow the group to their help texts. A group without verbs is a command. `flags`
+    maps options that may come before the verb to their help texts. With `runs_itself`, the group also works without a
+    verb.
     """
 
     about: str

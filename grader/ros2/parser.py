@@ -53,9 +53,9 @@ class Parser(argparse.ArgumentParser):
 def make_parser(words: Sequence[str]) -> Parser:
     """Return the parser for a command line. `words` are the words after `ros2`.
 
-    The parser knows all groups of `ros2`. For the group and the verb in `words`, the parser also knows the verbs and
-    the arguments. The parsed arguments have the attribute `run`, a function that takes the arguments and returns the
-    exit code.
+    The parser contains all groups of `ros2`. The verbs of a group and the arguments of a verb are added only for the
+    group and the verb in `words`. The parsed arguments have the attribute `run`, a function that takes the arguments
+    and returns the exit code.
     """
     chosen = [word for word in words if not word.startswith("-")]
     group, verb = [*chosen[:2], None, None][:2]

@@ -1,1 +1,1 @@
-"""The sandbox: cells for student code, and their limits."""
+"""The sandbox: containers ("cells") for student code, and the limits of these containers."""

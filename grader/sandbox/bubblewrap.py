@@ -46,7 +46,7 @@ ROOM_DISK = 256 * MIB
 
 @dataclass(frozen=True)
 class View:
-    """The paths on the disk that are visible in a room or cell, unchanged.
+    """The paths on the disk that are visible in a room or cell under the same names.
 
     Inside the room or cell, the folders in `hidden` appear as empty folders.
     """

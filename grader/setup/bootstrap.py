@@ -121,7 +121,7 @@ def clean_environment(env: Mapping[str, str]) -> Dict[str, str]:
 def look(
     ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python], parts: Sequence[str], *, made: bool
 ) -> Tuple[Optional[machine.Python], List[Need]]:
-    """Return the Python for .venv (None if .venv is already `made`), and what the system lacks for these parts."""
+    """Return the Python for .venv (None if .venv is already `made`), and the missing programs for these parts."""
     path = os.environ.get("PATH", "")
     tools = machine.missing_tools(path, ros)
     if "tests" in parts:
@@ -143,7 +143,7 @@ def look(
 
 
 def report_missing(needs: Sequence[Need], why: str) -> bool:
-    """Print what the system lacks, and the reason (`why`) for which it was not installed. Return whether to stop."""
+    """Print the missing programs, and the reason `why` they were not installed. Return True if the set-up must stop."""
     root = os.getuid() == 0
     manager = package_managers.find_manager(os.environ.get("PATH", ""))
     if not all(need.lost for need in needs):

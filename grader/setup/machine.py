@@ -99,7 +99,7 @@ def sourced_ros(env: Mapping[str, str], ours: Path) -> Optional[SourcedRos]:
 
 
 def platform_problem(system: str, machine: str, libc: Tuple[str, str], ros: Optional[SourcedRos]) -> str:
-    """Return why the ROS 2 wheels cannot be installed here and what to do instead, or an empty string if they can.
+    """Return a text that says why the ROS 2 wheels cannot be installed here and what to do, or an empty string.
 
     The arguments are platform.system(), platform.machine() and platform.libc_ver().
     """
@@ -161,7 +161,7 @@ def probe(executable: str) -> Optional[Python]:
 
 
 def for_ros(python: Python, ros: SourcedRos) -> Python:
-    """Return the interpreter. If the version of the interpreter is right for this ROS 2, list the missing modules."""
+    """Return the interpreter, with a list of the missing modules if its version is right for this ROS 2."""
     if python.version[:2] != ros.python or not python.cpython:
         return python
     # Like .venv, use the system's packages, but not those in the user's home.
@@ -267,7 +267,7 @@ def missing_of_python(
 def lack_message(
     needs: Sequence[Need], manager: Optional[package_managers.Manager], *, root: bool, why: str = ""
 ) -> str:
-    """Return a message: what the system lacks, the command that installs it, and `why` it was not installed."""
+    """Return a message with the missing programs, the command that installs them, and `why` this was not done."""
     whats = [f"  - {what}" for what in dict.fromkeys(need.what for need in needs)]
     lines = ["The course needs the following, which this system does not have:", *whats]
     lines += [f"They were not installed: {why}."] if why else []

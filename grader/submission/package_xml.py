@@ -17,7 +17,9 @@ NO_NEWS = re.compile(r"Error\(s\) in package '[^']*':|Error\(s\):|The manifest c
 
 @dataclass(frozen=True)
 class Manifest:
-    """A package.xml. `run_depends` are the run-time dependencies; `other_depends` are only for building or testing.
+    """A package.xml.
+
+    `run_depends` are the run-time dependencies. `other_depends` are dependencies only for building or testing.
 
     `problem` is the reason why the file is invalid, and `line` the line of the error, if known. If there is a
     `problem`, the other fields are empty.
@@ -65,7 +67,10 @@ def open_tag(data: bytes) -> tuple[str, int]:
 
 
 def line_of(data: bytes, *patterns: str) -> int | None:
-    """Return the first line (from 1) that matches a pattern, or None. Patterns that come first are preferred."""
+    """Return the first line (from 1) that matches a pattern, or None.
+
+    If lines match different patterns, the first pattern decides.
+    """
     lines = data.decode("utf-8", "replace").splitlines()
     for pattern in patterns:
         for number, line in enumerate(lines, start=1):

@@ -53,7 +53,7 @@ class PlainSetup:
 
 
 def read_plain_setup(setup_py: bytes, setup_cfg: bytes, paths: Collection[str]) -> PlainSetup | None:
-    """Read setup.py and setup.cfg of a package with files at these paths; return None if one of them is unusual."""
+    """Read setup.py and setup.cfg of a package with files at these paths. Return None if one of them is unusual."""
     module = read_module("setup.py", setup_py)
     call = _only_call(module)
     if call is None:
@@ -75,7 +75,7 @@ def read_plain_setup(setup_py: bytes, setup_cfg: bytes, paths: Collection[str]) 
 
 
 def _only_call(module: Module) -> ast.Call | None:
-    """Return the call of setup(), or None if the module has other statements than imports and assignments to names."""
+    """Return the call of setup(), or None if the module has statements other than imports and assignments to names."""
     calls: list[ast.Call] = []
     for statement in module.body:
         if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):

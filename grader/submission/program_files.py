@@ -19,7 +19,7 @@ folder or the home folder."""
 
 @cache
 def program_files() -> tuple[Path, ...]:
-    """Return the files and folders from which any reading process may need something, such as a module to import."""
+    """Return the files and folders that any reading process may need, for example to import a module."""
     package = Path(__file__).resolve().parents[1]
     lessons = (package.parent / "course", package.parent / "exercises")
     searched = [Path(entry) for entry in sys.path if os.path.isabs(entry)]  # noqa: PTH117

@@ -56,7 +56,9 @@ class Package:
 
 
 class Lane:
-    """The cell with its session, as a context manager. On entry, the lane starts the imports.
+    """A sandbox cell and the session that runs in this cell, as a context manager.
+
+    On entry, the lane starts the imports.
 
     Without a cell, the lane uses `folder`, which no other lane uses. The nodes of a lane without a cell discover no
     other nodes on the machine.

@@ -66,7 +66,7 @@ class BenchResult:
 
 @dataclass(frozen=True)
 class Ended:
-    """The data about a run that has ended, without its report, which has not been read yet (JSON).
+    """The data about a run that has ended. The report of the run (JSON) has not been parsed yet.
 
     A student's process could have written the report.
     """

@@ -34,10 +34,10 @@ FOLDER = Path(__file__).parent / "hostile"
 class Attack:
     """The content of expected.toml.
 
-    One of these keys names the trace that the attack leaves if there is no sandbox. In a sandbox, the attack must not
-    leave this trace: `says` (a text in the output), `file` (a path in the observed host), `process` (a part of a
-    command line), `socket`, `kills` (the grader itself), `secret` (the caller's secret in the node's output). `raw` is
-    a shell command that is run in the package's folder; its trace is `says` or `file`.
+    One key names the trace that the attack leaves if there is no sandbox. In a sandbox, the attack must not leave this
+    trace. The keys for traces are `says` (a text in the output), `file` (a path in the observed host), `process` (a
+    part of a command line), `socket`, `kills` (the grader itself), `secret` (the caller's secret in the node's output).
+    `raw` is a shell command that is run in the package's folder, and whose trace is `says` or `file`.
 
     An attack on the simulator leaves a trace in the recording even in a sandbox, because the grader judges the
     recording. `passes` is a check that would pass if `without` were ignored ("interventions", "participants").

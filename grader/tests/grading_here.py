@@ -76,7 +76,7 @@ def _alike(submission: Submission) -> object:
 
 
 def grade_here(case: Case, clock: ClockChoice, folder: Path, builds: Builds) -> Graded:
-    """Return what `grader check` would report, and what it would print without colours."""
+    """Return the report of `grader check`, and the text that the command would print without colours."""
     given = make_submission(case, folder / "in")
     exercise = find_exercise(case.exercise or case.base or EXERCISE)
     try:
@@ -92,7 +92,10 @@ def grade_here(case: Case, clock: ClockChoice, folder: Path, builds: Builds) -> 
 
 
 def all_graded_here(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Grade]:
-    """Yield the fixture `graded`: it grades a case with a clock. All cases of a module are graded in parallel."""
+    """Yield the fixture `graded`, a function that grades a case with a clock.
+
+    All cases of a module are graded in parallel.
+    """
     folder, builds = tmp_path_factory.mktemp("graded"), Builds()
     futures: dict[tuple[str, str], Future[Graded]] = {}
     with ThreadPoolExecutor(AT_ONCE) as pool:

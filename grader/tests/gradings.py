@@ -29,7 +29,7 @@ HANG_S = 300.0
 
 @dataclass(frozen=True)
 class Graded:
-    """The result of one `grader check`: `report` is None if the command wrote no report."""
+    """The result of one `grader check`. `report` is None if the command wrote no report."""
 
     exit_code: int
     stdout: str

@@ -1,4 +1,4 @@
-"""A thermometer and a heater in one process: the example whose graph step 05 shows.
+"""A thermometer and a heater in one process: the example of step 05, which shows their graph.
 
 The program runs until it is stopped.
 """

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], Any]) -> tuple[Path, Any]:
-    """Return the folder with this name, filled by `make`, and what `make` returned (JSON).
+    """Return the folder with this name, filled by `make`, and the result of `make` (JSON).
 
     Tests must not change this folder.
     """

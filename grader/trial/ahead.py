@@ -105,7 +105,9 @@ class Ahead:
         trial.await_ready()
 
     def run(self, name: str, package: str, executable: str, tree: bytes) -> None:
-        """Start the node in a trial that is waiting for it. After this call, `trial(name).run` returns the recording.
+        """Start the node in a trial that is waiting for its node.
+
+        After this call, `trial(name).run` returns the recording.
 
         A node that has already been started continues to run.
         """

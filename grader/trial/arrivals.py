@@ -28,7 +28,7 @@ def take_messages(subscription: Subscription) -> None:
 
 
 def take_requests(service: Service) -> int:
-    """Answer the requests that have arrived with the service's callback, and return their number."""
+    """Use the service's callback to answer all requests that have arrived, and return the number of requests."""
     with service.handle:
         for count in range(MOST_AT_ONCE):
             request, header = service.handle.service_take_request(service.srv_type.Request)

@@ -1,4 +1,4 @@
-"""Load the Python class of an installed message or service type, which a node of a submission names."""
+"""Load the Python class of an installed message or service type whose name comes from a node of a submission."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ class NodeGroup:
         return sum(process.read_output(now_s) for process in self.processes)
 
     def waited_to_write(self, size: int) -> bool:
-        """Return whether a node might have waited for a reader. `size` is the number of bytes that all nodes wrote."""
+        """Return whether a full pipe might have delayed a node. `size` is the number of bytes that all nodes wrote."""
         return any(process.waited_to_write(size) for process in self.processes)
 
     def worked_s(self, begin: float, end: float) -> float:

@@ -187,7 +187,7 @@ class NodeProcess:
         return sum(stream.read(now_s) for stream in self._streams)
 
     def waited_to_write(self, size: int) -> bool:
-        """Return whether a node that wrote this many bytes might have waited for a reader."""
+        """Return whether a full pipe might have delayed a node that wrote this many bytes."""
         return size >= self._full
 
     def output(self) -> tuple[Output, Output]:

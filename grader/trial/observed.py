@@ -44,7 +44,9 @@ class Offer:
 
 @dataclass(frozen=True)
 class Goal:
-    """A goal that a node sent to an action of the simulator, which accepted it at the time `t_s` of the trial's clock.
+    """A goal that a node sent to an action of the simulator.
+
+    `t_s` is the time at which the simulator accepted the goal.
 
     The other times (s) are None if the event did not happen: a client requested the result (`result_asked_s`), a client
     requested cancellation (`cancel_asked_s`), or the goal ended with this `status` (`ended_s`).
@@ -74,7 +76,7 @@ class PenChange:
 
 @dataclass(frozen=True)
 class Track:
-    """The track of a turtle other than turtle1: rows of t_s (s), x and y (m) and theta (rad), one per change.
+    """The track of a turtle other than turtle1: rows of t_s (s), x and y (m) and theta (rad), one row per change.
 
     The first row is the turtle's first frame. `gone_s` is the time at which the turtle was killed (s), or None.
     """

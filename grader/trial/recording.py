@@ -249,7 +249,7 @@ def to_json(recording: Recording, *, messages: bool = True) -> dict[str, Any]:
 
 
 def from_json(data: dict[str, Any], payloads: Iterable[bytes] | None = None) -> Recording:
-    """Return the recording in the result of `to_json`. `payloads` has the contents of messages if `data` lacks them."""
+    """Return a recording from the result of `to_json`. If `data` has no message contents, `payloads` contains them."""
     contents = iter(payloads) if payloads is not None else (base64.b64decode(row[2]) for row in data["messages"])
     frames = data["frames"]
     wall = np.array(frames["wall"], dtype=np.bool_)

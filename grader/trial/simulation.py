@@ -209,7 +209,7 @@ class Simulation:
             self._actions = None  # a turtle may have been added or removed
 
     def _handle_ready(self, timeout_s: float) -> list[object]:
-        """Handle everything that is ready within `timeout_s`, and then the other waiting messages on these topics."""
+        """Handle everything that is ready within `timeout_s`, and then all other messages on the same topics."""
         handled: list[object] = []
         with suppress(TimeoutException):
             while len(handled) < MOST_AT_ONCE:

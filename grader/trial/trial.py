@@ -184,7 +184,10 @@ class Trial:
         return recording
 
     def _order(self, package: str, executable: str, arguments: list[str], folder: str) -> dict[str, Any]:
-        """Return what the launcher of one node must run. Each launcher unpacks the install tree in its own folder."""
+        """Return the data that the launcher of one node needs to run the node.
+
+        Each launcher unpacks the install tree in its own folder.
+        """
         install = self._workspace / folder
         prefix = install / package
         env = installation.environment(self._ros, home=self._home, overlays=[prefix], domain=self._domain)

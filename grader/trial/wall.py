@@ -15,7 +15,7 @@ GRAPH_EVERY = 31
 class WallTrial(Simulation):
     """A simulation on CLOCK_MONOTONIC.
 
-    Frames keep their schedule: a late frame runs immediately; no frame is skipped.
+    A late frame runs immediately, and no frame is skipped.
     """
 
     _begun: float | None = None

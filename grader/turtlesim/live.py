@@ -33,7 +33,7 @@ TURTLE: tuple[int, int, int] = (124, 197, 118)
 
 
 def main() -> int:
-    """Run the simulator; return the exit code."""
+    """Run the simulator, and return the exit code."""
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())

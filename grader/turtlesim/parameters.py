@@ -45,7 +45,7 @@ def declare(node: Node) -> None:
 
 
 def refusal(node: Node, parameters: Iterable[Parameter]) -> SetParametersResult | None:
-    """Return why these parameters cannot be set, in the words of rclcpp, or None if they can be set.
+    """Return the reason why these parameters cannot be set, in the words of rclcpp, or None if they can be set.
 
     rclpy's own messages are worded differently.
 

@@ -28,7 +28,7 @@ class _DeferringActionServer(ActionServer):
     """
 
     def __init__(self, *args: Any, on_result_request: Callable[[bytes], object], **kwargs: Any) -> None:  # noqa: ANN401
-        """Create the server. `on_result_request` runs with the goal's id when a client requests the result."""
+        """Create the server. `on_result_request` is called with the goal's id when a client requests the result."""
         self._on_result_request = on_result_request
         super().__init__(*args, **kwargs)
 
@@ -52,7 +52,7 @@ class _DeferringActionServer(ActionServer):
 
 
 class RotateAbsoluteServer:
-    """Connects the goals of a turtle's action with its rotations."""
+    """Connects the goals of a turtle's action with the rotations of the turtle."""
 
     def __init__(
         self, node: Node, name: str, find_turtle: Callable[[], Turtle | None], on_goal: Callable[[GoalEvent], object]

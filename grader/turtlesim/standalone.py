@@ -74,7 +74,7 @@ class View(Protocol):
 
 
 def main(open_view: OpenView, args: Sequence[str] | None = None) -> int:
-    """Run turtlesim; return the exit code, which is 0 after Ctrl-C, or 2 for invalid arguments.
+    """Run turtlesim. Return the exit code, which is 0 after Ctrl-C, or 2 for invalid arguments.
 
     `open_view` starts the view for `--view` on the given port. If the port is None, the view chooses a port.
     """

@@ -1,4 +1,4 @@
-"""All turtles on one canvas, moved frame by frame. This module has no clock; the caller passes the time."""
+"""All turtles on one canvas, moved frame by frame. This module has no clock: the caller passes the time."""
 
 from __future__ import annotations
 

@@ -100,7 +100,7 @@ def _file(kind: str) -> Path:
 
 
 def remembered(kind: str) -> Address | None:
-    """Return the last address of this kind of view, or None. Perhaps the view is no longer running."""
+    """Return the last address of this kind of view, or None. The view at this address may no longer be running."""
     file = _file(kind)
     try:
         stat = file.stat()

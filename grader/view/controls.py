@@ -1,4 +1,4 @@
-"""The input from a view: held keys that drive, keys that turn, and buttons for the simulator."""
+"""The input from a view: keys that drive the turtle while they are held, keys that turn it, and buttons."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class Hands:
             self._ears.drive(topic, Drive(0.0, 0.0))
 
     def gone(self, page: object) -> None:
-        """Remove a closed page. After the last page that drove a turtle, the driving node leaves the graph."""
+        """Remove a closed page. When all pages that drove a turtle are closed, the driving node leaves the graph."""
         self.let_go(page)
         if page in self._drivers:
             self._drivers.discard(page)

@@ -43,7 +43,10 @@ class Hub:
             page.set()
 
     async def follow(self, send: Callable[[str], Awaitable[None]]) -> None:
-        """Send the whole state and then all updates to a page until cancelled. `send` waits for a slow page."""
+        """Send the whole state and then all updates to a page, until the coroutine is cancelled.
+
+        `send` waits for a slow page.
+        """
         woken = asyncio.Event()
         self._pages.add(woken)
         try:

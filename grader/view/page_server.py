@@ -51,7 +51,8 @@ def application(
 ) -> ASGIApp:
     """Return the application, protected by the guard.
 
-    "/" serves the file `index` in assets/, filled with the title, the ROS domain, and `parts`, a class for its body.
+    The path "/" returns the file `index` in assets/, filled with the title, the ROS domain and `parts`, the CSS class
+    of the body.
     """
     filled = {"title": title, "domain": os.environ.get("ROS_DOMAIN_ID", "0"), "parts": parts}
 

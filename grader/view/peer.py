@@ -1,4 +1,4 @@
-"""The user at the other end of a connection from this machine, from /proc/net/tcp and tcp6 (proc(5))."""
+"""Find the user at the other end of a connection from this machine in /proc/net/tcp and tcp6 (proc(5))."""
 
 from __future__ import annotations
 

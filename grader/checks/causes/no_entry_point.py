@@ -24,7 +24,7 @@ FORM = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION in the list c
 
 
 def line(evidence: Evidence) -> Where:
-    """Return the first of these lines in setup.py: the entry point, `console_scripts`, the call to setup()."""
+    """Return the line of setup.py with the entry point, or else with `console_scripts`, or else the call to setup()."""
     setup = evidence.setup_py
     if setup is None:
         return Where("setup.py")
@@ -139,7 +139,7 @@ def _missing(evidence: Evidence, points: tuple[EntryPoint, ...]) -> Cause:
 
 
 def _looks_like_a_node(evidence: Evidence, targets: list[str | None]) -> str | None:
-    """Return a file that creates a publisher but is not named by any entry point, or None."""
+    """Return a file that creates a publisher although no entry point names the file, or None."""
     taken = [module_file((target or "").partition(":")[0], evidence.submission.files) for target in targets]
     everything = read_code(evidence.submission.files, first=None)
     files = [call.module.file for call in everything.calls("create_publisher")]

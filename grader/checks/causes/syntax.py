@@ -157,7 +157,7 @@ def _no_comma(file: str, unreadable: Unreadable, data: bytes) -> Cause | None:
 
 
 def _reads_further(file: str, data: bytes, unreadable: Unreadable) -> bool:
-    """Return whether Python can read the file, or stops only at a later line."""
+    """Return whether the file has no syntax error, or its first syntax error is on a later line."""
     again = read_module(file, data).unreadable
     return again is None or (again.line or 0) > (unreadable.line or 0)
 

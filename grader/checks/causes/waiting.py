@@ -1,4 +1,4 @@
-"""Waits inside callbacks: calls that return late, or never, while the executor can call no other callback."""
+"""Find waits in callbacks: calls that return late or never, so that the executor cannot call other callbacks."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Wait:
 
     @property
     def observed(self) -> str:
-        """What the callback does, after "A callback"."""
+        """The end of a sentence that begins with "A callback": what the callback does."""
         return "loops until a future is done" if self.name == LOOP else f"calls {shorten(self.written)}"
 
     @property
@@ -108,7 +108,7 @@ def waits_in_callbacks(evidence: Evidence) -> list[Wait]:
 
 
 def has_threads(evidence: Evidence) -> bool:
-    """Return whether the node may receive messages in another thread than the one that waits."""
+    """Return whether the node may receive messages in a thread other than the thread that waits."""
     return any(
         getattr(node, "id", getattr(node, "attr", getattr(node, "name", ""))) in THREADS
         for module in evidence.code.modules
@@ -153,7 +153,7 @@ def _aliases(modules: Iterable[Module]) -> dict[str, str]:
 
 
 def _function_named(value: ast.expr, module: Module) -> str:
-    """Return the function that waits and that the expression is: `client.call`, partial(...), getattr(...), or ""."""
+    """Return the name of the waiting function to which `client.call`, partial(...) or getattr(...) refers, or ""."""
     if isinstance(value, ast.Attribute) and value.attr in WAITS:
         return value.attr
     if isinstance(value, ast.Call) and _last(value) == "partial" and value.args:
@@ -165,7 +165,7 @@ def _function_named(value: ast.expr, module: Module) -> str:
 
 
 def _in_callbacks(modules: Iterable[Module]) -> Iterator[tuple[Module, Function]]:
-    """Yield the functions that are passed on instead of called, lambdas, and all functions that these call."""
+    """Yield lambdas and functions that are passed on instead of called, and all functions that these call."""
     functions: dict[str, list[tuple[Module, Function]]] = {}
     waiting: list[tuple[Module, Function]] = []
     passed: set[str] = set()
@@ -192,7 +192,7 @@ def _in_callbacks(modules: Iterable[Module]) -> Iterator[tuple[Module, Function]
 
 
 def _inside(function: Function) -> Iterator[ast.AST]:
-    """Yield the syntax nodes of a function, without those of the functions that are defined in it."""
+    """Yield the syntax nodes of a function, except the nodes of functions that are defined inside this function."""
     waiting: list[ast.AST] = list(function.body) if isinstance(function.body, list) else [function.body]
     while waiting:
         node = waiting.pop()

@@ -1,4 +1,4 @@
-"""Tests that prove nothing: no assert, an assert that never runs, or one that always has the same result."""
+"""Find tests that prove nothing: they have no assert, or an assert that never runs or always has the same result."""
 
 from __future__ import annotations
 

@@ -22,7 +22,10 @@ ROUGH_M = 0.02
 
 @dataclass(frozen=True)
 class Fit:
-    """A circle that the student's code returned: centre and radius (m). `within` are the tolerances of the values."""
+    """A circle that the student's code returned: centre and radius (m).
+
+    `within` contains the tolerances of the values.
+    """
 
     arc: Arc
     values: tuple[float, float, float]

@@ -14,8 +14,7 @@ if TYPE_CHECKING:
 
 LIFECYCLE = "LifecycleNode"
 TRANSITIONS = ("on_activate", "on_configure")
-"""Methods of a lifecycle node that run when another program requests a transition, with the more important method
-first."""
+"""Methods of a lifecycle node that run when another program requests a transition, the most important method first."""
 
 
 def never_activated(evidence: Evidence) -> Cause | None:

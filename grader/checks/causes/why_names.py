@@ -152,7 +152,7 @@ def _in_other_capitals(scene: CrashScene, name: str) -> Cause | None:
 
 
 def _star_import(scene: CrashScene, module: str) -> ast.ImportFrom | None:
-    """Return a star import that names the module's package or another module of this package, or None."""
+    """Return an import with * from the module's package or from another module of this package, or None."""
     for node in scene.nodes:
         if isinstance(node, ast.ImportFrom) and node.module and node.names[0].name == "*":
             same_package = node.module.partition(".")[0] == module.partition(".")[0]

@@ -1,4 +1,4 @@
-"""Why an object is the wrong one: a message instead of its class, a subscription instead of a publisher, and so on."""
+"""Find objects of the wrong kind, such as a message instead of its class, or a subscription instead of a publisher."""
 
 from __future__ import annotations
 

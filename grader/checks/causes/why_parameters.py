@@ -27,7 +27,7 @@ IN_GENERAL = "A timer calls its callback without arguments; a subscription passe
 
 
 def too_few(scene: CrashScene, function: str, names: str) -> Cause | None:
-    """Return the cause if one of the student's functions was called without a value for `names`, else None."""
+    """Return the cause if one of the student's functions was called without the arguments `names`, else None."""
     own = scene.functions(function)
     if not own:
         return None

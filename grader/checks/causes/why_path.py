@@ -83,7 +83,7 @@ def all_zero(evidence: Evidence) -> str:
 
 
 def line_of_values(evidence: Evidence) -> Where | None:
-    """Return the line that sets the speeds: angular.z, or linear.x if only linear.x changes."""
+    """Return the line that sets angular.z, or the line that sets linear.x if only linear.x changes."""
     code = evidence.code
     if len({command.angular for command in evidence.commands}) == 1 < len({each.linear for each in evidence.commands}):
         return code.assigned("linear", "x") or evidence.place("Twist", "publish")

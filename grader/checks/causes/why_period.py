@@ -92,6 +92,6 @@ def _right_period(timer: Call, rate_hz: float) -> tuple[Edit, ...]:
 
 
 def _timers(evidence: Evidence) -> list[tuple[Call, float | None]]:
-    """Return the calls to create_timer, each with its period (s) if that is a constant."""
+    """Return the calls to create_timer, each with the period (s) if the period is a constant."""
     calls = evidence.code.calls("create_timer")
     return [(call, constant(call.argument(0, "timer_period_sec"), call.module.names)) for call in calls]

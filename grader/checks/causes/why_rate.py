@@ -101,7 +101,7 @@ def why_rate_in_callback(evidence: Evidence) -> Cause | None:
 
 
 def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:
-    """Return the cause if one function has as many calls to `call` as messages arrive in each period, else None."""
+    """Return the cause if one function contains several calls to `call`, and as many messages arrive in each period."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.FunctionDef):

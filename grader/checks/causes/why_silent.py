@@ -42,7 +42,7 @@ def why_qos(evidence: Evidence) -> Cause | None:
 
 
 def why_nothing(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
-    """Return the reason why the node sends nothing, or None. `sends` are the functions that publish or log."""
+    """Return the reason why the node sends nothing, or None. `sends` contains the functions that publish or log."""
     fault = timer_fault(evidence)
     if fault is not None:
         return fault

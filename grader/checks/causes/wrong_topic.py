@@ -45,7 +45,7 @@ def _is_absolute(evidence: Evidence, topic: str) -> bool:
 
 
 def right_name(evidence: Evidence, maker: str, topic: str, wanted: str) -> tuple[Edit, ...]:
-    """Return the edit that replaces a topic name with the right one, if the source contains it as a string."""
+    """Return the edit that replaces a topic name with the right one, if the source contains the name as a string."""
     for call in evidence.code.calls(maker):
         node = written(call.argument(1, "topic"), call.module.names)
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and topic.endswith(node.value.strip("/")):

@@ -95,7 +95,7 @@ def answer_list(evidence: Evidence, params: AllOf) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class GraphQuestion:
-    """A question about the ROS graph: the topics, types or nodes of the endpoints that match all these parameters.
+    """A question about the topics, types or nodes in the ROS graph. Only endpoints that match all parameters count.
 
     If `connected_to` is set, a topic counts only if the node with that name has an endpoint of the opposite direction
     on the topic.

@@ -203,7 +203,7 @@ def _nothing(evidence: Evidence, params: Arc, expected: str) -> Finding:
 
 
 def _speed(evidence: Evidence, chosen: Steps) -> float:
-    """Return the median speed of these steps (m/s)."""
+    """Return the median speed (m/s) of these steps of the trajectory."""
     return float(np.median(evidence.trajectory.steps[chosen])) / FRAME_S
 
 

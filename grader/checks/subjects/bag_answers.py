@@ -1,4 +1,4 @@
-"""Checks of answers about the student's own bag: a number with its unit."""
+"""Checks of answers about the student's own bag. Each answer is a number with its unit."""
 
 from __future__ import annotations
 

@@ -120,7 +120,10 @@ def _broken(evidence: Evidence) -> Finding:
 
 
 def _line_of(evidence: Evidence, *patterns: str) -> Where | None:
-    """Return the first line of setup.py that matches a pattern, or None. Patterns that come first are preferred."""
+    """Return the first line of setup.py that matches a pattern, or None.
+
+    If lines match different patterns, the first pattern decides.
+    """
     line = line_of(evidence.submission.files["setup.py"], *patterns)
     return None if line is None else Where("setup.py", line)
 

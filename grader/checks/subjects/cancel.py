@@ -138,7 +138,7 @@ def _is_active(goals: list[Goal], t_s: float) -> bool | None:
 
 
 def _stopped(goals: list[Goal], calls: list[Call]) -> tuple[Call, Goal] | None:
-    """Return the first call that arrived while the turtle followed a goal, with that goal; else None."""
+    """Return the first call that arrived while the turtle followed a goal, together with that goal, or None."""
     for call in calls:
         for goal in goals:
             if goal.t_s < call.t_s and (goal.ended_s is None or goal.ended_s > call.t_s):

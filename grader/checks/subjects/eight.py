@@ -29,7 +29,7 @@ SMALL_RAD = 0.3
 
 @dataclass(frozen=True, kw_only=True)
 class Eight:
-    """The two lobes have this radius and turn by 360 degrees; the first lobe is to the left or to the right."""
+    """Requires two lobes with this radius that turn by 360 degrees each, the first lobe to the left or to the right."""
 
     radius_m: float = number(above=0, at_most=2.5, about="The radius of both lobes.")
     radius_tolerance_m: float = number(0.1, above=0, about="The maximum error of a radius.")
@@ -45,7 +45,7 @@ class Eight:
 
 @dataclass(frozen=True)
 class Lobe:
-    """A part of the trajectory that bends to one side: `turned_rad` (positive: left), fitted circle, end point (m)."""
+    """A part of the trajectory that bends to one side: its angle (positive to the left), fitted circle and end (m)."""
 
     turned_rad: float
     circle: Circle | None
@@ -53,7 +53,7 @@ class Lobe:
 
     @property
     def side(self) -> str:
-        """Left or right."""
+        """The side to which the trajectory bends: left or right."""
         return "left" if self.turned_rad > 0.0 else "right"
 
 
@@ -169,7 +169,7 @@ def _drives_on(evidence: Evidence, lobes: list[Lobe], expected: str) -> Finding 
 
 
 def requested_eight(evidence: Evidence, params: Eight) -> Requested:
-    """Return a circle on either side of the turtle's first movement."""
+    """Return two circles, one to the left and one to the right of the turtle's first movement."""
     begin = first_heading(evidence)
     directions = ("counter-clockwise", "clockwise")
     sides = [CircleParams(radius_m=params.radius_m, direction=direction) for direction in directions]

@@ -34,7 +34,7 @@ lines."""
 
 @dataclass(frozen=True, kw_only=True)
 class LogFeedback:
-    """While a goal is active, the node logs one line per `period_s`, with a remaining angle at most `lag_s` old."""
+    """While a goal is active, the node logs one line per `period_s`. The remaining angle is at most `lag_s` old."""
 
     format: str = string("a log line with remaining in it", about="The format of a line with the number `remaining`.")
     period_s: float = number(0.5, above=0, about="The time between two lines.")
@@ -87,7 +87,10 @@ def _unheard(evidence: Evidence) -> Cause | None:
 
 
 def _none_in_format(evidence: Evidence, params: LogFeedback, goals: list[Goal], expected: str) -> Finding:
-    """Return the failed finding about a log without lines in the format. Only lines logged during a goal count."""
+    """Return the failed finding about a log without lines in the required format.
+
+    Only lines logged during a goal count.
+    """
     cause = waits_in_callback(evidence) or _unheard(evidence)
     if cause is not None:
         return failed("The log has no such line.", expected, cause)

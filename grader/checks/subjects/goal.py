@@ -25,7 +25,7 @@ STROKE_M = 0.3
 
 @dataclass(frozen=True, kw_only=True)
 class Goal:
-    """The goal (m), and the largest allowed distance (m) from the goal at the end."""
+    """The position of the goal (m), and the largest allowed distance (m) between the turtle and the goal at the end."""
 
     x_m: float = number(about="x of the goal.")
     y_m: float = number(about="y of the goal.")
@@ -88,7 +88,7 @@ def _in_code(evidence: Evidence, *numbers: float) -> bool:
 
 
 def requested_goal(_: Evidence, params: Goal) -> Requested:
-    """Return a ring around the points where the turtle counts as arrived, and four strokes that lead to it."""
+    """Return a ring around all positions that count as an arrival, and four strokes that lead to the ring."""
     x, y = params.x_m, params.y_m
     near, far = params.tolerance_m, params.tolerance_m + STROKE_M
     rays = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))

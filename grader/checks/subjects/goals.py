@@ -93,7 +93,7 @@ def first_call_s(evidence: Evidence) -> float:
 
 
 def _reached(evidence: Evidence, goal: Goal) -> bool:
-    """Return whether the turtle reached the goal, or the trial requested its cancellation."""
+    """Return whether the turtle reached the goal, or the trial requested the cancellation of the goal."""
     by_trial = goal.cancel_asked_s is not None and goal.cancel_asked_s >= first_call_s(evidence)
     return goal.status == "succeeded" or (goal.status == "canceled" and by_trial)
 

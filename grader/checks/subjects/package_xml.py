@@ -131,8 +131,8 @@ def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
 def _imported(evidence: Evidence) -> dict[str, Where]:
     """Return the ROS 2 packages that the nodes of the exercise import, with the line of the first import.
 
-    A name that is almost the name of a known package is a typing error: a package with the wrong name cannot be
-    declared. A package that does not have the imported names is a mistake in the import, not in package.xml.
+    The result does not contain a name that is almost the name of a known package: such a name is a typing error. A
+    package without the imported names is left out too, because the mistake is in the import, not in package.xml.
     """
     found: dict[str, Where] = {}
     for trial in evidence.exercise.trials:

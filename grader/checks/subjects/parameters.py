@@ -65,7 +65,7 @@ def declares(evidence: Evidence, params: Declares) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class SetsParameter:
-    """The response of the node when `[[trial.set]]` sets this parameter and perhaps others in one call."""
+    """The response of the node when `[[trial.set]]` sets this parameter and perhaps other parameters."""
 
     parameter: str = string("the name of a parameter", about="The name of the parameter.")
     value: float = number(about="The value that the trial sets.")

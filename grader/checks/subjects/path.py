@@ -51,7 +51,9 @@ POLYGON_SHARE = 0.6
 
 @dataclass(frozen=True, kw_only=True)
 class CircleParams:
-    """The circle. The circle's centre is `radius_m` to the left of the start pose (or to the right if clockwise).
+    """A circle that the turtle must drive.
+
+    The circle's centre is `radius_m` to the left of the start pose (or to the right if clockwise).
 
     `residual_m` is the largest allowed root mean square distance between the trajectory and the fitted circle; `turns`
     is the smallest allowed number of turns.
@@ -118,7 +120,7 @@ def not_driven(evidence: Evidence, expected: str, where: Where | None) -> Findin
 
 
 def _no_circle(evidence: Evidence, trajectory: Trajectory, expected: str) -> Finding | None:
-    """Return a failed finding if the trajectory is nothing like a circle, with the most helpful reason first."""
+    """Return a failed finding with the most helpful reason if the trajectory is nothing like a circle, else None."""
     if not trajectory.finite:
         observed = "The turtle's position became NaN (not a number)."
         return failed(

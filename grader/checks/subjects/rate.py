@@ -44,7 +44,7 @@ FASTEST_HZ = 40.0
 
 @dataclass(frozen=True, kw_only=True)
 class Rate:
-    """The mean rate from the first to the last arrival with its tolerance, and the limits of every interval.
+    """The mean rate from the first to the last arrival, the tolerance of this rate, and the limits of every interval.
 
     The first command may arrive up to `first_within_s` after the start, and the last command up to `max_interval_s`
     before the end.

@@ -35,7 +35,7 @@ SHORT_M = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class Square:
-    """Requires sides of this length, corners of 90 degrees, a fourth side that ends at the start, then a standstill."""
+    """Requires sides of this length, corners of 90 degrees, and a standstill at the start after the fourth side."""
 
     side_m: float = number(above=0, at_most=5, about="The length of a side.")
     side_tolerance_m: float = number(0.15, above=0, about="The maximum error of a side.")
@@ -46,7 +46,7 @@ class Square:
 
 @dataclass(frozen=True)
 class Sides:
-    """The straight parts: their lengths (m), their headings and the turns between them (rad), and their end points (m).
+    """The straight parts of a path: their lengths (m), headings (rad) and ends (m), and the turns between them (rad).
 
     After the last side of the figure, the turtle drives `more_m` (m) and turns by `more_rad` (rad).
     """
@@ -182,7 +182,7 @@ def _drives_on(evidence: Evidence, params: Square, sides: Sides, sign: float, ex
 
 
 def requested_square(evidence: Evidence, params: Square) -> Requested:
-    """Return the corners, with the first corner again at the end.
+    """Return the corners of the square, with the first corner again at the end.
 
     If both directions are allowed, the corners follow the direction in which the turtle drove.
     """

@@ -108,7 +108,7 @@ def _measured(evidence: Evidence, params: Star, sides: Sides, expected: str) -> 
 
 
 def requested_star(evidence: Evidence, params: Star) -> Requested:
-    """Return the corners, with the first corner again at the end."""
+    """Return the corners of the star, with the first corner again at the end."""
     x, y = evidence.recording.start.x, evidence.recording.start.y
     corners = [(x, y)]
     for index in range(int(params.sides)):

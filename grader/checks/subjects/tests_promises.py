@@ -1,4 +1,4 @@
-"""Check that the tests use only what the node promises, and not the methods and attributes of its class."""
+"""Check that the tests use the node's topics and clock only, not the methods and attributes of its class."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def _sets_own(node: ast.Attribute) -> bool:
 
 
 def _names_of_nodes(module: Module, name: str) -> Iterator[str]:
-    """Yield the last part of each name that refers to an object of this class, and each fixture that provides one."""
+    """Yield the last part of each name that refers to an object of this class, and each fixture for such an object."""
     known: set[str] = set()
     for node in module.nodes:
         if isinstance(node, ast.Assign) and _creates(node.value, name):

@@ -147,7 +147,7 @@ def _same(value: float, other: float) -> bool:
 
 
 def _why(six: Six, wanted: Six, off: list[int]) -> tuple[Cause, str]:
-    """Return the cause, and the field that it is about."""
+    """Return the cause of a wrong value, and the field that has the wrong value."""
     first = FIELDS[off[0]]
     not_numbers = [FIELDS[index] for index in off if not math.isfinite(six[index])]
     if not_numbers:

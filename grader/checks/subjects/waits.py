@@ -18,7 +18,7 @@ EXPECTED = "No callback of the node waits."
 SILENT_S = 2.0
 """A node that does nothing for this time (s) after a response hangs."""
 ALSO_S = 0.05
-"""What the node sends this soon (s) after a response was on its way before the response."""
+"""Anything that arrives at most this long (s) after a response may have been sent before the response."""
 SAME_GROUP = (
     "Several threads do not help here: the executor never calls two callbacks of the same callback group at the same "
     "time, so nothing receives the response: a deadlock. Use call_async, or give the client its own callback group."
@@ -42,7 +42,7 @@ def _early(evidence: Evidence, _: NoParams) -> Finding | None:
 
 
 def _certain(evidence: Evidence, waits: list[Wait]) -> Finding | None:
-    """Return the failed finding that the source alone shows, or None."""
+    """Return a failed finding if the source alone shows a callback that waits too long, or None."""
     threads = has_threads(evidence)
     first = next((wait for wait in waits if not (threads and wait.deadlock)), None)
     return None if first is None else failed(f"A callback {first.observed}.", EXPECTED, first.cause)

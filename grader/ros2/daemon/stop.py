@@ -13,7 +13,7 @@ _ENDED_S = 10.0
 
 
 def add(_: argparse.ArgumentParser) -> None:
-    """Add nothing, since the verb has no arguments."""
+    """Leave the parser unchanged, because the verb has no arguments."""
 
 
 def run(_: argparse.Namespace) -> int:

@@ -48,7 +48,7 @@ def _strip_comment(line: str) -> str:
 
 
 def _type_of(line: str, package: str) -> str | None:
-    """Return the full name of a field's type, or None if it is primitive or the line does not define a field."""
+    """Return the full name of a field's type, or None if the type is primitive or the line defines no field."""
     match = _FIELD.match(line)
     if match is None or _PRIMITIVE.fullmatch(match[1]):
         return None

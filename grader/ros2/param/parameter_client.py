@@ -84,7 +84,7 @@ class Parameters:
         return list(self._call(SetParameters, "set_parameters", request).results)
 
     def describe(self, names: Sequence[str]) -> list[Any]:
-        """Return the descriptor of each parameter, or an empty list if the node has not declared one of them."""
+        """Return the descriptor of each parameter, or an empty list if any of them is not declared."""
         request = DescribeParameters.Request(names=list(names))
         return list(self._call(DescribeParameters, "describe_parameters", request).descriptors)
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def add(_: argparse.ArgumentParser) -> None:
-    """Add nothing, since the verb has no arguments."""
+    """Leave the parser unchanged, because the verb has no arguments."""
 
 
 def run(_: argparse.Namespace) -> int:

@@ -1,4 +1,4 @@
-"""The tutorial's package with changes, and its builds."""
+"""Changed copies of the tutorial's package, and the results of building the copies."""
 
 from __future__ import annotations
 

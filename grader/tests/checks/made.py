@@ -140,7 +140,7 @@ def exercise() -> Exercise:
 
 
 def submission(files: Mapping[str, str | bytes | None] | None = None, rejected: tuple[str, ...] = ()) -> Submission:
-    """Return the correct package with these files in place of its own files. None removes a file."""
+    """Return the correct package with these files in place of its own files. The value None removes a file."""
     given = {**FILES, **(files or {})}
     data = {path: text.encode() if isinstance(text, str) else text for path, text in given.items() if text is not None}
     digest = hashlib.sha256(repr(sorted(data.items())).encode()).hexdigest()

@@ -82,7 +82,7 @@ class Killer:
 
 
 def until(child: subprocess.Popen[bytes], observed: Callable[[], bool], seconds: float) -> None:
-    """Wait until a condition holds, the child process has ended, or the deadline has passed."""
+    """Wait until a condition is true, the child process has ended, or the deadline has passed."""
     end = time.monotonic() + seconds
     while child.poll() is None and time.monotonic() < end and not observed():
         time.sleep(0.01)

@@ -1,4 +1,4 @@
-"""Whether a node that exited on its own had started, according to a recording."""
+"""A recording shows whether a node that exited on its own had started."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Read in this process instead of a child process. Print the source line of an unexpected exception."""
+"""Read submissions in this process instead of a child process. Print the source line of an unexpected exception."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Run nbgrader commands as forks of a process that has imported nbgrader, since the import takes two seconds.
 
-`python -m grader.tests.gradebook.nbgrader_command` reads orders until standard input is closed.
+`python -m grader.tests.gradebook.nbgrader_command` reads commands until standard input is closed.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A trial in wall time that fails on a crowded machine is repeated alone; on an idle machine, its result is final."""
+"""A trial in wall time that fails on a crowded machine is repeated alone. On an idle machine, its result is final."""
 
 from __future__ import annotations
 

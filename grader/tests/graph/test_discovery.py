@@ -1,4 +1,4 @@
-"""How a command's node discovers nodes that announce themselves only when they start, and answer only once."""
+"""A command's node discovers nodes that announce themselves only when they start, and that answer only once."""
 
 from __future__ import annotations
 

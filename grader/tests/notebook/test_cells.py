@@ -49,7 +49,7 @@ def notebook(folder: Path) -> Iterator[Notebook]:
 
 
 def marked_processes(mark: str) -> set[int]:
-    """Return the processes of a notebook, which carry its mark."""
+    """Return the processes that have the mark of a notebook in their environment."""
     found = set()
     for entry in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):

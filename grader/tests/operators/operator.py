@@ -44,7 +44,7 @@ Make = Callable[[Package, Random], Change | None]
 class Operator:
     """A kind of mistake.
 
-    `says` contains the diagnoses that name the mistake; `never` is a pattern for false statements.
+    `says` contains the diagnoses that name the mistake, and `never` is a pattern for false statements.
 
     `also` contains the diagnoses of the mistake's consequences, which are true but do not name the mistake itself.
     """

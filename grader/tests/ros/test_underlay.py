@@ -38,7 +38,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def builds(monkeypatch: pytest.MonkeyPatch) -> list[Sequence[str]]:
-    """Replace cmake. Return the list of commands that were run; the install command creates one file."""
+    """Replace cmake. Return the list of commands that were run. The install command creates one file."""
     ran: list[Sequence[str]] = []
 
     def run(command: Sequence[str], env: dict[str, str], _: object) -> None:

@@ -1,4 +1,4 @@
-"""What `ros2` imports: only what the command needs, so that the look-ups and the Tab key are fast."""
+"""`ros2` imports only the modules that a command needs, so that look-ups and the Tab key are fast."""
 
 from __future__ import annotations
 

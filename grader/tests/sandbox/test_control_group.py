@@ -1,4 +1,4 @@
-"""If control groups are allowed, the kernel limits what a cell uses in total.
+"""If control groups are allowed, the kernel limits the total resource use of a cell.
 
 If control groups are not allowed, the cell has no control group.
 """

@@ -1,4 +1,4 @@
-"""Tests of what the scripts of the commands do before they import a module of the grader."""
+"""Tests of the first lines of the commands' scripts, which run before a module of the grader is imported."""
 
 from __future__ import annotations
 

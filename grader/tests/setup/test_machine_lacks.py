@@ -1,4 +1,4 @@
-"""The messages about what a machine lacks."""
+"""The messages about the programs that a machine lacks."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ class DrawSquare(Node):
 
 
 def main() -> int:
-    """Run the node until Ctrl-C; return the exit code."""
+    """Run the node until Ctrl-C, and return the exit code."""
     return run(DrawSquare)
 
 

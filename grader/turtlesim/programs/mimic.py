@@ -30,7 +30,7 @@ class Mimic(Node):
 
 
 def main() -> int:
-    """Run the node until Ctrl-C; return the exit code."""
+    """Run the node until Ctrl-C, and return the exit code."""
     return run(Mimic)
 
 

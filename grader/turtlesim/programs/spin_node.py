@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def run(make: Callable[[], Node]) -> int:
-    """Spin a node until Ctrl-C or SIGTERM, without a traceback; return the exit code."""
+    """Spin a node until Ctrl-C or SIGTERM, without a traceback, and return the exit code."""
     # Before this call, Ctrl-C terminates Python immediately. rclpy passes a signal on to the previous handler.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     rclpy.init(args=sys.argv)

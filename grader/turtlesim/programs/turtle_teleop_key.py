@@ -40,7 +40,7 @@ _DISCOVERY_S = 2.0
 
 
 class Teleop(Node):
-    """The node teleop_turtle. A view replaces the name of the node, chooses the turtle, and suppresses messages."""
+    """The node teleop_turtle. A live view gives this node another name, chooses the turtle, and suppresses messages."""
 
     def __init__(
         self,
@@ -85,7 +85,7 @@ class Teleop(Node):
         super().destroy_node()
 
     def _see_that(self, somebody: Callable[[], bool], name: str) -> bool:
-        """Return whether the condition holds. If the condition does not hold after two seconds, print a message."""
+        """Return whether `somebody` returns true within two seconds. If not, print a message."""
         while not somebody() and time.monotonic() < self._begun + _DISCOVERY_S:
             time.sleep(0.01)
         there = somebody()
@@ -96,7 +96,7 @@ class Teleop(Node):
 
 
 def main() -> int:
-    """Run the node until Q or Ctrl-C; return the exit code, which is 0, or 1 without a terminal."""
+    """Run the node until Q or Ctrl-C. Return the exit code, which is 0, or 1 if there is no terminal."""
     if not is_terminal():
         print(_NO_TERMINAL, file=sys.stderr)
         return 1

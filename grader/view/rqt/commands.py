@@ -58,7 +58,10 @@ def _parser(command: str, description: str, epilog: str) -> argparse.ArgumentPar
 
 
 def _main(package: str, parser: argparse.ArgumentParser, parts: Sequence[Part]) -> int:
-    """Run a command. `package` is the ROS package of the real command. Exit codes: decision 9 in docs/design.md."""
+    """Run a command.
+
+    `package` is the ROS package of the real command. Decision 9 in docs/design.md defines the exit codes.
+    """
     try:
         if "_ARGCOMPLETE" in os.environ:
             from argcomplete import autocomplete

@@ -1,4 +1,4 @@
-"""Waits inside callbacks are found under any name; waits outside of callbacks are allowed."""
+"""Waits inside callbacks are found under any name, and waits outside of callbacks are allowed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tolerance of a fitted circle follows from the noise: good fits are within the tolerance; poor fits are not."""
+"""The tolerance of a fitted circle follows from the noise: good fits are within it, and poor fits are not."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The check that no callback waits: from the source, and with several threads from what the node did."""
+"""The check that no callback waits, for nodes with one thread and for nodes with several threads."""
 
 from __future__ import annotations
 
