@@ -82,7 +82,7 @@ def is_expected(sentence: str) -> bool:
 
 @cache
 def expected() -> str:
-    """Return the text of the tests of checks, and of what the cases expect."""
+    """Return the text of the checks' tests, and the words that the cases expect."""
     files = [*(TESTS / "checks").rglob("*.py"), *CASES.glob("*/expected.toml"), *(TESTS / "mistakes").glob("*/*.toml")]
     text = "\n".join(file.read_text("utf-8") for file in files)
     return re.sub(r'"\s*\n\s*f?"', "", text)

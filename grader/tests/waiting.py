@@ -15,7 +15,7 @@ _POLL_S = 0.05
 
 
 def until(there: Callable[[], bool]) -> None:
-    """Wait until the condition holds."""
+    """Wait until the condition is true."""
     deadline = time.monotonic() + HANG_S
     while not there():
         assert time.monotonic() < deadline

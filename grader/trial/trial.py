@@ -184,10 +184,7 @@ class Trial:
         return recording
 
     def _order(self, package: str, executable: str, arguments: list[str], folder: str) -> dict[str, Any]:
-        """Return the data that the launcher of one node needs to run the node.
-
-        Each launcher unpacks the install tree in its own folder.
-        """
+        """Return the data for the launcher of one node. Each launcher unpacks the install tree in its own folder."""
         install = self._workspace / folder
         prefix = install / package
         env = installation.environment(self._ros, home=self._home, overlays=[prefix], domain=self._domain)

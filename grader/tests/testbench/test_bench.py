@@ -1,4 +1,4 @@
-"""A student's tests cannot find out which node they run on, except by its behaviour."""
+"""A student's tests cannot find out which node they run on, except by the behaviour of the node."""
 
 from __future__ import annotations
 

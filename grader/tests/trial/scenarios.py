@@ -98,7 +98,7 @@ def who_may_act() -> bool:
 
 
 def a_request_without_an_executor() -> dict[str, Any]:
-    """Return what is recorded of a request that the method `take_in` answers, and the response that the client gets."""
+    """Return the record of a request that the method `take_in` answers, and the response that the client gets."""
     stage = _stage()
     student = rclpy.create_node("student")
     spawn = student.create_client(Spawn, "/spawn")
@@ -118,7 +118,7 @@ def a_request_without_an_executor() -> dict[str, Any]:
 
 
 def a_call_between_two_nodes() -> dict[str, Any]:
-    """Return what a silent server records of a call between two nodes, and the response that the client gets."""
+    """Return a silent server's record of a call between two nodes, and the response that the client gets."""
     stage = _stage()
     recorded: list[tuple[str, str, str]] = []
     prefixes = [Path(prefix) for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep)]

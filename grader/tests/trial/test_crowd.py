@@ -1,4 +1,7 @@
-"""The measurement of crowds and stalls, with real processes; the exact numbers of some tests are made up."""
+"""The measurement of crowds and stalls, with real processes.
+
+Some tests that need exact numbers use invented numbers.
+"""
 
 from __future__ import annotations
 
@@ -95,7 +98,7 @@ def test_stalls_without_other_programs_are_the_nodes_own() -> None:
 
 
 Counts = tuple[tuple[float, float], tuple[float, float], float]
-"""(ran, waited) of the node, (ran, waited) of the simulator, and stolen time, all since the last observation (s)."""
+"""The values (ran, waited) of the node and of the simulator, and the stolen time, since the last observation (s)."""
 
 
 @pytest.mark.parametrize(

@@ -47,7 +47,7 @@ class Rig:
         rclpy.shutdown()
 
     def until(self, condition: Callable[[], bool]) -> None:
-        """Compute frames until the condition holds."""
+        """Compute frames until the condition is true."""
         deadline = time.monotonic() + HANG_S
         while not condition():
             assert time.monotonic() < deadline, "the condition never held"
