@@ -37,7 +37,7 @@ def validate(
 ) -> list[str]:
     """Return the problems of the exercises in `names` (or of all exercises if `names` is empty), as one sentence each.
 
-    `tell` is called with progress messages. `course` is the folder course/; the default is the folder of this checkout
+    `tell` is called with progress messages. `course` is the folder course/. The default is the folder of this checkout
     or installation.
 
     Raises:

@@ -60,7 +60,7 @@ class Judgement:
 def judge(evidence: Evidence) -> tuple[Outcome, ...]:
     """Return the outcome of every check, in the order of the exercise.
 
-    A check is skipped if a check that it needs did not pass; the message of the skipped check names the first check
+    A check is skipped if a check that it needs did not pass. The message of the skipped check names the first check
     that did not pass. If the machine could not produce the evidence for a check (`evidence.fault`), the status of that
     check and of every check that needs it is `error`.
     """
@@ -68,7 +68,7 @@ def judge(evidence: Evidence) -> tuple[Outcome, ...]:
 
 
 def judge_so_far(evidence: Evidence, settled: Mapping[str, Finding]) -> Judgement:
-    """Judge the evidence of the stages completed so far.
+    """Judge the evidence of the stages that are complete.
 
     Checks that already have a finding in `settled` are not run again.
     """

@@ -162,7 +162,7 @@ def table(*, about: str, optional: bool = False) -> Any:
 
 
 def choice(*options: str, about: str) -> Any:
-    """Create a field for one of the options; the first option is the default."""
+    """Create a field for one of the options. The first option is the default."""
 
     def accept(value: object) -> str | None:
         return value if isinstance(value, str) and value in options else None

@@ -27,7 +27,9 @@ class Status(str, Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """The result of a check. `observed`, `expected` and `cause` are text for a beginner; `diagnosis` is a stable id.
+    """The result of a check.
+
+    `observed`, `expected` and `cause` are text for a beginner, and `diagnosis` is a stable id.
 
     `near_edge` is True if the distance between the measured value and the edge of the tolerance is at most a fifth of
     the tolerance, or if the node did not stop in simulated time. If `near_edge` is True, the check is judged again in

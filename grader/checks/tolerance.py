@@ -62,8 +62,8 @@ class Band:
 def unless_starved(finding: Finding, recording: Recording, off: float, per_s: float) -> Finding:
     """Return the finding, or an error finding if stalls of the machine can explain the failure.
 
-    `off` is the distance of the value from its tolerance range; `per_s` is the change of the value per second. While
-    the machine stalls, the turtle continues with its last command.
+    `off` is the distance of the value from its tolerance range, and `per_s` is the change of the value per second.
+    While the machine stalls, the turtle continues with its last command.
     """
     if finding.status is Status.FAILED and recording.stalls and off <= per_s * recording.stalled_s:
         message = "The machine was too busy to judge this in wall time. Try again when the machine is less busy."

@@ -4,8 +4,8 @@ colcon runs the setup.py of a package three times, each time in a new interprete
 metadata of all installed packages again. The imports of these interpreters take most of the CPU time of a build. To
 avoid this cost, one process imports these modules once, before the submission arrives, and forks for each run of
 setup.py. The fork gets the folder, environment, arguments and streams of the process that colcon started. The process
-that colcon started then only waits for the exit code of the fork. If a fork might behave differently from a new
-interpreter, no fork is used (`Run.of`).
+that colcon started only waits for the exit code of the fork. If a fork might behave differently from a new interpreter,
+no fork is used (`Run.of`).
 
 This file runs as a separate script. Standard input is the submission, a tar stream that is unpacked into src.
 """

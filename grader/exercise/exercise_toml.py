@@ -232,7 +232,7 @@ def _param(value: object, allowed: Allowed, numbers: NumbersSpec | None) -> Para
 
 
 def _circle(specs: tuple[CheckSpec, ...]) -> list[str]:
-    """Return the ids of one cycle in `needs`, with the first id repeated at the end; empty if there is no cycle."""
+    """Return the ids of one cycle in `needs`, with the first id repeated at the end. Without a cycle, return no ids."""
     needs = {spec.id: [need for need in spec.needs if any(need == other.id for other in specs)] for spec in specs}
     done: set[str] = set()
 

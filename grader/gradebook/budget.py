@@ -44,7 +44,7 @@ class Budget:
 
 @dataclass
 class Account:
-    """The total of the messages from a kernel so far. `key` is the key that signs the kernel's messages."""
+    """The totals of all messages that a kernel has sent. `key` is the key that signs the kernel's messages."""
 
     key: bytes
     budget: Budget = Budget()

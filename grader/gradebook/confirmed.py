@@ -73,7 +73,7 @@ def unconfirmed(
 ) -> list[Unconfirmed]:
     """Return the cells that no grader result confirms, by exercise and student, except those graded manually.
 
-    `steps` selects the exercises; if `steps` is empty, all exercises are used. `unread` are submissions that could not
+    `steps` selects the exercises. If `steps` is empty, all exercises are used. `unread` are submissions that could not
     be read this time, so their stored results do not count.
     """
     names: dict[tuple[str, str, str], list[str]] = {}

@@ -51,7 +51,10 @@ class Judging:
         return early
 
     def so_far(self, evidence: Evidence, settled: Findings) -> Judgement:
-        """Judge the evidence that exists so far. Checks that already have a finding in `settled` are not run again."""
+        """Judge the evidence that exists at this stage of grading.
+
+        Checks that already have a finding in `settled` are not run again.
+        """
         if self.fault is None:
             if all(spec.id in settled for spec in evidence.exercise.checks):
                 return Judgement(evidence.exercise, settled, settled)

@@ -29,7 +29,10 @@ _WAIT_S = 1.0
 
 @contextmanager
 def passed_on(domain: int) -> Iterator[None]:
-    """Create the participant in this context. When the context ends, the participant is announced to the others."""
+    """Create the participant in this context.
+
+    When the context ends, the announcement is sent to all other participants.
+    """
     held = _held()
     list(_received(held))  # the announcements of earlier participants of this process
     yield

@@ -28,7 +28,7 @@ class Observed:
 
 
 def observe(node: Node) -> Observed:
-    """Return the part of the graph that `node` has discovered so far.
+    """Return the part of the graph that `node` has already discovered.
 
     To get the whole graph, call `discovery.settle` first.
     """

@@ -41,7 +41,10 @@ class EndpointLook:
 
 @dataclass(frozen=True)
 class Look:
-    """The graph at one moment, sorted by name. `service_counts` holds the number of clients and servers per service."""
+    """The graph at one moment, sorted by name.
+
+    `service_counts` contains the number of clients and servers per service.
+    """
 
     nodes: tuple[NodeLook, ...] = ()
     topics: tuple[Named, ...] = ()

@@ -39,7 +39,7 @@ def guessed(path: Path | None, exercise: str | None, folder: Path | None = None)
     """Return the exercise (None if the arguments do not determine it) and the folder with the learner's work.
 
     `path` is the path that was typed: a package, a step ("03", "3"), the workspace (for its current step), or None.
-    `exercise` is the value of --exercise. `folder` is the workspace; None means the learner's default workspace.
+    `exercise` is the value of --exercise. `folder` is the workspace, or None for the learner's default workspace.
 
         guessed(Path("03"), None)  # step 03 and the package in the workspace
 

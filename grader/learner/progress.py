@@ -30,7 +30,7 @@ DEFAULT_WORKSPACE = Path("~/ros2_ws")
 
 @dataclass(frozen=True)
 class StepProgress:
-    """The progress in one step: the best points so far, the points possible, and whether the step has passed."""
+    """The progress in one step: the learner's best points, the maximum points, and whether the step has passed."""
 
     points: float = 0.0
     max: float = 0.0

@@ -160,7 +160,7 @@ def _turtlesim(env: Mapping[str, str], *, view: bool) -> Iterator[None]:
     """Run turtlesim, and stop it at the end of the `with` block.
 
     Raises:
-        MachineError: turtlesim did not start; it has printed the reason.
+        MachineError: turtlesim did not start, and has printed the reason.
     """
     options = ["--view"] if view else []
     with tempfile.TemporaryDirectory(prefix="grader-run-") as place:

@@ -91,9 +91,9 @@ def _row(student: str, report: Report, grader: str, file: str, attention: str) -
 def _safe(text: str) -> str:
     """Return the text on one line, changed so that no spreadsheet executes it as a formula (CWE-1236).
 
-    A spreadsheet can split cells at a separator other than the comma. A new cell could then begin after any separator
-    in SEPARATORS, so the text after each such separator is checked too. Full-width and small variants of characters are
-    treated like the standard characters, because some spreadsheets normalize them on import.
+    A spreadsheet can split cells at a separator other than the comma. Therefore, the text after each separator in
+    SEPARATORS is checked as if a new cell began there. Full-width and small variants of characters are treated like the
+    standard characters, because some spreadsheets normalize them on import.
     """
     begins, line = True, ""
     for char in printable(text):

@@ -53,7 +53,7 @@ class ShownCheck:
 
     @property
     def observed(self) -> str:
-        """What was observed; empty if the check is hidden or if this text only repeats the title."""
+        """The observation. The text is empty if the check is hidden, or if the text would only repeat the title."""
         text = self.outcome.finding.observed
         return "" if self.outcome.hidden or text.rstrip(".") == self.outcome.title else text
 

@@ -36,7 +36,7 @@ class Progress:
 
 @contextmanager
 def progress() -> Iterator[Progress]:
-    """Yield a Progress: on a terminal, live lines that disappear at the end; elsewhere, plain lines."""
+    """Yield a Progress, which shows live lines on a terminal, or prints plain lines elsewhere."""
     if not sys.stderr.isatty():
 
         def line(text: str) -> None:

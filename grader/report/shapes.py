@@ -53,7 +53,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Ring:
-    """A circle; centre and radius in metres."""
+    """A circle with its centre and radius in metres."""
 
     role: Role
     centre: Point

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Ros2Error(GraderError):
-    """A verb failed. Only the message of this error is printed; if the message is empty, nothing is printed."""
+    """A verb failed. Only the message of this error is printed, and nothing is printed if the message is empty."""
 
     exit_code = 1
 

@@ -137,7 +137,10 @@ def _converted(value: Any, declared: str, current: Any, stamps: list[Stamper] | 
 
 
 def _scalar(value: Any, declared: str) -> Any:  # noqa: ANN401
-    """Return a value of a primitive type. YAML reads 1e-3 as a string and 2 as an integer; both are valid floats."""
+    """Return a value of a primitive type.
+
+    YAML reads 1e-3 as a string and 2 as an integer, but both are valid floats.
+    """
     if isinstance(value, (dict, list)) or value is None:
         wrong = f"expected a single value, not {value!r}"
         raise TypeError(wrong)

@@ -5,8 +5,8 @@ part of the tree and the grader runs in that part. The limit of the group is hig
 usage.py, so that usage.py stops a cell first and records the reason. The group stops processes that grow too fast for
 usage.py, and limits socket and pipe memory.
 
-Versions 1 and 2 of control groups are supported. In version 2, a group is a folder in one tree; in version 1, a folder
-in each controller's tree (https://docs.kernel.org/admin-guide/cgroup-v2.html and cgroup-v1/).
+Versions 1 and 2 of control groups are supported. In version 2, a group is a folder in one tree. In version 1, a group
+is a folder in each controller's tree (https://docs.kernel.org/admin-guide/cgroup-v2.html and cgroup-v1/).
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ def _parents() -> list[Path]:
 
 
 def _own() -> Iterator[tuple[str, str]]:
-    """Yield each controller with the group of this process; "" is the key for version 2."""
+    """Yield each controller with the group of this process. In version 2, the name of the controller is ""."""
     with suppress(OSError):
         for line in OWN.read_text("utf-8").splitlines():
             _, controllers, path = line.split(":", 2)

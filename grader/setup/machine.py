@@ -242,7 +242,7 @@ def missing_of_python(
     """Return the missing parts of the chosen Python, or all parts if no Python was chosen.
 
     `newer` is the package of a newer Python for a system whose default Python is too old. `refused` contains the
-    Pythons of the `wanted` version that cannot import what the sourced ROS 2 needs.
+    Pythons of the `wanted` version that cannot import the modules that the sourced ROS 2 needs.
     """
     if python is None:
         name = f"python{wanted[0]}.{wanted[1]}" if wanted else newer or "python3"

@@ -42,7 +42,8 @@ class Poses:
 class BagFolder:
     """A bag. `problem` is the reason why the bag cannot be read, and `detail` the folder, file or error that caused it.
 
-    `types` holds the type of each topic, `counts` the number of its messages, and `poses` the messages of type Pose.
+    `types` contains the type of each topic, `counts` the number of messages on each topic, and `poses` the messages of
+    type Pose.
     """
 
     problem: Problem

@@ -32,7 +32,7 @@ SRC = "src/"
 class Unreadable:
     """The reason why Python cannot parse a file.
 
-    `line` counts from 1; it is None if Python's error message contains no line number.
+    `line` counts from 1, and is None if Python's error message contains no line number.
     """
 
     message: str

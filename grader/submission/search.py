@@ -40,7 +40,7 @@ class _Search:
 
 
 def find_package(root: int, name: str) -> str:
-    """Return the POSIX path of the only package in the folder `root`; "." is the folder itself.
+    """Return the POSIX path of the only package in the folder `root`, or "." if the package is the folder itself.
 
     `name` is the path as the user typed it.
 

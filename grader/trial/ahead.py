@@ -115,7 +115,7 @@ class Ahead:
             self._under_way[name] = self._pool.submit(self._started[name].run, package, executable, tree)
 
     def trial(self, name: str) -> Runs | None:
-        """Return the trial, whose `run` returns the recording; None if the trial was not started."""
+        """Return the trial, whose `run` returns the recording, or None if the trial was not started."""
         if name in self._under_way:
             return _UnderWay(self._under_way[name])
         return self._started.get(name)

@@ -37,7 +37,7 @@ class Caller:
 
     @property
     def calls(self) -> tuple[Call, ...]:
-        """The calls so far, in the order in which they were due."""
+        """The calls that the trial has made, in the order in which they were due."""
         return tuple(self._made)
 
     @property
@@ -46,7 +46,7 @@ class Caller:
         return any(call.response is None and not call.missing for call in self._made)
 
     def make_due(self, now_s: float, *, spin: Callable[[float], object] | None) -> None:
-        """Make the calls that are due. Pass a function as `spin` if the clock stands still during this method."""
+        """Make the calls that are due. Pass a function as `spin` if the clock is stopped during this method."""
         while self._waiting and self._waiting[0][0].at_s <= now_s:
             call, client = self._waiting[0]
             if not client.service_is_ready() and not self._given_up(call, client, now_s, spin):

@@ -32,7 +32,7 @@ TOO_LATE = "too late"
 
 
 def main() -> None:
-    """Read from standard input which calls to make, and make them."""
+    """Read a list of calls from standard input, and make these calls."""
     os.write(1, b"ready\n")
     order = json.loads(sys.stdin.buffer.readline())
     with tarfile.open(fileobj=sys.stdin.buffer, mode="r|") as tree:

@@ -3,9 +3,9 @@
 This process and the student's node run in two containers of the sandbox, a room and a cell (grader.sandbox). The
 process exchanges JSON lines with the grader's own process over its standard streams. The first line of input describes
 the trial. The process answers {"ready": true} when the simulator and the launcher are ready. The second line of input
-says what to start, and the install tree follows it. The last line of output is {"recording": {...}}, {"doubt": "...",
-"by_chance": false} if a trial with the other clock must decide, {"overwhelmed": "..."} if the node made the simulator
-fail, or {"fault": "..."} if the machine is at fault.
+says what to start, and the install tree follows this line. The last line of output is {"recording": {...}}, {"doubt":
+"...", "by_chance": false} if a trial with the other clock must decide, {"overwhelmed": "..."} if the node made the
+simulator fail, or {"fault": "..."} if the machine is at fault.
 """
 
 from __future__ import annotations

@@ -131,5 +131,5 @@ def _machine_worked_s() -> float:
 
 
 def _machine_s() -> list[float]:
-    """Return the total times of all processors (s). The times are the columns of the file /proc/stat; see proc(5)."""
+    """Return the total times of all processors (s). The times are the columns of the file /proc/stat (see proc(5))."""
     return [int(column) * _TICK_S for column in Path("/proc/stat").read_text().split(maxsplit=9)[1:9]]

@@ -27,7 +27,7 @@ class GoalLog:
 
     @property
     def goals(self) -> tuple[Goal, ...]:
-        """The goals so far, in the order in which they were accepted."""
+        """The recorded goals, in the order in which they were accepted."""
         return tuple(self._goals.values())
 
     def add(self, event: GoalEvent) -> None:

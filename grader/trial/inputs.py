@@ -66,7 +66,7 @@ class Inputs:
         return cls(**{**data, **lists})
 
     def drive(self, now_s: float) -> tuple[float, float] | None:
-        """Return the speeds of the turtle at this time (m/s, rad/s); None before the first drive."""
+        """Return the speeds of the turtle at this time (m/s, rad/s), or None before the first drive."""
         due = [(linear, angular) for from_s, linear, angular in self.drives if from_s <= now_s]
         return due[-1] if due else None
 

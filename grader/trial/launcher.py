@@ -1,8 +1,9 @@
 """Start a node quickly inside its cell: rclpy is imported while colcon is still building.
 
 This file runs as a separate script, before the install tree exists. The launcher reads one line of JSON (`script`,
-`ros_arguments`, `python_path`, `env`, `install`) and then the install tree, a tar stream, from standard input. The
-launcher then runs the installed script as __main__, as the interpreter in the script's first line would.
+`ros_arguments`, `python_path`, `env`, `install`) and then the install tree, a tar stream, from standard input. After
+reading the install tree, the launcher runs the installed script as __main__, as the interpreter in the script's first
+line would.
 
 `ros_arguments` select simulated time. rclpy gets these arguments when it is initialized. The arguments never appear in
 sys.argv, because a program that reads its own arguments must find none, as with `ros2 run PACKAGE EXECUTABLE`.

@@ -69,7 +69,7 @@ class NodeGroup:
         return sum(process.worked_s(begin, end) for process in self.processes)
 
     def started_ready_s(self) -> float:
-        """Return the time for which processes started by the nodes have run or waited for a processor so far (s)."""
+        """Return the time (s) for which the processes that the nodes started have run or waited for a processor."""
         return sum(process.started_ready_s() for process in self.processes)
 
 
@@ -111,13 +111,13 @@ class GroupThreads:
         return all(threads.main_asleep() for threads in self._each)
 
     def run_time_s(self) -> float:
-        """Return the CPU time that all threads have used so far (s)."""
+        """Return the CPU time (s) that all threads have used."""
         return sum(threads.run_time_s() for threads in self._each)
 
     def run_times_s(self) -> dict[int, float]:
-        """Return the CPU time that each thread except those of Fast DDS has used so far (s), by thread id."""
+        """Return the CPU time (s) that each thread, except the threads of Fast DDS, has used, by thread id."""
         return {tid: ran_s for threads in self._each for tid, ran_s in threads.run_times_s().items()}
 
     def waits(self) -> list[Wait]:
-        """Return what each thread, except those of Fast DDS, is waiting for."""
+        """Return the reason why each thread waits, except the threads of Fast DDS."""
         return [wait for threads in self._each for wait in threads.waits()]

@@ -72,7 +72,7 @@ def enlarge(pipe: int) -> int:
 
 @dataclass
 class Stream:
-    """The output from one pipe so far, and the time at which each line began (s)."""
+    """The output that was read from one pipe, and the time (s) at which each line began."""
 
     fd: int
     kept: bytearray = field(default_factory=bytearray)
@@ -179,7 +179,7 @@ class NodeProcess:
         return self._guard.worked_s(begin, end) if self._guard is not None else 0.0
 
     def started_ready_s(self) -> float:
-        """Return the time for which processes started by the node have run or waited for a processor so far (s)."""
+        """Return the time (s) for which the processes that the node started have run or waited for a processor."""
         return self._guard.ready_s(but=self.pid) if self._guard is not None else 0.0
 
     def read_output(self, now_s: float) -> int:
@@ -191,7 +191,7 @@ class NodeProcess:
         return size >= self._full
 
     def output(self) -> tuple[Output, Output]:
-        """Return the standard output and the standard error so far."""
+        """Return the standard output and the standard error that the node has written."""
         return self._streams[0].output(), self._streams[1].output()
 
     def ended(self) -> bool:

@@ -39,7 +39,7 @@ class HandshakePatience:
 
         `now_s` is the time of the monotonic clock (s). `asleep` says whether all threads sleep. A thread that waits for
         a processor does not sleep. `wrote` says whether there was output to read. A node that writes a lot sleeps until
-        the output is read. `worked_s` is the CPU time of the node so far (s).
+        the output is read. `worked_s` is the CPU time (s) that the node has used.
         """
         if asleep and not wrote:
             self._asleep_s += now_s - self._cpu_observed_s

@@ -166,11 +166,11 @@ class Threads:
             raise GoneError from None
 
     def run_time_s(self) -> float:
-        """Return the CPU time that all threads have used so far (s)."""
+        """Return the CPU time (s) that all threads have used."""
         return sum(int(run.split()[0]) for run in self.look().runs) / 1e9
 
     def run_times_s(self) -> dict[int, float]:
-        """Return the CPU time that each thread except those of Fast DDS has used so far (s), by thread id."""
+        """Return the CPU time (s) that each thread, except the threads of Fast DDS, has used, by thread id."""
         self._refresh()
         found = {}
         for tid, (_, schedstat) in self._files.items():
@@ -180,7 +180,7 @@ class Threads:
         return found
 
     def waits(self) -> list[Wait]:
-        """Return what each thread, except those of Fast DDS, is waiting for.
+        """Return the reason why each thread waits, except the threads of Fast DDS.
 
         A running thread waits for nothing.
         """

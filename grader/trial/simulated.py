@@ -191,7 +191,7 @@ class SimulatedTrial(Simulation):
                 return
 
     def _take_in(self) -> bool:
-        """Handle everything that has arrived. Return whether the node may react to it."""
+        """Handle everything that has arrived. Return whether the node may react to anything that arrived."""
         # Plain messages and acknowledgements get no answer, so the node stays idle.
         if not self.may_act():
             return self.take_in() > 0

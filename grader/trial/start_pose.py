@@ -13,7 +13,7 @@ MARGIN_M = 0.5
 
 
 def start_pose(seed: int | None, radius_m: float) -> Pose:
-    """Return a start pose with room for a circle on either side; without a seed, return the start pose of turtlesim.
+    """Return a start pose with room for a circle on either side, or turtlesim's start pose if there is no seed.
 
     `radius_m` is the radius of the ideal circle. There is room on both sides, so that a turtle that turns in the wrong
     direction does not also hit a wall.

@@ -67,7 +67,7 @@ class WallTrial(Simulation):
     def _discover(self) -> None:
         """Wait until the node is in the graph and its topics are recorded, or until it has exited.
 
-        The first command ends the wait immediately, since the turtle moves from then on.
+        The first command ends the wait immediately, since the turtle moves after this command.
         """
         deadline = time.monotonic() + DISCOVERY_S
         found = False

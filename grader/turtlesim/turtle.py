@@ -52,7 +52,7 @@ class Start(NamedTuple):
 
 @dataclass(frozen=True)
 class Pen:
-    """The pen of a turtle; `width` is in pixels."""
+    """The pen of a turtle. `width` is in pixels."""
 
     color: Rgb = (179, 184, 255)
     width: int = 3

@@ -58,7 +58,7 @@ MEANINGS = {
 class Crash:
     """An exception in the student's node.
 
-    `error` is the exception's class; `where` is the last line of the student's own code.
+    `error` is the exception's class, and `where` is the last line of the student's own code.
     """
 
     error: str

@@ -43,7 +43,7 @@ def why_no_goal(evidence: Evidence, action: str, type_name: str) -> Cause:
 
 
 def _other_client(evidence: Evidence, action: str, type_name: str) -> Cause | None:
-    """Return the cause if the node is a client of another action, or of this action with another type; else None."""
+    """Return the cause if the node is a client of another action, or uses another type for this action, else None."""
     ours = evidence.recording.own_nodes
     found = {
         (end.topic.removesuffix(FEEDBACK), end.type.removesuffix(OF_A_TYPE))
@@ -66,7 +66,7 @@ def _other_client(evidence: Evidence, action: str, type_name: str) -> Cause | No
 
 
 def why_aborted(evidence: Evidence, goals: list[Goal], goal: Goal) -> tuple[str, Cause]:
-    """Return a sentence about what aborted this goal, and the cause."""
+    """Return a sentence about the event that aborted this goal, and the cause of the failure."""
     until_s = (goal.t_s if goal.ended_s is None else goal.ended_s) + ONE_FRAME_S
     later = [each for each in goals[goals.index(goal) + 1 :] if each.t_s <= until_s]
     if later:

@@ -117,7 +117,7 @@ def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: fl
 
 
 def late_cause(evidence: Evidence) -> str:
-    """Return a sentence about what may delay the first message or line, or an empty string."""
+    """Return a sentence about a possible delay of the first message or line, or an empty string."""
     if evidence.code.calls("sleep"):
         return "A sleep at the start may be the reason."
     waits = evidence.code.calls("wait_for_service")

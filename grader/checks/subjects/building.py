@@ -70,7 +70,7 @@ def builds(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def early(evidence: Evidence, _: NoParams) -> Finding | None:
-    """Return a failed finding if the files alone show that no build can succeed; else None."""
+    """Return a failed finding if the files alone show that no build can succeed, else None."""
     ignored = next((name for name in IGNORE_MARKERS if name in evidence.submission.files), None)
     if ignored is not None:
         observed = f"colcon ignores the package, because a file {ignored} is next to package.xml."

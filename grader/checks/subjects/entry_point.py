@@ -167,7 +167,7 @@ def _is_top_level(module: Module, call: ast.Call) -> bool:
 
 
 def early(evidence: Evidence, _: NoParams) -> Finding | None:
-    """Return a failed finding if the module has a syntax error, because it cannot run after any build; else None."""
+    """Return a failed finding if a syntax error in the module shows that the node cannot run, else None."""
     setup, files = evidence.setup_py, evidence.submission.files
     point = setup.entry_point(evidence.trial.executable) if setup is not None else None
     file = module_file(point.target.partition(":")[0], files) if point is not None and point.target else None

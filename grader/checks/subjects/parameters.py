@@ -132,7 +132,7 @@ def _also(params: SetsParameter) -> str:
 
 
 def _result(call: Call | None) -> Any | None:  # noqa: ANN401 - a SetParametersResult as plain data
-    """Return the result of a call that sets one or more parameters; None if the node did not respond."""
+    """Return the result of a call that sets one or more parameters, or None if the node did not respond."""
     response = (call.response or {}) if call is not None else {}
     return next(iter(response.get("results", [])), response.get("result"))
 

@@ -55,7 +55,7 @@ class CircleParams:
 
     The circle's centre is `radius_m` to the left of the start pose (or to the right if clockwise).
 
-    `residual_m` is the largest allowed root mean square distance between the trajectory and the fitted circle; `turns`
+    `residual_m` is the largest allowed root mean square distance between the trajectory and the fitted circle. `turns`
     is the smallest allowed number of turns.
     """
 

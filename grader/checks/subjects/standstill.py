@@ -21,7 +21,7 @@ ZEROS = "Publish a command with all values 0, and keep publishing it or stop the
 
 
 def no_standstill(evidence: Evidence, expected: str) -> Finding | None:
-    """Return a failed finding if the turtle moves at the end, or if no command of the node stopped it; else None."""
+    """Return a failed finding if the turtle moves at the end, or if no command of the node stopped it, else None."""
     where = evidence.place("publish")
     frames = evidence.recording.frames
     until = activity.end_s(evidence.recording)
@@ -38,7 +38,7 @@ def no_standstill(evidence: Evidence, expected: str) -> Finding | None:
 
 
 def silent_while_moving(evidence: Evidence) -> bool:
-    """Return whether the last command moves the turtle, and the node sent no command in the second after it."""
+    """Return whether the last command moves the turtle, and no other command follows within one second."""
     last = evidence.commands[-1] if evidence.commands else None
     if last is None or max(abs(last.linear[0]), abs(last.angular[2])) <= STILL:
         return False

@@ -102,7 +102,7 @@ def _creates(node: ast.AST, name: str) -> bool:
 
 
 def _last(node: ast.AST) -> str:
-    """Return the last part of a dotted name: "guard" for `self.bench.guard`; an empty string for other expressions."""
+    """Return the last part of a dotted name, such as "guard" for `self.bench.guard`, or "" for other expressions."""
     return (dotted(node) or "").rpartition(".")[2] if isinstance(node, ast.expr) else ""
 
 

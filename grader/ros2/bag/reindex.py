@@ -17,7 +17,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the metadata again, and repair the end of an incomplete file.
+    """Restore the metadata, and repair the end of an incomplete file.
 
     Raises:
         Ros2Error: the path is not the folder of a bag, or its files cannot be read.

@@ -41,7 +41,10 @@ def _method_moved(by: int) -> Make:
 
 
 def _body_left_out(package: Package, draw: Random) -> Change | None:
-    """Remove the body of a method. Return None if Python can read the rest, since a part of the body is then left."""
+    """Remove the body of a method.
+
+    Return None if Python can read the rest, because this means that a part of the body is left.
+    """
     change = replace(r"^(    def \w+\(.*\):)\n(?:        .*\n)+", r"\1" + "\n")(package, draw)
     try:
         compile(change.files[change.file] if change else "", "", "exec", ast.PyCF_ONLY_AST)

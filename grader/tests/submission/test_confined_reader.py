@@ -33,7 +33,10 @@ FS_IOC_SETFLAGS, FS_NODUMP_FL = 0x40086602, 0x40
 
 
 def landlocked() -> bool:
-    """Return whether the kernel has Landlock: landlock_create_ruleset(2) then returns its version."""
+    """Return whether the kernel has Landlock.
+
+    If it does, landlock_create_ruleset(2) returns the version of Landlock.
+    """
     return bool(ctypes.CDLL(None).syscall(444, None, ctypes.c_size_t(0), 1) >= 1)
 
 

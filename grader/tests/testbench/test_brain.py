@@ -20,7 +20,7 @@ STEP = "12-tests"
 
 
 def commands(behaviour: Behaviour, *poses: tuple[float, float], after_s: float = 0.1) -> list[dict[str, float] | None]:
-    """Return what a node publishes after each pose, as the fields that are not 0."""
+    """Return, for each pose, the fields that are not 0 in the command that a node publishes after the pose."""
     brain, found = Brain(behaviour, "wall_guard"), []
     brain.create()
     for number, (x, y) in enumerate(poses or ()):

@@ -67,7 +67,7 @@ class Teleop(Node):
         self._publisher.publish(twist)
 
     async def turn(self, key: Turn) -> None:
-        """Send a goal. turtlesim then aborts the previous goal."""
+        """Send a goal. When a new goal arrives, turtlesim aborts the previous goal."""
         if not self._see_that(self._rotate.server_is_ready, self._action):
             return
         goal = await self._rotate.send_goal_async(RotateAbsolute.Goal(theta=key.theta))
