@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import FrameType
 
+ENDS_S = 10
+"""The longest time in s that a command takes to leave the graph after SIGTERM or SIGHUP. The system then ends it."""
+
 
 class _EndedError(KeyboardInterrupt):
     """The command was interrupted by a signal."""
@@ -55,7 +58,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
     except GraderError as error:
         sys.stdout.flush()
         if str(error):
-            print(error, file=sys.stderr)
+            _report(str(error))
         return error.exit_code
     except KeyboardInterrupt as error:
         _forget_the_terminal()
@@ -71,9 +74,15 @@ def run(arguments: Sequence[str] | None = None) -> int:
         _forget_the_terminal()
         fault = f"ros2: an error in the course's ros2, not in your code: {type(error).__name__}: {error}"
         more = "Please report it. GRADER_DEBUG=1 before the command shows the traceback."
-        print(refusal(error) or f"{fault}\n{more}", file=sys.stderr)
+        _report(refusal(error) or f"{fault}\n{more}")
         return 3
     return code
+
+
+def _report(text: str) -> None:
+    """Print to standard error, unless the terminal has been closed."""
+    with suppress(OSError):
+        print(text, file=sys.stderr)
 
 
 def _run_verb(words: list[str]) -> int:
@@ -98,8 +107,14 @@ def _complete() -> NoReturn:
 
 
 def _end(number: int, _: FrameType | None) -> None:
-    """Exit as after Ctrl-C, so that the node leaves the graph. A second signal terminates the process immediately."""
+    """Exit as after Ctrl-C, so that the node leaves the graph. A second signal terminates the process immediately.
+
+    Python discards an exception that a signal handler raises during `__del__`, and the middleware can block while the
+    node is removed. Nobody sends a second signal to a process whose terminal is closed, so an alarm terminates it.
+    """
     signal.signal(number, signal.SIG_DFL)
+    signal.signal(signal.SIGALRM, signal.SIG_DFL)
+    signal.alarm(ENDS_S)
     raise _EndedError(number)
 
 

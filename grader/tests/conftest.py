@@ -46,9 +46,15 @@ LONGEST = (
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Sort the modules: the slowest modules first, and all other modules in their original order."""
+    """Sort the modules: the slowest modules first, and all other modules in their original order.
+
+    The time limit of pyproject.toml is not for exhaustive tests.
+    """
     places = {Path(__file__).parent / name: place for place, name in enumerate(LONGEST)}
     items.sort(key=lambda item: places.get(item.path, len(LONGEST)))
+    for item in items:
+        if item.get_closest_marker("exhaustive") and not item.get_closest_marker("timeout"):
+            item.add_marker(pytest.mark.timeout(0))  # such a test may take hours
 
 
 @pytest.fixture(scope="session")

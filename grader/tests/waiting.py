@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import select
 import time
+from contextlib import suppress
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -23,12 +25,21 @@ def until(there: Callable[[], bool]) -> None:
 
 
 def until_gone(pid: int) -> None:
-    """Wait until a process that is not a child of this process has ended."""
+    """Wait until a process has ended. If the process is a child of this process, it may be waited for afterwards."""
     try:
         descriptor = os.pidfd_open(pid)
     except ProcessLookupError:
         return
     try:
-        assert select.select([descriptor], [], [], HANG_S)[0], f"process {pid} is still there"
+        assert select.select([descriptor], [], [], HANG_S)[0], f"process {pid} is still there: {_described(pid)}"
     finally:
         os.close(descriptor)
+
+
+def _described(pid: int) -> str:
+    """Return the command line of a process, its state and signals, and the system call in which it waits."""
+    described = []
+    for name in ("cmdline", "wchan", "status"):
+        with suppress(OSError):
+            described.append((Path("/proc") / str(pid) / name).read_text("utf-8", "replace").replace("\0", " "))
+    return "\n".join(described)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import re
 import shutil
+import signal
+import subprocess
 import sys
 from contextlib import suppress
 from pathlib import Path
@@ -211,13 +213,33 @@ def test_a_lost_terminal_leaves_no_process_behind(terminals: list[Terminal], dom
     assert len(there) >= 6  # the three shells and the programs that they have started
     for terminal in terminals:
         os.close(terminal.shell.child_fd)
+    for pid in there:
+        until_gone(int(pid))
     for terminal in terminals:
         with suppress(ChildProcessError):
             os.waitpid(terminal.shell.pid, 0)
     terminals.clear()
-    for pid in there:
-        until_gone(int(pid))
     assert not process_ids(domain)
+
+
+def test_a_command_that_cannot_leave_the_graph_is_ended() -> None:
+    swallows = (
+        "import signal, time\n"
+        "from grader.ros2 import main\n"
+        "main.ENDS_S = 1\n"
+        "signal.signal(signal.SIGHUP, main._end)\n"
+        "print('ready', flush=True)\n"
+        "while True:\n"
+        "    try:\n"
+        "        time.sleep(60)\n"
+        "    except BaseException:\n"
+        "        pass\n"
+    )
+    with subprocess.Popen([sys.executable, "-c", swallows], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "ready\n"
+        process.send_signal(signal.SIGHUP)
+        assert process.wait(HANG_S) == -signal.SIGALRM
 
 
 def test_users_of_one_machine_have_domains_of_their_own() -> None:
