@@ -202,7 +202,7 @@ def _overwhelmed(how: str) -> Finding:
     observed = f"The trial could not be finished: the node made the simulator fail ({shorten(how, 150)})."
     expected = "The simulator keeps running while the node publishes and calls services at a reasonable rate."
     cause = (
-        "The node sends without a pause, or sends invalid data. If your node does neither, "
+        "The node sends without a pause, or sends invalid data. If your node pauses and sends valid data, "
         "please report this as a bug of the grader."
     )
     return failed(observed, expected, Cause("overwhelmed", cause))

@@ -66,6 +66,6 @@ def unless_starved(finding: Finding, recording: Recording, off: float, per_s: fl
     While the machine stalls, the turtle continues with its last command.
     """
     if finding.status is Status.FAILED and recording.stalls and off <= per_s * recording.stalled_s:
-        message = "The machine was too busy to judge this in wall time. Try again when the machine is less busy."
+        message = "The machine was too busy to judge the check in wall time. Try again when the machine is less busy."
         return Finding(Status.ERROR, message)
     return finding

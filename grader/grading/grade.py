@@ -112,7 +112,7 @@ def explained(
         If the corrected node seems to follow wall time, the test of the fix is inconclusive.
         """
         if plan.clock == "wall":
-            raise MachineError("A try is made in simulated time only.")  # noqa: EM101
+            raise MachineError("A cause is tested only in simulated time.")  # noqa: EM101
         return trial(dataclasses.replace(plan, stop_at_doubt=True), *rest, **more)
 
     begun = time.monotonic()

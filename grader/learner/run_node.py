@@ -151,7 +151,7 @@ def turtle_is_there(env: Mapping[str, str]) -> bool:
 def _beside_another(env: Mapping[str, str]) -> bool:
     there = turtle_is_there(env)
     if there:
-        print("A turtlesim runs already, and the node uses it.", file=sys.stderr)
+        print("A turtlesim is already running, and the node uses it.", file=sys.stderr)
     return there
 
 

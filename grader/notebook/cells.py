@@ -92,7 +92,8 @@ class Cells:
         worked_on = cell_files.counts(present, start) == "file"
         if worked_on and (grading() or (start is not None and text == cell_files.ended(start))):
             self._say(
-                f"{path} contains your work. The file stays unchanged, because this cell is still the starting point."
+                f"{path} contains your work. The file stays unchanged, because this cell still contains the "
+                "starting point."
             )
             return
         if worked_on and self._written.get(file) != present:

@@ -116,7 +116,7 @@ def _left_out(recording: Recording) -> list[str]:
         (recording.graph_dropped, "part", " of the graph"),
     )
     left_out = [count(amount, thing) + of for amount, thing, of in amounts if amount]
-    return [f"The recording was full. These are left out: {a_list(left_out)}."] if left_out else []
+    return [f"The recording was full. It does not contain {a_list(left_out)}."] if left_out else []
 
 
 def _end(evidence: Evidence) -> str:

@@ -118,7 +118,7 @@ def _with_try(outcome: Outcome, evidence: Evidence) -> Outcome:
         return replace(outcome, finding=replace(finding, cause="", tried=REFUTED))
     tried = PASSES if made.result == "passes" else FURTHER
     if tries.behind and made is next(each for each in tries.made if each.result != "refuted"):
-        tried += f" Then {count(tries.behind, 'more mistake')} appeared."
+        tried += f" After this fix, {count(tries.behind, 'more mistake')} appeared."
     if evidence.exercise.show_fix:
         tried += f" The change: {shorten(_in_one_line(made.difference), 200)}"
     return replace(outcome, finding=replace(finding, tried=tried, change=made.difference))

@@ -81,7 +81,7 @@ def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -
     try:
         os.execvpe(shell, argv, {**wanted, **variables})
     except OSError as error:
-        message = f"Your shell could not be started: {shell}: {error.strerror}. The variable SHELL names it."
+        message = f"Your shell, {shell}, could not be started: {error.strerror}. Its name is in the variable SHELL."
         raise MachineError(message) from error
 
 

@@ -270,7 +270,7 @@ def lack_message(
     """Return a message with the missing programs, the command that installs them, and `why` this was not done."""
     whats = [f"  - {what}" for what in dict.fromkeys(need.what for need in needs)]
     lines = ["The course needs the following, which this system does not have:", *whats]
-    lines += [f"They were not installed: {why}."] if why else []
+    lines += [f"The missing parts were not installed: {why}."] if why else []
     how = package_managers.command(manager, needs, root=root)
     if manager is None:
         lines.append(f"Install them with {how}, then run make again.")

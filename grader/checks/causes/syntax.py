@@ -129,7 +129,10 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
         return other_syntax
     empty = NO_BODY.search(unreadable.message)
     if empty is not None and (OUTSIDE.match(line) or (unreadable.line or 0) > int(empty["line"]) + 1):
-        text = f"Nothing is indented below line {empty['line']}, so this line has no body. Write at least pass."
+        text = (
+            f"Nothing is indented below line {empty['line']}, so this line has no body. "
+            "Write at least the statement pass."
+        )
         return Cause("indentation", text, Where(file, int(empty["line"])))
     other = NOT_CLOSED.search(unreadable.message)
     if other is not None:

@@ -69,7 +69,10 @@ class Wait:
                 f"node calls no other callback. {ready} returns at once."
             )
             return Cause("waits-in-callback", text, self.where)
-        text = "While a callback sleeps, the node calls no other callback. Let the timer count, or use a second timer."
+        text = (
+            "While a callback sleeps, the node calls no other callback. "
+            "Count the calls of the timer instead, or use a second timer."
+        )
         return Cause("sleep-in-callback", text, self.where)
 
     @property

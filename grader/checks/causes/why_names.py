@@ -116,7 +116,7 @@ def _of_import(scene: CrashScene, name: str) -> Cause | None:
         module = ros_names.MODULE_OF[name]
         star = _star_import(scene, module)
         if star is not None:
-            text = f"{name} is in the module {module}. This line imports from another module."
+            text = f"{name} is in the module {module}. This line imports the names of another module."
             return Cause("import-wrong-place", text, scene.at(star)).fixed_by(
                 at(scene.at(star), f"from {star.module} ", f"from {module} ")
             )
@@ -197,7 +197,7 @@ def _alike(scene: CrashScene, name: str) -> Cause | None:
         text = "In other languages, the object is called this. In a Python method, the object is called self."
         return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, "this", "self"))
     if name in CONSTANTS:
-        text = f"Python spells it {CONSTANTS[name]}. Upper and lower case matter."
+        text = f"In Python, the spelling is {CONSTANTS[name]}. Upper and lower case matter."
         return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, name, CONSTANTS[name]))
     bound = _bound(scene) - {name}
     guess = nearest(name, bound, alike=0.8) or next((each for each in bound if sorted(each) == sorted(name)), None)

@@ -95,7 +95,8 @@ def why_rate_in_callback(evidence: Evidence) -> Cause | None:
     if found is None:
         return None
     text = (
-        "sleep of a rate returns when rclpy.spin calls the timer of the rate, but rclpy.spin waits for this callback."
+        "The method sleep of a Rate returns only after rclpy.spin has called the timer of the Rate, "
+        "but rclpy.spin waits for this callback."
     )
     return Cause("sleep-in-callback", text, found[1])
 

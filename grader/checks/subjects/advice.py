@@ -34,7 +34,7 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
     if loops(evidence):
         cause = "A node that runs its own loop receives no messages. With a timer, rclpy.spin does the waiting."
     if evidence.code.calls("create_rate"):
-        cause = "A rate from create_rate only works while another thread spins the node. A timer needs no thread."
+        cause = "A rate from create_rate works only while another thread spins the node. A timer needs no thread."
     if evidence.code.calls("create_timer"):
         observed = "The node has a timer, but a loop that sleeps sends its messages."
         return failed(observed, EXPECTED, Cause("no-timer", cause, loop))

@@ -223,7 +223,7 @@ def _given(evidence: Evidence, name: str, form: str, kind: type) -> Answer | Fin
         return failed(f"{name} is not answered yet.", f"{name} is {form}.", Cause("no-answer", where=where))
     if not isinstance(answer, kind):
         observed = f"{name} is {_shown(answer)}."
-        cause = f"Such an answer is written like this: `{name} = {EXAMPLES[form]}`."
+        cause = f"Write the answer in this form: `{name} = {EXAMPLES[form]}`."
         return failed(observed, f"{name} is {form}.", Cause("answer-form", cause, where))
     return answer
 

@@ -65,7 +65,8 @@ def bag_answer(evidence: Evidence, params: BagAnswer) -> Finding:
         if not has:
             cause = "A number needs its unit."
             return failed(observed, expected, Cause("unit-missing", cause, where))
-        return failed(observed, expected, Cause("wrong-unit", f"The unit is {unit or 'none: it is a count'}.", where))
+        cause = f"The unit is {unit}." if unit else "A count has no unit."
+        return failed(observed, expected, Cause("wrong-unit", cause, where))
     truth = _truth(evidence, params)
     band = Band.around(truth, truth * params.tolerance_percent / 100.0 + 0.005 * bool(unit))
     if band.holds(value):

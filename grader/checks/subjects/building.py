@@ -32,7 +32,10 @@ UNREAD_SETUP = "return ast.literal_eval(output)"
 NO_FILE = re.compile(r"can't copy '?(?P<file>[^':]*)'?: doesn't exist")
 IGNORE_MARKERS = (IGNORE_MARKER, "AMENT_IGNORE", "CATKIN_IGNORE")
 """Files with these names make colcon ignore a ROS 2 package."""
-IGNORED = "colcon ignores a folder that contains such a file. Delete the file, so that colcon finds the package."
+IGNORED = (
+    "colcon ignores a folder that contains a file named COLCON_IGNORE, AMENT_IGNORE or CATKIN_IGNORE. "
+    "Delete the file, so that colcon finds the package."
+)
 EXPECTED = "`colcon build` succeeds and installs the package."
 
 
@@ -143,7 +146,7 @@ def _other_type(evidence: Evidence) -> str:
     manifest = evidence.manifest
     if manifest is None or manifest.problem is not None or manifest.build_type == "ament_python":
         return ""
-    return "colcon reads the build type from package.xml, and it is not ament_python."
+    return "colcon reads the build type in package.xml, which is not ament_python."
 
 
 def _modules(evidence: Evidence) -> Finding:

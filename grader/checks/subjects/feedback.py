@@ -65,7 +65,7 @@ def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
     turning_s = sum(_ended_s(evidence, goal) - goal.t_s for goal in goals)
     amount = Band(0.5 * turning_s / params.period_s - 1.0, 2.0 * turning_s / params.period_s + 1.0)
     if not amount.holds(len(told)):
-        observed = f"{len(told)} such lines appeared while the turtle turned for {turning_s:.1f} s."
+        observed = f"{len(told)} lines with the feedback appeared while the turtle turned for {turning_s:.1f} s."
         if len(told) > turning_s / params.period_s:
             text = (
                 "The feedback arrives 62 times per second. Store the number, and log the stored number in the "
@@ -93,7 +93,7 @@ def _none_in_format(evidence: Evidence, params: LogFeedback, goals: list[Goal], 
     """
     cause = waits_in_callback(evidence) or _unheard(evidence)
     if cause is not None:
-        return failed("The log has no such line.", expected, cause)
+        return failed("The log has no line with the feedback.", expected, cause)
     recording = evidence.recording
     during = tuple(
         line for line in recording.log if any(goal.t_s < line.t_s < _ended_s(evidence, goal) for goal in goals)

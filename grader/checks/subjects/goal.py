@@ -64,7 +64,7 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
             if end <= NEARLY_M and _in_code(evidence, params.x_m, params.y_m):
                 cause = (
                     "The last command has all values 0, as if the turtle had arrived. "
-                    f"At which distance from the goal does the node stop? Here, this distance is {end:.1f} m."
+                    f"At which distance from the goal does the node stop? The turtle ended {end:.1f} m from the goal."
                 )
             return failed(observed, expected, Cause("not-there", cause, where), near_edge=near)
         if end >= away[0] - MOVED_M:

@@ -37,7 +37,7 @@ class SendsGoals:
     """
 
     heading_deg: float = number(about="The heading of the goal, in degrees: 0 is to the right, 90 is up.")
-    nth: float = number(1, at_least=1, about="The number of the first goal that is compared, from 1.")
+    nth: float = number(1, at_least=1, about="The number of the first goal that is compared, counted from 1.")
     total: float = number(1, at_least=1, about="The number of goals that are compared.")
     turn_deg: float = number(0.0, about="The angle to the left from one goal to the next.")
     tolerance_deg: float = number(1.0, above=0, about="The maximum error of a heading.")

@@ -95,7 +95,7 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
     """Every line shows the distance that the turtle has driven since the start."""
     recording, frames = evidence.recording, evidence.recording.frames
     logged = [line for line in _trusted(recording, params.format) if line.t_s >= evidence.trial.scenario.pose_from_s]
-    expected = "The distance is the length of the trajectory so far, in metres. It never gets smaller."
+    expected = "The distance is the length of the path that the turtle has driven, in metres. It never gets smaller."
     if len(logged) < FEWEST:
         return _too_few(evidence, params.format)
     x, y = np.append(recording.start.x, frames.x), np.append(recording.start.y, frames.y)
@@ -202,7 +202,7 @@ def _too_few(evidence: Evidence, text_: str) -> Finding:
     if len(student_log.in_format(evidence.recording, text_)) >= FEWEST:
         return Finding(
             Status.ERROR,
-            "The machine was too busy to judge this in wall time. Try again when the machine is less busy.",
+            "The machine was too busy to judge the check in wall time. Try again when the machine is less busy.",
         )
     expected = f"The log has at least {FEWEST} lines in this format."
     where = evidence.place("info")

@@ -63,8 +63,8 @@ class CircleParams:
         above=0,
         at_most=5.5,
         about=(
-            "The radius. The centre is this far to the left of the start, or to the right if the "
-            "direction is clockwise."
+            "The radius, which is also the distance from the start to the centre. The centre is to the left of the "
+            "start, or to the right if the direction is clockwise."
         ),
     )
     radius_tolerance_m: float = number(0.05, above=0, about="The maximum error of the radius.")

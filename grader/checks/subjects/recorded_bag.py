@@ -88,7 +88,7 @@ def topic_in_bag(evidence: Evidence, params: TopicInBag) -> Finding:
         observed = f"{params.topic} has the type {shorten(bag.types[params.topic])} in the bag."
         return failed(observed, expected, Cause("wrong-type", "", where))
     if not bag.counts.get(params.topic):
-        cause = "The command ends with the topics to record. Each topic begins with a slash."
+        cause = "The last arguments of `ros2 bag record` are the topics to record. Each topic begins with a slash."
         return failed(f"The bag contains {a_list(held)}.", expected, Cause("bag-topic", cause, where))
     return passed(f"The bag contains {a_list(held)}.")
 

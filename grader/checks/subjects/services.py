@@ -47,7 +47,7 @@ def calls_service(evidence: Evidence, params: CallsService) -> Finding:
     request = ", ".join(f"{name}={_value(value)}" for name, value in params.fields)
     after = params.after.strip()
     expected = f"The node calls {params.service} with {request}."
-    expected += f" Before that, the node calls {after}." if after else ""
+    expected += f" Before this request, the node calls {after}." if after else ""
     made = [call for call in calls_of(evidence) if not call.by_trial]
     calls = [call for call in made if call.service == params.service]
     right = [
@@ -104,7 +104,9 @@ class AnswersCall:
 
     service: str = string("the full name of a service", start="/", about="The name of the service.")
     type: str = string("a service type, as in std_srvs/srv/SetBool", about="The type of the service.")
-    nth: float = number(1, at_least=1, about="The number of the call of this service that is judged, from 1.")
+    nth: float = number(
+        1, at_least=1, about="The number of the call that is judged, among all calls of this service, counted from 1."
+    )
     within_s: float = number(1.0, above=0, about="The maximum time until the response.")
     fields: tuple[tuple[str, Any], ...] = table(about="The relevant fields of the response, with their values.")
 

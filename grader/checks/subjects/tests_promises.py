@@ -33,7 +33,7 @@ NUMBERS = (
 
 def promises(evidence: Evidence, _: NoParams) -> Finding:
     """The tests do not use the methods and attributes that the class of the node defines."""
-    expected = "The tests use only the topics and the clock of the node, like another node."
+    expected = "The tests use only the topics and the clock of the node, as another node would."
     spec = next((trial.tests for trial in evidence.exercise.trials if trial.tests is not None), None)
     if spec is None:
         return passed(expected)

@@ -75,7 +75,7 @@ UNSTEADY = "The tests depend on timing, on random numbers, or on the state that 
 
 def _observed(run: NodeRun) -> str:
     if run.over:
-        return "The tests of the correct node did not finish in time."
+        return "The tests did not finish in time on the correct node."
     name = shorten(run.test.rpartition("::")[2] or run.test, 60)
     if run.outcome == "import":
         return f"{shorten(run.test, 60)} cannot be imported."
@@ -137,7 +137,7 @@ def _hung(expected: str, code: TestCode, run: NodeRun | None) -> Finding:
     text = "A test that waits for a message that never arrives must give up: it needs a deadline."
     where = code.tests[0].where if code.tests else None
     observed = (
-        "The tests did not finish in time." if run is not None else "The tests of other nodes did not finish in time."
+        "The tests did not finish in time." if run is not None else "The tests did not finish in time on other nodes."
     )
     return failed(observed, expected, Cause("test-hangs", text, where))
 

@@ -34,7 +34,7 @@ def never_waits(evidence: Evidence, _: NoParams) -> Finding:
     if waits and _hangs(evidence):
         cause = Cause("waits-in-callback", SAME_GROUP, waits[0].where)
         return failed("After a response, the node did nothing more.", EXPECTED, cause)
-    return passed("Other threads receive what a callback waits for." if waits else EXPECTED)
+    return passed("Other threads receive the responses for which a callback waits." if waits else EXPECTED)
 
 
 def _early(evidence: Evidence, _: NoParams) -> Finding | None:

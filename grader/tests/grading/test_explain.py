@@ -99,7 +99,7 @@ def test_mistakes_behind_a_mistake_are_counted_and_proved_in_turn() -> None:
     found, reported = tries("a\na\na\n", judged)
     assert [each.result for each in found.made] == ["further", "further", "passes"]
     assert found.behind == 2
-    assert reported["start"].finding.tried == f"{FURTHER} Then 2 more mistakes appeared."
+    assert reported["start"].finding.tried == f"{FURTHER} After this fix, 2 more mistakes appeared."
 
 
 def test_a_cause_of_several_checks_is_tried_once() -> None:

@@ -94,7 +94,7 @@ def test_a_second_turtlesim_is_not_started_beside_one_in_a_terminal(
             page = learner.opened(browser)
             page.get_by_role("button", name="Turtle", exact=True).click()
             page.get_by_role("button", name="Start turtlesim").click()
-            page.get_by_text("A turtlesim runs already, in a terminal.").wait_for()
+            page.get_by_text("A turtlesim is already running in a terminal.").wait_for()
             page.get_by_role("button", name="Run it").click()
             page.locator("#node-lines").get_by_text("[draw_circle]").wait_for()
             assert page.get_by_role("button", name="Start turtlesim").is_visible()

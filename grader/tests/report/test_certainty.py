@@ -46,7 +46,7 @@ def made(kind: str, diagnosis: str, tried: str = "") -> Outcome:
         (made("node_starts", "no-spin"), "likely"),
         (made("publishes", "wrong-topic"), "likely"),
         (made("publishes", "wrong-topic", PASSES), "why"),
-        (made("publishes", "wrong-topic", f"{FURTHER} Then 1 more mistake appeared."), "why"),
+        (made("publishes", "wrong-topic", f"{FURTHER} After this fix, 1 more mistake appeared."), "why"),
         (made("publishes", "wrong-topic", REFUTED), "likely"),
         (made("kind-of-a-later-version", "wrong-topic"), "likely"),
     ],

@@ -63,7 +63,7 @@ def test_what_cannot_be_done_without_is_tried_for_each_time(course: Course, caps
     assert course.commands == []
     message = capsys.readouterr().err
     assert "  - cmake\n" in message
-    assert "They were not installed: not allowed.\n" in message
+    assert "The missing parts were not installed: not allowed.\n" in message
 
 
 def test_the_tests_need_a_sandbox(course: Course) -> None:

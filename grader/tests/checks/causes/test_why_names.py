@@ -107,7 +107,7 @@ def test_an_unbound_name_in_other_words_is_local_all_the_same() -> None:
         ("x = pi  # crashed\n", "pi", "missing-import", "pi is in the module math."),
         ("import rclpy\nspin(node)  # crashed\n", "spin", "module-prefix", "Write rclpy.spin."),
         ("spin(node)  # crashed\n", "spin", "name-undefined", "Nothing defines this name"),
-        ("x = true  # crashed\n", "true", "name-misspelt", "Python spells it True."),
+        ("x = true  # crashed\n", "true", "name-misspelt", "In Python, the spelling is True."),
         ("spin(node)  # crashed\nnode = 1\n", "node", "name-too-early", "in line 2, after this line"),
         (
             "def a():\n    node = 1\ndef b():\n    spin(node)  # crashed\n",
