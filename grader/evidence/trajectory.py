@@ -118,7 +118,7 @@ def driven_from(recording: Recording) -> Pose:
 
 
 def _before_driving(recording: Recording) -> int:
-    """Return the number of frames before the first command, or 0 if no call can have moved the turtle before it."""
+    """Return the number of frames before the first command, or 0 if no earlier call can have moved the turtle."""
     return first_driven(recording) if MOVING & set(recording.interventions) else 0
 
 

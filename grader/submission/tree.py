@@ -128,10 +128,7 @@ def require_path(descriptor: int, path: Path) -> None:
 
 @contextmanager
 def open_below(folder: int, path: str) -> Iterator[int]:
-    """Open the folder at the POSIX path `path` below `folder`.
-
-    The path "." means `folder` itself. No link is followed.
-    """
+    """Open the folder at the POSIX path `path` below `folder` ("." is `folder` itself). No link is followed."""
     with ExitStack() as stack:
         for name in path.split("/"):
             folder = stack.enter_context(open_folder(name, folder))
