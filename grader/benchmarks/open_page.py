@@ -112,7 +112,7 @@ def _pair(
 
 @contextmanager
 def _screen(learner: Course) -> Iterator[pexpect.spawn[str]]:
-    """Start `grader watch` in a terminal, and wait until it has graded."""
+    """Start `grader watch` in a terminal, and wait for its first verdict."""
     screen = pexpect.spawn(
         str(GRADER), ["watch"], env=learner.env, encoding="utf-8", timeout=_PATIENCE_S, dimensions=(60, 110)
     )

@@ -55,7 +55,10 @@ class Worker:
         self.connection: Connection = Connection(ours.detach())
 
     def send(self, task: Task) -> None:
-        """Send a task to the worker, one at a time. If the process has exited, the next `receive` reports the exit."""
+        """Send a task to the worker, which handles one task at a time.
+
+        If the process has exited, the next `receive` reports the exit.
+        """
         with suppress(BrokenPipeError, ConnectionResetError):
             self.connection.send(task)
 

@@ -142,7 +142,10 @@ def _import_commands() -> None:
 
 
 def _next_run(requests: socket.socket) -> Run:
-    """Serve requests. In the parent process, this function never returns. In a fork, it returns the run to execute."""
+    """Serve requests.
+
+    In the parent process, this function never returns. In a fork, this function returns the run to execute.
+    """
     while True:
         request, received, _, _ = socket.recv_fds(requests, _MOST_REQUEST, 8)
         if not request:

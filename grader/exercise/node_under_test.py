@@ -66,8 +66,8 @@ class TestsSpec:
     """The table `[trial.tests]`: the student's tests run on the correct node and on every broken node.
 
     The tests import the class `name` from `module`. The tests run `right_runs` times on the correct node. `duration_s`
-    (s) is the maximum duration of one run. `own` contains the names of the fields of `right` that get the student's own
-    numbers of the same names as their values.
+    (s) is the maximum duration of one run. `own` contains names of fields of `right`. Each of these fields gets the
+    student's own number of the same name.
     """
 
     __test__ = False  # keeps pytest from collecting this class

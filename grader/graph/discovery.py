@@ -141,8 +141,8 @@ class Settling:
     def observe(self, due_s: float = math.inf) -> None:
         """Read the graph, and record whether anything is new since it was last read.
 
-        At most `due_s` of the time since the last reading count as quiet. On a busy machine, a short wait takes longer
-        than requested, and other processes have to wait too.
+        At most `due_s` (s) of the time since the last reading counts as quiet. On a busy machine, a short wait takes
+        longer than requested, and other processes have to wait too.
         """
         graph, now = _graph(self._node), time.monotonic()
         self._quiet_s = 0.0 if graph - self._graph else self._quiet_s + min(due_s, now - self._read)

@@ -221,8 +221,8 @@ class Watched:
         """Prove the causes of the last report by testing fixes in a copy (see `grader.grading.explain`).
 
         Before each test, `give_up` is called to find out whether other work must be done first. If other work must be
-        done first, the next call of `prove` starts again. Return the report with the results of the tests, or None if
-        the tests have changed nothing.
+        done first, the next call of `prove` starts from the beginning. Return the report with the results of the tests,
+        or None if the tests have changed nothing.
         """
         if self._unproved is None or give_up():
             return None

@@ -142,7 +142,7 @@ def lacking_lines(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, t
     """Return the lines of the step's package files that are missing in the learner's files, by the path of the file.
 
     `files` has the content of the learner's files by path. Files that are not in `files` are left out. For a step with
-    a package of its own, no lines are returned, because the learner's task is to change those files.
+    a package of its own, no lines are returned, because the learner's task is to change the files of that package.
 
     Raises:
         OSError: a file of the starting point cannot be read.

@@ -1,4 +1,4 @@
-"""The files next to a notebook that its cells write, and the text that counts if a cell and its file differ.
+"""The files that a notebook's cells write next to the notebook, and the text that counts if they differ.
 
 A student hands in the package (or the answers) next to the notebook. A magic writes a cell to one of its files:
 

@@ -87,7 +87,7 @@ def to_data(graded: Graded, *, html: bool) -> dict[str, object]:
 
 
 def main() -> int:
-    """Grade and print the verdict."""
+    """Grade the submission, and print the verdict."""
     name, folder = sys.argv[1:]
     try:
         exercise = find_exercise(name)

@@ -171,10 +171,10 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
     """Return the environment of a node that a user starts: the user's environment with the variables of ROS 2 added.
 
     The user's settings are kept, and workspaces that the user sourced are searched first. The ROS domain is `domain`,
-    or if `domain` is None, the domain that the user has set. Without such a setting, each user gets a separate domain,
-    so that classmates on one machine do not drive each other's turtles. If the ROS 2 installation was sourced, however,
-    the domain is 0, as usual in ROS 2, so that these nodes reach nodes in terminals where the user only sourced the
-    installation.
+    or if `domain` is None, the domain that the user has set. If the user has set no domain, each user gets a separate
+    domain, so that classmates on one machine do not drive each other's turtles. If the ROS 2 installation was sourced,
+    however, the domain is 0, as usual in ROS 2, so that these nodes reach nodes in terminals where the user only
+    sourced the installation.
     """
     home = Path(env.get("HOME", "/"))
     own = 0 if ros.kind == "sourced" else domain_of(os.getuid())
@@ -210,7 +210,7 @@ def who_hears(env: Mapping[str, str]) -> str:
 
 
 def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str:
-    """Return a search path that starts with the user's entries, without entries of another ROS 2 or older underlay."""
+    """Return a search path that starts with the user's entries, without those of another ROS 2 or an older underlay."""
     ours = [entry for entry in needed.get(name, "").split(os.pathsep) if entry]
     prefixes = [Path(entry) for entry in env.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
     current = needed["AMENT_PREFIX_PATH"].split(os.pathsep)

@@ -1,4 +1,4 @@
-"""The first half of the set-up: check the machine and create .venv. Then grader.setup.install fills .venv.
+"""The first half of the set-up: check the machine and create .venv. The second half is grader.setup.install.
 
     python3 -m grader.setup.bootstrap (learner | cluster | notebooks | docs | tests) [--python PYTHON]
 

@@ -53,7 +53,7 @@ class PlainSetup:
 
 
 def read_plain_setup(setup_py: bytes, setup_cfg: bytes, paths: Collection[str]) -> PlainSetup | None:
-    """Read setup.py and setup.cfg of a package with files at these paths. Return None if one of them is unusual."""
+    """Read setup.py and setup.cfg of a package with files at these paths. Return None if a file is unusual."""
     module = read_module("setup.py", setup_py)
     call = _only_call(module)
     if call is None:

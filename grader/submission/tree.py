@@ -97,7 +97,7 @@ def open_folder(name: str, parent: int | None = None, *, follow: bool = False) -
 
 
 def open_file(path: Path, *, at: Path | None = None) -> IO[bytes]:
-    """Open a regular file. A link to the file is never followed, and a pipe is never waited for.
+    """Open a regular file. A link to the file is never followed, and the function never waits for a pipe.
 
     See `require_path` for the meaning of `at`.
 

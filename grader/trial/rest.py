@@ -101,7 +101,7 @@ def only_sends(thread: str) -> bool:
 
 
 class Threads:
-    """The threads of a process. If `wanted` is given, only threads whose names it accepts are observed.
+    """The threads of a process. If `wanted` is given, only the threads whose names `wanted` accepts are observed.
 
     The files of the threads in /proc are kept open.
     """

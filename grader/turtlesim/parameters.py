@@ -49,7 +49,7 @@ def refusal(node: Node, parameters: Iterable[Parameter]) -> SetParametersResult 
 
     rclpy's own messages are worded differently.
 
-    Source: rclcpp/src/rclcpp/node_interfaces/node_parameters.cpp, which checks a request in this order.
+    The order of the checks is that of rclcpp/src/rclcpp/node_interfaces/node_parameters.cpp.
     """
     given = list(parameters)
     rules = (_undeclared_or_read_only, _undeclares, _does_not_fit)

@@ -60,7 +60,10 @@ class Page:
                 self._rosout.flush()
 
         def listen(node: Node) -> None:
-            """Subscribe to /rosout in the node's thread only on request, since the graph shows subscriptions."""
+            """Subscribe to /rosout in the node's thread.
+
+            This is done only on request, since the graph shows subscriptions.
+            """
             if self._rosout is None:
                 self._rosout = Rosout(node, lambda lines: in_loop(loop, self._logged, lines))
 

@@ -1,4 +1,4 @@
-"""Commands that were lost because no subscription was connected yet, so the start of the trajectory is missing."""
+"""Explain why the start of a trajectory is missing: commands were lost before a subscription was connected."""
 
 from __future__ import annotations
 

@@ -139,7 +139,7 @@ def _has_timeout(call: ast.Call) -> bool:
 
 
 def _aliases(modules: Iterable[Module]) -> dict[str, str]:
-    """Map each name under which the modules call a function that waits to the name of this function."""
+    """Return the names under which the modules call functions that wait, each with the function's original name."""
     aliases = {name: name for name in WAITS}
     for module in modules:
         for node in module.nodes:

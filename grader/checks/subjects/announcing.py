@@ -1,4 +1,4 @@
-"""Check the announcements of the remaining turtles: their names, and how often they arrive."""
+"""Check the announcements of the remaining turtles: the names in each announcement, and the rate."""
 
 from __future__ import annotations
 
