@@ -165,7 +165,10 @@ def judged(made: Made, folder: Path, builds: Builds, keep: Path | None) -> Judge
 
 
 def once(made: Made, folder: Path, builds: Builds, keep: Path | None) -> Judged:
-    """Judge a wrong package. If its recording is already stored, judge the recording instead of running the package."""
+    """Judge a wrong package.
+
+    If the recording of the package is already stored, judge the recording and do not run the package.
+    """
     kept = keep and keep / f"{made.name}.pickle"
     return again(kept) if kept and kept.is_file() else judged(made, folder, builds, keep)
 

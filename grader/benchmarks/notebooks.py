@@ -9,9 +9,9 @@ In one run on the same machine, this benchmark measures:
   database);
 - `grader check` of the package.
 
-Autograding the solved notebook should take at most 1.5 times as long as the other two measurements together. Then a
-class is measured: nbgrader autogrades the submissions one by one, and `grader gradebook sync` grades several in
-parallel.
+Autograding the solved notebook should take at most 1.5 times as long as the other two measurements together. After
+these measurements, a class is measured: nbgrader autogrades the submissions one by one, and `grader gradebook sync`
+grades several in parallel.
 """
 
 from __future__ import annotations

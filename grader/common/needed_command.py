@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 def needed_command(app: typer.Typer, words: Sequence[str]) -> TyperGroup:
     """Return the application with only the command that the words name, or with all commands if the words name none.
 
-    To create a command, typer evaluates the annotations of all its options. For all commands, this takes longer than
-    most commands need.
+    To create a command, typer evaluates the annotations of all its options. Evaluating the annotations of all commands
+    would take longer than most commands need.
     """
     word = next((word for word in words if not word.startswith("-")), "")
     named = [command for command in app.registered_commands if _name(command) == word]

@@ -114,19 +114,19 @@ class Evidence:
 
     @cached_property
     def manifest(self) -> Manifest | None:
-        """The content of package.xml; None if there is no package.xml."""
+        """The content of package.xml, or None if there is no package.xml."""
         data = self.submission.files.get("package.xml")
         return None if data is None else read_manifest(data)
 
     @cached_property
     def setup_py(self) -> SetupPy | None:
-        """The content of setup.py, read without running it; None if there is no setup.py."""
+        """The content of setup.py, read without running it, or None if there is no setup.py."""
         data = self.submission.files.get("setup.py")
         return None if data is None else read_setup_py(data)
 
     @cached_property
     def answers(self) -> Answers | None:
-        """The content of answers.toml; None if there is no answers.toml."""
+        """The content of answers.toml, or None if there is no answers.toml."""
         data = self.submission.files.get("answers.toml")
         return None if data is None else read_answers(data)
 

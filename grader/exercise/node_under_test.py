@@ -42,8 +42,10 @@ class Behaviour:
     margin_m: float = 1.0
     """The distance from a wall at which the node starts to turn."""
     timeout_s: float = 1.0
-    """The maximum age of the last pose. The node stops if the last pose is older than this; with 0, the node never
-    stops."""
+    """The maximum age of the last pose.
+
+    The node stops if the last pose is older than this. With 0, the node never stops.
+    """
     walls: tuple[str, ...] = WALLS
     """The walls that the node avoids."""
     publishes: bool = True

@@ -1,9 +1,9 @@
 """The scores that count in nbgrader's gradebook: manual grades, and scores that the grader has confirmed.
 
-The output of an autograded cell comes from a kernel that runs student code, so its score is provisional. For these
-cells, `autograde` writes 0 points and "needs manual grade" (unconfirmed.py). `grader gradebook sync` replaces these 0
-points with the grader's scores. A score without a result from the grader is withheld: it becomes 0 points, and a person
-has to review it. Manual grades, extra credit and assignments of other courses stay unchanged.
+The output of an autograded cell comes from a kernel that runs student code, so the score of the cell is provisional.
+For these cells, `autograde` writes 0 points and "needs manual grade" (unconfirmed.py). `grader gradebook sync` replaces
+these 0 points with the grader's scores. A score without a result from the grader is withheld: it becomes 0 points, and
+a person has to review it. Manual grades, extra credit and assignments of other courses stay unchanged.
 """
 
 from __future__ import annotations

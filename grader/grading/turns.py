@@ -33,7 +33,7 @@ class Turns:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._locks: tuple[IO[bytes], IO[bytes]] | None = None
-        """The two lock files (turnstile and machine) while this grader shares the machine; otherwise None."""
+        """The two lock files (turnstile and machine) while this grader shares the machine, or else None."""
 
     @contextmanager
     def shared(self) -> Iterator[None]:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def completes(argument: argparse.Action, names: Callable[..., Iterable[str]]) -> None:
-    """Set the completer of an argument. `names` gets the arguments typed before as `parsed_args`."""
+    """Set the completer of an argument. `names` is called with `parsed_args`, the arguments before the cursor."""
     argument.completer = lambda **words: list(names(**words))  # type: ignore[attr-defined]
 
 

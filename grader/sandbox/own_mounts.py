@@ -69,7 +69,7 @@ def keep_only(paths: Iterable[Path]) -> bool:
 
 
 def _unshared(c: ctypes.CDLL) -> bool:
-    """Create the namespace. An ordinary user needs a user namespace for this, in which the user ids stay the same."""
+    """Create the mount namespace. For an ordinary user, also create a user namespace with the same user ids."""
     user, group = os.geteuid(), os.getegid()
     if c.unshare(_NEW_MOUNTS) == 0:
         return True

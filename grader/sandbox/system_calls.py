@@ -56,8 +56,10 @@ DENIED = {
 }  # fmt: skip
 _SOCKET, _CLONE, _CLONE3, _FCNTL = 41, 56, 435, 72
 _SET_PIPE_SIZE = 1031
-"""F_SETPIPE_SZ of fcntl(2). This call is forbidden, because a user may have only 64 pipes of 1 MiB; further pipes are
-small."""
+"""F_SETPIPE_SZ of fcntl(2).
+
+This call is forbidden, because a user may have only 64 pipes of 1 MiB. Further pipes are small.
+"""
 # AF_UNIX, AF_INET, AF_INET6, and AF_NETLINK for listing interfaces. AF_VSOCK would reach the host of a virtual machine.
 _FAMILIES = (1, 2, 10, 16)
 # The family's default protocol, TCP and UDP. For others, such as SCTP, the kernel loads modules that are little tested.

@@ -72,7 +72,7 @@ def uses_of(modules: Sequence[Module], file: str | None, names: Collection[str])
 
 
 def _reached(files: Sequence[_File], names: Collection[str]) -> dict[Top, str]:
-    """Map each top-level name that leads to one of the functions to the name of that function."""
+    """Return the top-level names that lead to one of the functions, each with the name of that function."""
     reached: dict[Top, str] = {}
     users: dict[Top, set[Top]] = {}
     for each in files:

@@ -1,4 +1,7 @@
-"""Marks for tests that need the course's own ROS 2 or a sourced ROS 2. All tests run in both environments."""
+"""Marks for tests that need the course's own ROS 2 or a sourced ROS 2.
+
+All tests run in an environment with the course's own ROS 2 and in an environment with a sourced ROS 2.
+"""
 
 from __future__ import annotations
 

@@ -68,7 +68,7 @@ OTHERS = {
     ("underlay", "_run"): "cmake and a command of interpreter(), in our own folder",
     ("watch", "seconds_to_verdict"): "our command grader",
 }
-"""Functions that start something other than the `argv` of interpreter(), and what they start."""
+"""Functions that start something other than the `argv` of interpreter(), each with a description of that thing."""
 NAMED = {
     ("doctor", "look_at_node"): "printed",
     ("doctor", "look_at_python"): "printed",

@@ -48,8 +48,9 @@ class Goal:
 
     `t_s` is the time at which the simulator accepted the goal.
 
-    The other times (s) are None if the event did not happen: a client requested the result (`result_asked_s`), a client
-    requested cancellation (`cancel_asked_s`), or the goal ended with this `status` (`ended_s`).
+    Each other time (s) is None if its event did not happen. The events are: a client requested the result
+    (`result_asked_s`), a client requested cancellation (`cancel_asked_s`), and the goal ended with this `status`
+    (`ended_s`).
     """
 
     t_s: float

@@ -47,7 +47,7 @@ GIVEN: dict[str, Callable[[], Evidence]] = {
         SHAPES["no messages"](), submission({"setup.py": SETUP_PY.replace("my_robot", "x" * 900)})
     ),
 }
-"""Submissions for tests of the messages; most of these submissions fail. Such a submission is made when a test needs
+"""Submissions for tests of the messages. Most of these submissions fail. Such a submission is made when a test needs
 it, not when pytest collects the tests."""
 ALL_RIGHT = ["good", "good elsewhere", "more after Ctrl-C"]
 """The submissions that pass every check."""

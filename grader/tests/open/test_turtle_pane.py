@@ -46,7 +46,7 @@ def of_home(home: Path) -> list[int]:
 
 
 def stop_real_daemon(env: Mapping[str, str]) -> None:
-    """Stop the daemon that the real `ros2` starts for its next commands. It would run for two hours."""
+    """Stop the daemon that the real `ros2` starts for its next commands. This daemon would run for two hours."""
     if REAL_ROS2:
         stop = [str(HERE.prefix / "bin/ros2"), "daemon", "stop"]
         subprocess.run(stop, env=env, stdout=subprocess.DEVNULL, check=True)

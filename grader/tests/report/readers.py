@@ -90,7 +90,7 @@ class Command:
 
 
 def commands(log: str) -> list[Command]:
-    """Return every workflow command in a log, in both forms, as the runner finds it.
+    """Return every workflow command in a log, in both forms of the syntax, as the runner finds it.
 
     The source is "Workflow commands for GitHub Actions" and ActionCommand.cs of actions/runner.
     """

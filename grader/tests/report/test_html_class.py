@@ -138,7 +138,7 @@ def test_a_hostile_name_adds_no_element_and_no_link(folder: Path) -> None:
 
 
 def test_no_name_of_an_exercise_turns_the_text_around(folder: Path) -> None:
-    """Nobody checks the exercise in a report file, and U+202E reverses the text after it."""
+    """Nobody checks the exercise in a report file, and the character U+202E reverses the text that follows."""
     for status in ("failed", "error"):
         odd = replace(report(status, submission=f"class/{status}/step"), exercise="03-\u202eelcric\x1b[31m")
         (folder / f"{status}.json").write_text(to_json(odd), "utf-8")

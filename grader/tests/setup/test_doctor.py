@@ -40,7 +40,7 @@ def wheels() -> Ros:
 
 @pytest.fixture
 def bare(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
-    """Replace all slow checks with good results. Each test then makes one of the checks fail."""
+    """Replace all slow checks with good results. Each test makes one of the checks fail."""
     monkeypatch.setattr(bubblewrap, "why_unavailable", lambda: None)
     monkeypatch.setattr(underlay, "ensure", lambda _ros, _tell: Path("/cache/turtlesim"))
     monkeypatch.setattr(doctor, "look_at_node", lambda _ros, **_: Line("a node", "starts"))

@@ -33,10 +33,7 @@ FS_IOC_SETFLAGS, FS_NODUMP_FL = 0x40086602, 0x40
 
 
 def landlocked() -> bool:
-    """Return whether the kernel has Landlock.
-
-    If it does, landlock_create_ruleset(2) returns the version of Landlock.
-    """
+    """Return whether the kernel has Landlock. With Landlock, landlock_create_ruleset(2) returns a version number."""
     return bool(ctypes.CDLL(None).syscall(444, None, ctypes.c_size_t(0), 1) >= 1)
 
 
@@ -192,7 +189,7 @@ def test_without_any_confinement_it_says_so(monkeypatch: pytest.MonkeyPatch) -> 
 def test_a_named_pipe_does_not_block_it(
     opens: Callable[[Path], object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A named pipe blocks no step that reads files. Earlier, only the search for files was protected."""
+    """A named pipe blocks no step that reads files. In an earlier version, only the search for files was protected."""
     monkeypatch.setattr(reader, "TIMEOUT_S", 20.0)
     os.mkfifo(tmp_path / "pipe")
     (tmp_path / "link").symlink_to("pipe")

@@ -1,4 +1,4 @@
-"""The checks of the start, the name, the topic, the type and the stop."""
+"""The checks of a node's start, name, topic, message type and end."""
 
 from __future__ import annotations
 
