@@ -54,8 +54,7 @@ class Kind(Generic[P]):
     drives: bool = False
     """Whether a node must send velocity commands to the turtle to pass."""
     requested: Callable[[Evidence, P], Requested | None] | None = None
-    """Return what to draw for the requirements of the check, or None if the submission does not determine the
-    requirements."""
+    """Return the requirements of the check as shapes and values, or None if the submission does not determine them."""
     radius_m: Callable[[P], float] | None = None
     """Return the radius (m) of a circle that must fit on either side of a randomly drawn start position."""
 
