@@ -119,7 +119,7 @@ def _node_shown(name: str, show: Show) -> bool:
 
 _HEAD = """\
 digraph ros_graph {
-  rankdir=LR;
+  rankdir=%s;
   bgcolor="white";
   pad=0.2;
   nodesep=0.3;
@@ -131,8 +131,11 @@ _ELLIPSE = 'shape=ellipse, fillcolor="#e3f2fd", color="#1565c0"'
 _BOX = 'shape=box, fillcolor="#fff8e1", color="#ef6c00"'
 
 
-def to_dot(drawn: Picture) -> str:
-    """Return the graph in DOT, the language of Graphviz. Each node and each topic gets a unique name in DOT."""
+def to_dot(drawn: Picture, *, downwards: bool = False) -> str:
+    """Return the graph in DOT, the language of Graphviz. Each node and each topic gets a unique name in DOT.
+
+    Messages go from left to right, or from top to bottom if `downwards`.
+    """
     names = {node.name for node in drawn.nodes}
     lines = []
     for node in drawn.nodes:
@@ -145,7 +148,7 @@ def to_dot(drawn: Picture) -> str:
         lines.append(f"{key} [{_BOX}{clash}];")
         lines += [f"{_quoted(publisher)} -> {key};" for publisher in topic.publishers]
         lines += [f"{key} -> {_quoted(subscriber)};" for subscriber in topic.subscribers]
-    return _HEAD + "".join(f"  {line}\n" for line in lines) + "}\n"
+    return _HEAD % ("TB" if downwards else "LR") + "".join(f"  {line}\n" for line in lines) + "}\n"
 
 
 def _quoted(text: str) -> str:

@@ -41,3 +41,20 @@ def cut(page: Page) -> list[str]:
     if before:
         page.set_viewport_size(before)
     return found
+
+
+_TEXT_SIZE = """(selector) => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(() => resolve(
+  Math.min(...[...document.querySelectorAll(`${selector} text`)].map((text) =>
+    parseFloat(getComputedStyle(text).fontSize) * text.getScreenCTM().a))))))
+"""
+"""The page chooses the layout of a graph in the frame after the window has changed."""
+
+
+def text_px(page: Page, selector: str) -> float:
+    """Return the smallest font size of the text in a drawing on a phone (CSS pixels)."""
+    before = page.viewport_size
+    page.set_viewport_size({"width": WIDTHS[0], "height": 800})
+    found: float = page.evaluate(_TEXT_SIZE, selector)
+    if before:
+        page.set_viewport_size(before)
+    return found

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.errors import GraderError
 from grader.graph.graph import picture
-from grader.view.page_graph import laid_out
+from grader.view.page_graph import NOTHING, laid_out
 from grader.view.topics import rows
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ class GraphNews:
         self._show = show
         self._state = state
         self._system: System | None = None
-        self._graph: dict[str, Any] = {"width": 0.0, "height": 0.0, "nodes": [], "arrows": []}
+        self._graph: dict[str, Any] = {"wide": NOTHING, "narrow": NOTHING}
         self._drawn: object = None
         self._drawing: asyncio.Task[None] | None = None
 

@@ -3,32 +3,38 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from grader.graph.graph import to_dot
 from grader.graph.layout import render
 
 if TYPE_CHECKING:
-    from typing import Any
-
     from grader.graph.graph import Picture
 
 _INCH = 72.0
 """Points per inch. Graphviz returns sizes in inches and positions in points, with the y axis pointing up."""
 
 
-def laid_out(drawn: Picture) -> dict[str, Any]:
-    """Return the size of the graph (points), its nodes and topics with centre and size, and its arrows.
+NOTHING: dict[str, Any] = {"width": 0.0, "height": 0.0, "nodes": [], "arrows": []}
+"""The layout of a graph without nodes."""
 
-    The points of an arrow are the start of a Bezier curve and three points for each segment. `tip` is the tip of the
-    arrowhead.
+
+def laid_out(drawn: Picture) -> dict[str, Any]:
+    """Return two layouts of the graph: "wide", from left to right, and "narrow", from top to bottom, for a phone.
+
+    A layout has the size of the graph (points), its nodes and topics with centre and size, and its arrows. The points
+    of an arrow are the start of a Bezier curve and three points for each segment. `tip` is the tip of the arrowhead.
 
     Raises:
         MachineError: Graphviz cannot draw.
     """
+    return {"wide": _layout(drawn, downwards=False), "narrow": _layout(drawn, downwards=True)}
+
+
+def _layout(drawn: Picture, *, downwards: bool) -> dict[str, Any]:
     if not drawn.nodes and not drawn.topics:
-        return {"width": 0.0, "height": 0.0, "nodes": [], "arrows": []}
-    made = json.loads(render(to_dot(drawn), "json0"))
+        return NOTHING
+    made = json.loads(render(to_dot(drawn, downwards=downwards), "json0"))
     _, _, width, height = map(float, made["bb"].split(","))
     objects = made.get("objects", [])
     return {

@@ -18,7 +18,7 @@ from grader.sandbox import bubblewrap
 from grader.tests.both_worlds import HERE, REAL_ROS2
 from grader.tests.browser import violations
 from grader.tests.domains import own_domain
-from grader.tests.narrow import cut
+from grader.tests.narrow import cut, text_px
 from grader.tests.open.course import CIRCLE, GRADER, Course, course
 from grader.tests.waiting import HANG_S, until, until_gone
 
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 AT_START = "turtle1: x 5.54 m, y 5.54 m, heading 0.00 rad"
 AGAIN_MS = 3000
+READABLE_PX = 11
 
 
 def of_home(home: Path) -> list[int]:
@@ -143,6 +144,7 @@ def drive(learner: Course, browser: Browser) -> None:
     page.locator("#asked").get_by_text("Did you mean `ros2 topic list`?").wait_for()
     assert violations(page) == []
     assert cut(page) == []
+    assert text_px(page, "#graph") >= READABLE_PX
 
     learner.save("2.0", "1.0")
     page.get_by_text("This node still runs the code from before your last save.").wait_for()

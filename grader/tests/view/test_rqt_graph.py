@@ -113,7 +113,7 @@ def test_where_there_is_a_browser_the_graph_is_shown_live_until_ctrl_c(before_a_
     host, _, token = address.removeprefix("http://").partition("/#")
     with connect(f"ws://{host}/live?token={token}", origin=Origin(f"http://{host}")) as page:
         assert json.loads(page.recv()) == {"kind": "token", "token": printed.partition("/#")[2]}
-        graphs = (news["graph"] for news in map(json.loads, page) if news["kind"] == "graph")
+        graphs = (news["graph"]["wide"] for news in map(json.loads, page) if news["kind"] == "graph")
         # The first drawing may be incomplete, because discovery may still be running.
         shown = next(each for each in graphs if len(each["arrows"]) == len(TUTORIAL))
     with pytest.raises(InvalidStatus), connect(f"ws://{host}/live?token={token}", origin=Origin(f"http://{host}")):

@@ -4,6 +4,7 @@ import { element } from "./svg.js";
 
 const PAD = 8;
 const ZOOM = 1.25;
+const SMALLEST = 0.8;
 
 function drawn(node) {
   const { kind, label, x, y, width, height } = node;
@@ -29,21 +30,42 @@ function arrow({ from, to, tip, points }) {
 export class Graph {
   constructor(place) {
     this.place = place;
+    this.room = 0;
+    new ResizeObserver(([{ contentRect }]) => {
+      this.room = contentRect.width;
+      this.draw();
+    }).observe(place);
   }
 
-  show({ width, height, nodes, arrows, problem }) {
-    if (problem || nodes.length === 0) {
+  // `wide` and `narrow` are two layouts of the same graph.
+  show({ wide, narrow, problem }) {
+    this.layouts = { wide, narrow };
+    this.drawn = null;
+    if (problem || wide.nodes.length === 0) {
+      this.layouts = null;
       const none = document.createElement("p");
       none.className = "note";
       none.textContent = problem ?? "No node is running.";
       this.place.replaceChildren(none);
-      return;
     }
+    this.draw();
+  }
+
+  // Draw the layout that fits, unless it is drawn already.
+  draw() {
+    if (!this.layouts) return;
+    const { wide, narrow } = this.layouts;
+    const layout = this.room && this.room < wide.width + 2 * PAD ? narrow : wide;
+    if (layout === this.drawn) return;
+    this.drawn = layout;
+    const { width, height, nodes, arrows } = layout;
     const about = arrows.map(({ from, to }) => `${from} to ${to}`).join(", ");
     const box = [-PAD, -PAD, width + 2 * PAD, height + 2 * PAD];
     const svg = element("svg", { viewBox: box.join(" "), width: box[2] * ZOOM, height: box[3] * ZOOM, role: "img",
       "aria-label": `Nodes and topics. Messages: ${about || "none"}.` },
       ...arrows.map(arrow), ...nodes.map(drawn));
+    // A larger graph scrolls instead of becoming unreadable.
+    svg.style.minWidth = `${box[2] * SMALLEST}px`;
     this.place.replaceChildren(svg);
     this.flow(this.busy ?? new Set());
   }
