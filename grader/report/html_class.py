@@ -78,7 +78,7 @@ class Entry:
 
 @dataclass
 class Diagnosis:
-    """Why a check failed: the stable id of the cause, its messages with their counts, and the affected submissions."""
+    """A cause of failed checks: its stable id, its messages with their counts, and the affected submissions."""
 
     id: str
     texts: Counter[str] = field(default_factory=Counter)

@@ -203,7 +203,7 @@ def _turtle() -> str:
 
 
 def sign(role: Role) -> str:
-    """Return the legend symbol for a role, which looks the same as on the canvas."""
+    """Return the legend symbol for a role. The symbol looks the same as on the canvas."""
     color, water = rgb(LOOKS[role].color), tag("rect", width=46, height=26, rx=3, fill=rgb(SEA))
     stroke: dict[str, Attribute] = {"stroke": color, "stroke_width": 4, "fill": "none"}
     trajectory = tag("path", d="M5 13H41", **{**stroke, "stroke": rgb(LOOKS["trajectory"].color)})

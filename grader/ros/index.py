@@ -54,7 +54,8 @@ def prefix_of(package: str, unknown: str, likely: Iterable[str] = ()) -> Path:
     """Return the first prefix on AMENT_PREFIX_PATH that contains the package.
 
     Raises:
-        Ros2Error: the package is not installed. The message is `unknown` and the most similar name from `likely`, or
+        Ros2Error: the package is not installed. The message consists of `unknown` and the most similar name from
+        `likely`, or
             from all packages if `likely` is empty.
     """
     found = packages()

@@ -125,7 +125,7 @@ class Output:
 
 @dataclass(frozen=True)
 class ProcessEnd:
-    """How the node's process ended.
+    """The end of the node's process.
 
     `by` says what stopped the process: "itself" (before the scenario was over), or a signal. `out_of` is set if the
     grader stopped the process because it used more "memory", "processes" or "files" than a node may use. `stop_s` is

@@ -1,4 +1,4 @@
-"""Why Python cannot read a file: the usual mistake behind each SyntaxError message."""
+"""Explain why Python cannot read a file, with the usual mistake behind each SyntaxError message."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why a timer never calls its callback, if the source code shows the reason."""
+"""Explain why a timer never calls its callback, if the source code shows the reason."""
 
 from __future__ import annotations
 

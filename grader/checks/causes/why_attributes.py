@@ -1,4 +1,4 @@
-"""Why an attribute was missing: AttributeError in a student's node."""
+"""Explain an AttributeError in a student's node: the reason why an attribute was missing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why a call failed: TypeError and similar exceptions in a student's node."""
+"""Explain why a call in a student's node failed with a TypeError or a similar exception."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why a student's node crashed: the exception, the source code around it, and the usual mistake."""
+"""Explain why a student's node crashed, from the exception, the source code around it, and the usual mistakes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why a program exited on its own or ran without a node, according to its source code."""
+"""Explain from the source code why a program exited on its own or ran without a node."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why a message field rejected a value, according to the assertion in the ROS 2 message class."""
+"""Explain why a message field rejected a value, according to the assertion in the ROS 2 message class."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why a fitted circle is wrong: compare the result with the results of common mistakes."""
+"""Explain why a fitted circle is wrong, by comparing the result with the results of common mistakes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why an import failed: ModuleNotFoundError and ImportError in a student's node."""
+"""Explain why an import in a student's node failed with a ModuleNotFoundError or an ImportError."""
 
 from __future__ import annotations
 

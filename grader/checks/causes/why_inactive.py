@@ -1,4 +1,4 @@
-"""Why a lifecycle node is silent: it is never activated."""
+"""Explain why a lifecycle node is silent: the node is never activated."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why a target was removed although nobody caught it: the node calls /kill or /reset on its own."""
+"""Explain why a target was removed although nobody caught it: the node calls /kill or /reset on its own."""
 
 from __future__ import annotations
 

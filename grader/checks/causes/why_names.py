@@ -1,4 +1,4 @@
-"""Why a name was missing: NameError and UnboundLocalError in a student's node."""
+"""Explain a NameError or an UnboundLocalError in a student's node: the reason why a name was missing."""
 
 from __future__ import annotations
 

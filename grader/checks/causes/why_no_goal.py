@@ -1,4 +1,4 @@
-"""Why a goal does not reach the action, or is aborted: a wrong name or type, a wait in a callback, or a second goal."""
+"""Explain why no goal reaches the action (a wrong name or type, or a wait in a callback), or why a goal is aborted."""
 
 from __future__ import annotations
 

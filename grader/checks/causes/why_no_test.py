@@ -1,4 +1,4 @@
-"""Why pytest finds no test in a package."""
+"""Explain why pytest finds no test in a package."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why some targets were not caught: the turtle does not move, stops, or does not have enough time."""
+"""Explain why some targets were not caught: the turtle does not move, stops, or does not have enough time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why an attribute or a field is not set: a comparison is written where an assignment belongs."""
+"""Explain why an attribute or a field is not set: a comparison is written where an assignment belongs."""
 
 from __future__ import annotations
 

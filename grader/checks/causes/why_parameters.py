@@ -1,4 +1,4 @@
-"""Why one of the student's functions was called with too few or too many arguments."""
+"""Explain why one of the student's functions was called with too few or too many arguments."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why a trajectory is not the right circle, according to the commands and the source."""
+"""Explain from the commands and the source code why a trajectory is not the right circle."""
 
 from __future__ import annotations
 

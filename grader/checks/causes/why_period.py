@@ -1,4 +1,4 @@
-"""Why messages arrive at a wrong mean rate: the period of a timer or a sleep, or several timers."""
+"""Explain why messages arrive at a wrong mean rate, for example because a timer or a sleep has a wrong period."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why messages or log lines arrive too often: loops, subscription callbacks, or timers that are created repeatedly.
+"""Explain why messages or log lines arrive too often, for example because of a loop without a pause.
 
 The wrong period of a timer is in grader.checks.causes.why_period.
 """

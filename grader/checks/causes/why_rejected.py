@@ -1,4 +1,4 @@
-"""Why a student's tests do not pass on the correct node."""
+"""Explain why a student's tests do not pass on the correct node."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why a service callback raised an exception, or made rclpy raise one."""
+"""Explain why a service callback raised an exception, or made rclpy raise one."""
 
 from __future__ import annotations
 

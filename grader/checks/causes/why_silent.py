@@ -1,4 +1,4 @@
-"""Why a running node sends nothing: something blocks its timers, methods or messages."""
+"""Explain why a running node sends nothing: something blocks its timers, methods or messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why commands or log lines stop before the end: the node exits, a timer is cancelled, or a condition becomes false."""
+"""Explain why commands or log lines stop before the end, for example because a timer is cancelled."""
 
 from __future__ import annotations
 

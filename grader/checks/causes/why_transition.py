@@ -1,4 +1,4 @@
-"""Why a transition of a lifecycle node failed. rclpy hides an exception in a callback such as on_configure."""
+"""Explain why a transition of a lifecycle node failed. rclpy hides exceptions in callbacks such as on_configure."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why a service call does not arrive: the call is never made, its name is wrong, or something waits in a callback."""
+"""Explain why a service call does not arrive, for example because the call is never made or its name is wrong."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why a topic name is wrong: it is misspelt, lacks the turtle's name, has a namespace, or belongs to another turtle."""
+"""Explain why a topic name is wrong, for example because it is misspelt or belongs to another turtle."""
 
 from __future__ import annotations
 
