@@ -2,7 +2,7 @@
 
 Only grader processes of the same user take turns. The locks use flock(2), so the kernel releases them when a process is
 killed. A grader that needs the machine to itself holds a second lock, the turnstile, while it waits. Graders that
-arrive later stop at the turnstile, so the waiting grader does not wait forever.
+arrive later must wait for this second lock, so the waiting grader does not wait forever.
 """
 
 from __future__ import annotations

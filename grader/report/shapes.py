@@ -18,7 +18,7 @@ DEEP: Rgb = (16, 20, 84)
 
 @dataclass(frozen=True)
 class Look:
-    """How a role is drawn: its colour, the width of its lines, and the length of its dashes (m; 0 for a solid line)."""
+    """The appearance of a role: its colour, its line width, and the length of its dashes (m; 0 for a solid line)."""
 
     color: Rgb
     width_m: float

@@ -15,7 +15,7 @@ ARRAY = re.compile(r"sequence<(?P<sequence>.+?)(?:, (?P<most>\d+))?>|(?P<array>.
 
 @dataclass(frozen=True)
 class Form:
-    """How much of a message is printed: at most `limit` elements or characters, with or without arrays and strings.
+    """The printed part of a message: at most `limit` elements or characters, with or without arrays and strings.
 
     If `limit` is None, everything is printed.
     """

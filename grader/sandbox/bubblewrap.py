@@ -46,7 +46,7 @@ ROOM_DISK = 256 * MIB
 
 @dataclass(frozen=True)
 class View:
-    """The paths on the disk that are visible in a room or cell under the same names.
+    """The paths on the disk that are visible in a sandbox room or cell under the same names.
 
     Inside the room or cell, the folders in `hidden` appear as empty folders.
     """
@@ -76,7 +76,7 @@ def room(
 ) -> list[str]:
     """Return the command that runs `argv` as an ordinary user in a separate network.
 
-    A room is for the grader's own processes.
+    A sandbox room is for the grader's own processes.
 
     `user` comes from user.cell_user(): the user id to switch to if the caller is root, or None.
     """

@@ -1,4 +1,4 @@
-"""Choose a different user for each room or cell when root grades.
+"""Choose a different user for each sandbox room or cell when root grades.
 
 The kernel limits some resources per user: pipe pages, inotify instances, pending signals and timers, and sockets in
 transit. One cell could use up these resources, so that other cells of the same user would lack them. Therefore, each
@@ -39,7 +39,7 @@ TRIES = 10_000
 
 @contextmanager
 def cell_user() -> Iterator[int | None]:
-    """Yield a user id that no other room or cell on this machine uses, or None if the caller is not root.
+    """Yield a user id that no other sandbox room or cell on this machine uses, or None if the caller is not root.
 
     Leave the context after the last process in the room or cell has exited.
 

@@ -1,7 +1,8 @@
 """The brain of a node under test: the code that decides how the node reacts to each event.
 
-The brain runs in the grader, never in the cell. The node in the cell is the same in every run (relayed_node.py), and
-requests each command from the brain. Therefore, tests can tell a correct node from a broken node only by its behaviour.
+This code runs in the grader, never in the sandbox cell. The node in the cell is the same in every run
+(relayed_node.py), and requests each command from this code. Therefore, tests can tell a correct node from a broken node
+only by its behaviour.
 """
 
 from __future__ import annotations

@@ -58,10 +58,8 @@ class Package:
 class Lane:
     """A sandbox cell and the session that runs in this cell, as a context manager.
 
-    On entry, the lane starts the imports.
-
-    Without a cell, the lane uses `folder`, which no other lane uses. The nodes of a lane without a cell discover no
-    other nodes on the machine.
+    On entry, the session starts its imports. Without a cell, the session uses `folder`, which no other lane uses, and
+    its nodes discover no other nodes on the machine.
     """
 
     def __init__(self, ros: Ros, package: Package, duration_s: float, folder: Path | None = None) -> None:

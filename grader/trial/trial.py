@@ -89,7 +89,7 @@ class OverwhelmedError(Exception):
 def compile_conductor() -> None:
     """If the modules that the conductor imports have changed, compile them.
 
-    The conductor itself cannot store compiled files in its room.
+    The conductor runs in the sandbox, where it cannot store compiled files.
     """
     if not sys.dont_write_bytecode:
         for folder in (_FOLDER, *(_FOLDER / room for room in CONDUCTORS_ROOMS)):
