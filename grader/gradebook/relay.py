@@ -1,4 +1,4 @@
-"""Run a kernel in a cell and forward its messages to nbgrader, within a budget.
+"""Run a kernel in a sandbox cell, and forward its messages to nbgrader within certain limits.
 
     python -m grader.gradebook.relay FOLDER
 

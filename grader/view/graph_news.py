@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class GraphNews:
-    """Sends the graph to the hub whenever it has changed. `state` has the rates that the simulator reports."""
+    """Sends the graph to all pages whenever the graph has changed. `state` has the rates that the simulator reports."""
 
     def __init__(self, hub: Hub, show: Show, state: State) -> None:
         self._hub = hub
