@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import signal
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from grader.common.words import shorten
@@ -58,12 +58,14 @@ MEANINGS = {
 class Crash:
     """An exception in the student's node.
 
-    `error` is the exception's class, and `where` is the last line of the student's own code.
+    `error` is the exception's class, `where` is the last line of the student's own code, and `callers` are the lines
+    that called it, the nearest caller first.
     """
 
     error: str
     message: str
     where: Where | None = None
+    callers: tuple[Where, ...] = field(default=(), compare=False)
 
     @property
     def observed(self) -> str:
@@ -159,18 +161,19 @@ def _blocks(lines: list[str]) -> Iterable[tuple[bool, list[str]]]:
 
 
 def _crash(lines: list[str], files: Mapping[str, bytes]) -> Crash | None:
-    where: Where | None = None
+    places: list[Where] = []
     for line in lines:
         frame = FRAME.match(line)
         if frame is not None:
             own = _own_file(frame["file"], files)
-            where = where if own is None else Where(own, int(frame["line"]))
+            places += [] if own is None else [Where(own, int(frame["line"]))]
         elif line and not line[0].isspace():
             error = ERROR.fullmatch(line)
             if error is None:
                 return None
             message = GUESS.sub("", error["message"] or "").strip()
-            return Crash(error["type"].rpartition(".")[2], message, where)
+            where = places.pop() if places else None
+            return Crash(error["type"].rpartition(".")[2], message, where, tuple(reversed(places)))
     return None
 
 

@@ -31,11 +31,13 @@ class CrashScene:
     @cached_property
     def module(self) -> Module | None:
         """The module that contains the line."""
-        where, files = self.crash.where, self.evidence.submission.files
-        if where is None:
-            return None
-        known = (each for each in self.evidence.code.modules if each.file == where.file)
-        return next(known, None) or (read_module(where.file, files[where.file]) if where.file in files else None)
+        return None if self.crash.where is None else self.module_of(self.crash.where.file)
+
+    def module_of(self, file: str) -> Module | None:
+        """Return the module in this file of the submission, or None if there is no such file."""
+        files = self.evidence.submission.files
+        known = (each for each in self.evidence.code.modules if each.file == file)
+        return next(known, None) or (read_module(file, files[file]) if file in files else None)
 
     @property
     def line(self) -> int:

@@ -65,13 +65,19 @@ def _keyword(call: ast.Call, name: str) -> ast.expr | None:
     return next((keyword.value for keyword in call.keywords if keyword.arg == name), None)
 
 
+RIGHT_ORDER = {
+    "create_timer": ["number", "method"],
+    "create_publisher": ["class", "string", "number"],
+    "create_subscription": ["class", "string", "method", "number"],
+}
+"""Maps a method to the kinds of its arguments, in the right order."""
+
+
 def swapped(scene: CrashScene) -> Cause | None:
     """Return the cause if create_timer, create_publisher or create_subscription has swapped arguments, else None."""
-    for name in ("create_timer", "create_publisher", "create_subscription"):
+    for name, wanted in RIGHT_ORDER.items():
         for call in scene.calls_on_line(name):
-            kinds = [_kind(argument, scene) for argument in call.args]
-            right = {"create_timer": ["number", "method"], "create_publisher": ["class", "string", "number"]}
-            wanted = right.get(name, ["class", "string", "method", "number"])
+            kinds = [kind_of(argument, scene) for argument in call.args]
             known = [kind for kind in kinds if kind]
             if len(known) == len(kinds) == len(wanted) and kinds != wanted and sorted(kinds) == sorted(wanted):
                 return Cause(
@@ -80,7 +86,8 @@ def swapped(scene: CrashScene) -> Cause | None:
     return None
 
 
-def _kind(argument: ast.expr, scene: CrashScene) -> str:
+def kind_of(argument: ast.expr, scene: CrashScene) -> str:
+    """Return "string", "number", "method", "class", or an empty string if the source does not show the kind."""
     if isinstance(argument, ast.Constant):
         return "string" if isinstance(argument.value, str) else "number"
     name = dotted(argument) or ""

@@ -14,6 +14,7 @@ from grader.checks.causes.why_fields import why_field
 from grader.checks.causes.why_imports import why_no_import
 from grader.checks.causes.why_interface import why_interface
 from grader.checks.causes.why_names import why_no_name, why_unbound
+from grader.checks.causes.why_passed import why_passed
 from grader.checks.causes.why_response import why_response
 from grader.checks.causes.why_transition import why_no_transition
 from grader.checks.outcome import Finding, failed
@@ -106,7 +107,8 @@ def why_crashed(evidence: Evidence, crash: Crash) -> Cause:
     """
     explain = EXPLANATIONS.get(crash.error)
     scene = CrashScene(evidence, crash)
-    cause = why_response(scene) or why_interface(scene) or (explain(scene) if explain is not None else None)
+    special = why_response(scene) or why_interface(scene) or why_passed(scene)
+    cause = special or (explain(scene) if explain is not None else None)
     return cause or Cause("crash", crash.meaning)
 
 

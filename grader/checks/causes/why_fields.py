@@ -40,9 +40,11 @@ def why_field(scene: CrashScene) -> Cause | None:
         return Cause("field-type", f"The field {field} must be {kind}.")
     if wanted not in FLOAT:
         return Cause("field-type", f"The field {field} is a {wanted} with its own fields. Set these fields.")
-    value = _assigned(scene, field)
+    value = assigned(scene, field)
     resolved = value and _resolved(scene, value)
-    cause = _why_no_float(field, resolved)
+    cause = why_no_float(field, resolved) or Cause(
+        "field-type", f"The field {field} is a float, but the value has another type. Convert it with float(...)."
+    )
     if isinstance(resolved, ast.Constant) and resolved is value:
         return cause.fixed_by(_as_float(scene, resolved))
     return cause
@@ -57,7 +59,8 @@ def _as_float(scene: CrashScene, value: ast.Constant) -> tuple[Edit, ...]:
     return at(scene.at(value), quoted, str(number))
 
 
-def _why_no_float(field: str, value: ast.expr | None) -> Cause:
+def why_no_float(field: str, value: ast.expr | None) -> Cause | None:
+    """Return the cause if the expression shows why its value is not a float, else None."""
     if isinstance(value, ast.UnaryOp):
         value = value.operand
     if isinstance(value, ast.Constant | ast.JoinedStr):
@@ -88,9 +91,7 @@ def _why_no_float(field: str, value: ast.expr | None) -> Cause:
         )
     if names and names[0] in ("int", "round", "len"):
         return Cause("int-for-float", f"The field {field} is a float, but {names[0]}(...) returns an integer.")
-    return Cause(
-        "field-type", f"The field {field} is a float, but the value has another type. Convert it with float(...)."
-    )
+    return None
 
 
 def _why_constant(field: str, value: ast.Constant | ast.JoinedStr) -> Cause | None:
@@ -108,7 +109,8 @@ def _why_constant(field: str, value: ast.Constant | ast.JoinedStr) -> Cause | No
     return None
 
 
-def _assigned(scene: CrashScene, field: str) -> ast.expr | None:
+def assigned(scene: CrashScene, field: str) -> ast.expr | None:
+    """Return the expression that the line of the exception assigns to this field, or None."""
     for node in scene.on_line:
         if isinstance(node, ast.Assign) and any(
             isinstance(each, ast.Attribute) and each.attr == field for each in node.targets

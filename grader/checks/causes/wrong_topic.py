@@ -16,8 +16,16 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 
-def why_topic(wanted: str, topic: str, evidence: Evidence) -> Cause:
-    """Return the cause of a wrong topic name if the wrong name, the right name and the source show the cause."""
+def why_topic(wanted: str, topic: str, evidence: Evidence, maker: str = "create_publisher") -> Cause:
+    """Return the cause of a wrong topic name, with the line of the `maker` that has the name, if the source shows it.
+
+    `maker` is create_publisher or create_subscription.
+    """
+    cause = _why(wanted, topic, evidence, maker)
+    return cause.at(_line(evidence, maker, topic)).fixed_by(right_name(evidence, maker, topic, wanted))
+
+
+def _why(wanted: str, topic: str, evidence: Evidence, maker: str) -> Cause:
     last = wanted.rpartition("/")[2]
     if topic == f"/{last}":
         return Cause(
@@ -25,23 +33,39 @@ def why_topic(wanted: str, topic: str, evidence: Evidence) -> Cause:
         )
     if topic.lower() == wanted.lower():
         return Cause("topic-capitals", "Upper and lower case matter.")
-    if topic.endswith(wanted) and not _is_absolute(evidence, topic):
+    if topic.endswith(wanted) and not _is_absolute(evidence, maker, topic):
         return Cause(
             "topic-namespace",
             "The node adds its namespace to the name. A name that starts with a slash stays as it is.",
         )
-    if topic.endswith(f"/{last}") and topic.count("/") == 2 and nearest(topic, [wanted]):
+    of_turtles = wanted.count("/") == topic.count("/") == 2 and topic.endswith(f"/{last}")
+    if of_turtles and nearest(topic, [wanted]) and not _has_turtle(evidence, topic):
         return Cause("topic-other-turtle", "There is no turtle with that name.")
     return Cause(
         "wrong-topic",
-        "The topic name is the second argument of create_publisher. Compare the topic name letter by letter.",
+        f"The topic name is the second argument of {maker}. Compare the topic name letter by letter.",
     )
 
 
-def _is_absolute(evidence: Evidence, topic: str) -> bool:
+def _has_turtle(evidence: Evidence, topic: str) -> bool:
+    """Return whether the simulator uses the topic, so that there is a turtle with that name."""
+    ends = (end for graph in evidence.recording.graphs for end in graph.endpoints)
+    return any(end.topic == topic and end.node == "/turtlesim" for end in ends)
+
+
+def _is_absolute(evidence: Evidence, maker: str, topic: str) -> bool:
     """Return whether the source contains this full name, so that ROS 2 did not add a namespace to the name."""
-    calls = evidence.code.calls("create_publisher")
+    calls = evidence.code.calls(maker)
     return any(evaluate(call.argument(1, "topic"), call.module.names) == topic for call in calls)
+
+
+def _line(evidence: Evidence, maker: str, topic: str) -> Where | None:
+    """Return the line of the call that has this topic name."""
+    for call in evidence.code.calls(maker):
+        value = evaluate(call.argument(1, "topic"), call.module.names)
+        if isinstance(value, str) and topic.endswith(f"/{value.strip('/')}"):
+            return call.where
+    return None
 
 
 def right_name(evidence: Evidence, maker: str, topic: str, wanted: str) -> tuple[Edit, ...]:

@@ -11,7 +11,7 @@ from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import loops, why_ended
 from grader.checks.causes.why_inactive import never_activated
 from grader.checks.causes.why_silent import WAKES, hidden_error, returns_before, why_nothing, why_qos
-from grader.checks.causes.wrong_topic import right_name, why_topic
+from grader.checks.causes.wrong_topic import why_topic
 from grader.checks.kind import Kind, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, nearest, shorten
@@ -83,7 +83,6 @@ def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, 
     nobody = "no turtle subscribes to it" if params == COMMANDS else f"not on {params.topic}"
     observed = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, but {nobody}."
     why = why_topic(params.topic, shown[0], evidence)
-    why = why.fixed_by(right_name(evidence, "create_publisher", shown[0], params.topic))
     return failed(observed, _expected(params), why.at(_publisher_line(evidence, shown[0])))
 
 
@@ -175,11 +174,12 @@ def subscribes(evidence: Evidence, params: Topic) -> Finding:
         cause = "The message type is the first argument of create_subscription."
         return failed(observed, expected, Cause("wrong-type", cause, where))
     if found:
-        observed = f"The node subscribes to {a_list(sorted({shorten(each.topic) for each in found}))}."
-        cause = "The topic name is the second argument of create_subscription. Compare the name letter by letter."
-        fixes = [right_name(evidence, "create_subscription", each.topic, params.topic) for each in found]
-        why = Cause("wrong-topic", cause, where).fixed_by(next(filter(None, fixes), ()))
-        return failed(observed, expected, why)
+        topics = sorted({each.topic for each in found if each.type == params.type} or {each.topic for each in found})
+        guess = nearest(params.topic, topics)
+        shown = topics if guess is None else [guess]
+        observed = f"The node subscribes to {a_list([shorten(topic) for topic in shown])}, but not to {params.topic}."
+        why = why_topic(params.topic, shown[0], evidence, "create_subscription")
+        return failed(observed, expected, why.at(where))
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_observed(evidence), expected)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.line_of_value import line_of_value
 from grader.checks.causes.why_not_set import compared_field
 from grader.checks.edit import Edit, at
 from grader.checks.kind import Kind, number
@@ -86,7 +87,8 @@ def values(evidence: Evidence, params: Values) -> Finding:
         why = why.at(_published_empty(evidence))
     if bad == total and alike and why.diagnosis != "equals":
         why = why.fixed_by(_right_values(evidence, params.wanted, off))
-    return failed(observed, expected, why.at(_line(evidence, field)), near_edge=near)
+    line = line_of_value(evidence, field, first[FIELDS.index(field)]) if why.diagnosis in OF_A_NUMBER else None
+    return failed(observed, expected, why.at(line or _line(evidence, field)), near_edge=near)
 
 
 def _expected(wanted: Six) -> str:
@@ -172,6 +174,8 @@ def _why(six: Six, wanted: Six, off: list[int]) -> tuple[Cause, str]:
     return _scaled(six, wanted, off) or (Cause("wrong-value", MEANING), first)
 
 
+OF_A_NUMBER = frozenset({"wrong-value", "wrong-sign", "degrees", "values-swapped"})
+"""The diagnoses of a number that is wrong where it is written, such as in the call of a function."""
 MEANING = "linear.x is the forward speed, and angular.z is how fast the turtle turns to the left."
 
 

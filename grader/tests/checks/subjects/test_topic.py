@@ -189,7 +189,13 @@ POSE = "/turtle1/pose"
             ":10",
             f"The node subscribes to {POSE} with the type {COLOR},",
         ),
-        (observed(("subscription", "/a", TEXT)), "wrong-topic", ":10", "The node subscribes to /a."),
+        (observed(("subscription", "/a", TEXT)), "wrong-topic", ":10", "The node subscribes to /a, but not to"),
+        (
+            observed(("subscription", "/a", COLOR), ("subscription", "/b", TEXT)),
+            "wrong-topic",
+            ":10",
+            "The node subscribes to /b, but not to",
+        ),
         (observed(), "no-subscription", ":10", "The node has no subscription."),
         (observed(end=CRASHED, stderr=Output(TRACEBACK)), "crash", ":14", "The node crashed after 3.0 s:"),
     ],
@@ -205,3 +211,34 @@ def test_a_subscription_is_looked_for(trial: Recording, diagnosis: str | None, l
         assert finding.cause == ""
         nowhere = found(SUBSCRIBES, evidence(trial), topic=POSE, type=TEXT)
         assert (reported(nowhere), nowhere.cause) == ((diagnosis, ""), "create_subscription is never called.")
+
+
+@pytest.mark.parametrize(
+    ("topic", "diagnosis", "line"),
+    [
+        ("/pose", "topic-without-turtle", ":11"),
+        ("/turtle1/Pose", "topic-capitals", ":11"),
+        ("/robot/turtle1/pose", "topic-namespace", ":10"),
+        ("/turtle2/pose", "topic-other-turtle", ":11"),
+        ("/turtle1/position", "wrong-topic", ":11"),
+    ],
+)
+def test_a_wrong_topic_of_a_subscription_is_explained_like_one_of_a_publisher(
+    topic: str, diagnosis: str, line: str
+) -> None:
+    name = "turtle1/pose" if diagnosis == "topic-namespace" else topic
+    one = f'self.create_subscription(Pose, "{name}", print, 10)'
+    two = f"self.create_subscription(Pose, NAME, print, 10)\n        {one}"
+    package = node(("self.timer = self.create_timer(0.5, self.send)", one if diagnosis == "topic-namespace" else two))
+    finding = found(SUBSCRIBES, evidence(observed(("subscription", topic, TEXT)), package), topic=POSE, type=TEXT)
+    assert reported(finding) == (diagnosis, line)
+    if diagnosis == "wrong-topic":
+        assert finding.cause.startswith("The topic name is the second argument of create_subscription.")
+
+
+def test_a_turtle_that_exists_is_not_denied() -> None:
+    trial = observed(("publisher", "/turtle2/cmd_vel", TWIST))
+    second = Endpoint("subscription", "/turtlesim", "/turtle2/cmd_vel", TWIST)
+    both = replace(trial, graphs=(replace(trial.graphs[0], endpoints=(*trial.graphs[0].endpoints, second)),))
+    assert publishes(trial).cause == "There is no turtle with that name."
+    assert reported(publishes(both)) == ("wrong-topic", ":9")
