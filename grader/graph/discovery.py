@@ -18,6 +18,8 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 
+from grader.common.system_errors import refusal
+from grader.errors import MachineError
 from grader.graph.announcements import participant_ports, passed_on
 from grader.ros.failure import Ros2Error
 from grader.ros.installation import FASTDDS_PROFILE
@@ -57,6 +59,7 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
 
     Raises:
         Ros2Error: the node could not be created, for example because the domain id is wrong.
+        MachineError: the machine has no memory, files or threads left for a node.
     """
     domain = _domain()
     profile = PATIENT_PROFILE if patient else LOOPBACK_PROFILE
@@ -80,6 +83,9 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
     except Exception as error:
         rclpy.try_shutdown()
         lines = str(error).strip().splitlines() or [type(error).__name__]
+        if refused := refusal(error):
+            message = f"The ROS 2 node could not be created. {refused}"
+            raise MachineError(message) from error
         message = f"The ROS 2 node could not be created: {lines[0]}"
         raise Ros2Error(message) from error
     try:

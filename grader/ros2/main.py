@@ -88,6 +88,9 @@ def _report(text: str) -> None:
 def _run_verb(words: list[str]) -> int:
     if "_ARGCOMPLETE" in os.environ:
         _complete()
+    if words[:1] != ["run"]:
+        # No verb computes with numpy. A learner's own program, which `run` starts, may use all processors.
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     args = make_parser(words).parse_args(words)
     if not args.use_python_default_buffering and isinstance(sys.stdout, io.TextIOWrapper):
         # As in the real ros2, output to a pipe is flushed after each line.

@@ -34,6 +34,7 @@ EVERY_DAY = [
     ("start", "open", errno.EPERM, 1),
     ("env", "open", errno.EMFILE, 1),
     ("list", "open", errno.EMFILE, 1),
+    ("list", "thread", errno.EAGAIN, 1),
     ("create", "mkdir", errno.ENOSPC, 1),
     ("show", "open", errno.ENOMEM, 1),
 ]
