@@ -16,6 +16,7 @@ from grader.checks.causes.no_entry_point import line as entry_point_line
 from grader.checks.causes.why_not_set import compared
 from grader.checks.causes.why_other_object import (
     CREATE_OBJECT,
+    class_for_object,
     no_object,
     set_twice,
     subscription_for_publisher,
@@ -38,7 +39,7 @@ OF_THE_NODE = re.compile(
     r"|can't set attribute '(\w+)'"
 )
 """Error messages of rclpy, and of Python 3.10 to 3.14, for an attribute name that every rclpy node already uses."""
-MANGLED = re.compile(r"^_[A-Za-z]\w*?__(?=[a-zA-Z])")
+MANGLED = re.compile(r"^_(?P<of>[A-Za-z]\w*?)__(?=[a-zA-Z])")
 """The prefix that Python adds to an attribute whose name begins with two underscores."""
 PLAIN = {
     "str": "a string",
@@ -65,7 +66,7 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
     match = NO_ATTRIBUTE.search(scene.crash.message)
     if match is None:
         return None
-    name = MANGLED.sub("__", match["name"])
+    name = _written_name(scene, match["name"])
     if match["module"]:
         return _of_module(scene, match["module"], name)
     owner = match["object"] or match["type"]
@@ -76,8 +77,15 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
     if not match["type"] and scene.own_class is not None and _is_subclass_elsewhere(scene, owner, name):
         return _of_own_class(scene, scene.own_class.name, name)
     if match["type"] or owner.startswith("Metaclass_"):
-        return _class_for_object(owner.removeprefix("Metaclass_"))
+        return class_for_object(scene, owner.removeprefix("Metaclass_"), name)
     return _of_another_object(scene, owner, name)
+
+
+def _written_name(scene: CrashScene, name: str) -> str:
+    """Return the name as the source has it, if the prefix names one of the student's classes and not rclpy's Node."""
+    mangled = MANGLED.match(name)
+    own = mangled is not None and any(each.name.lstrip("_") == mangled["of"] for each in scene.classes)
+    return MANGLED.sub("__", name) if own else name
 
 
 def _is_subclass_elsewhere(scene: CrashScene, owner: str, name: str) -> bool:
@@ -143,10 +151,6 @@ def _misspelt(scene: CrashScene, name: str, known: Iterable[str]) -> Cause | Non
     return Cause("attribute-misspelt", text).fixed_by(at(scene.crash.where, name, guess))
 
 
-def _class_for_object(name: str) -> Cause:
-    return Cause("class-for-object", f"{shorten(name)} is a class. {CREATE_OBJECT}")
-
-
 def _of_own_type(scene: CrashScene, owner: str, name: str) -> Cause:
     """Return the cause of an AttributeError about a class in the student's file or about an instance of this class."""
     own = scene.class_named(owner)
@@ -164,7 +168,7 @@ def _of_own_type(scene: CrashScene, owner: str, name: str) -> Cause:
         )
         return Cause("method-outside-class", text, scene.at(first))
     if name in {attribute for attribute, _ in attributes_set(own)} or name in ros_names.NODE:
-        return _class_for_object(owner)
+        return class_for_object(scene, owner, name)
     return _misspelt(scene, name, _members(scene, own)) or Cause(
         "attribute-missing", f"The class {shorten(owner)} has no method or attribute with that name."
     )
@@ -173,8 +177,8 @@ def _of_own_type(scene: CrashScene, owner: str, name: str) -> Cause:
 def _of_a_wrong_thing(scene: CrashScene, owner: str, name: str) -> Cause | None:
     if owner == "property":
         made = next((node for node in scene.nodes if isinstance(node, ast.Assign) and _is_message(node.value)), None)
-        cause = _class_for_object(ast.unparse(made.value) if made is not None else "It")
-        return Cause(cause.diagnosis, cause.text, scene.at(made))
+        text = f"{shorten(ast.unparse(made.value)) if made is not None else 'It'} is a class. {CREATE_OBJECT}"
+        return Cause("class-for-object", text, scene.at(made))
     if owner == "NoneType":
         return _of_none(scene, name)
     return Cause("not-called", "The function is named but not called: the parentheses are missing.")

@@ -31,6 +31,19 @@ def compared_field(evidence: Evidence, field: str) -> Cause | None:
     return None
 
 
+def compared_condition(evidence: Evidence) -> Cause | None:
+    """Return the cause if a line only compares an attribute of self that a condition of the node uses, else None."""
+    for module in evidence.code.modules:
+        tests = [node.test for node in module.nodes if isinstance(node, ast.If | ast.While)]
+        used = {dotted(each) for test in tests for each in ast.walk(test) if isinstance(each, ast.Attribute)}
+        for node in module.nodes:
+            said = node.value if isinstance(node, ast.Expr) else None
+            if isinstance(said, ast.Compare) and isinstance(said.ops[0], ast.Eq) and dotted(said.left) in used - {None}:
+                place = Where(module.file, said.lineno)
+                return Cause("equals", EQUALS, place).fixed_by(at(place, "==", "="))
+    return None
+
+
 def compared(scene: CrashScene, name: str) -> Cause | None:
     """Return the cause if the line of the crash is only a comparison of this attribute with ==, else None."""
     for node in scene.on_line:

@@ -18,6 +18,18 @@ if TYPE_CHECKING:
 CREATE_OBJECT = "Add parentheses after the class name to create an object."
 
 
+def class_for_object(scene: CrashScene, owner: str, attribute: str) -> Cause:
+    """Return the cause if the class `owner` is used like an object, with the line that assigns the class if known."""
+    text = f"{shorten(owner)} is a class. {CREATE_OBJECT}"
+    used = [each for each in scene.on_line if isinstance(each, ast.Attribute) and each.attr == attribute]
+    holders = {dotted(each.value) for each in used} - {owner}
+    for node in scene.nodes:
+        of_class = isinstance(node, ast.Assign) and (dotted(node.value) or "").rpartition(".")[2] == owner
+        if isinstance(node, ast.Assign) and of_class and holders & {dotted(each) for each in node.targets}:
+            return Cause("class-for-object", text, scene.at(node))
+    return Cause("class-for-object", text)
+
+
 def published_other(scene: CrashScene, wanted: str, got: str) -> Cause:
     """Return the cause if publish is called with something other than a message of the type `wanted`."""
     kind = got.rpartition(".")[2]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
@@ -40,12 +41,20 @@ def too_few(scene: CrashScene, function: str, names: str) -> Cause | None:
         return Cause("argument-missing", text, scene.at(own[0]))
     called = next(iter(scene.calls_on_line(function)), None)
     if called is not None:
-        text = f"{function} is called here without a value for {shorten(names)}."
         if any(called in node.args for node in scene.on_line if isinstance(node, ast.Call)):
             text = (
                 f"With () after its name, {function} is called immediately. To pass the method itself, write its name."
             )
-        return Cause("callback-called", text, scene.at(called))
+            return Cause("callback-called", text, scene.at(called))
+        used = {node.id for node in ast.walk(own[0]) if isinstance(node, ast.Name)}
+        if not used & set(re.findall(r"'(\w+)'", names)):
+            text = (
+                f"{function} does not use its parameter {shorten(names)}, and the call in line {called.lineno} passes "
+                "no value for it."
+            )
+            return Cause("argument-missing", text, scene.at(own[0]))
+        text = f"{function} is called here without a value for {shorten(names)}."
+        return Cause("argument-missing", text, scene.at(called))
     of_class = _method_of_class(scene, function) if names.strip("'") == "self" else None
     if of_class is not None:
         return of_class

@@ -12,6 +12,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed, ended_early
 from grader.checks.causes.timers import timer_fault
 from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_not_set import compared_condition
 from grader.checks.causes.why_silent import why_nothing, why_qos
 from grader.checks.edit import at
 from grader.checks.kind import Kind, number, string
@@ -71,7 +72,7 @@ def _silent(evidence: Evidence, expected: str) -> Finding:
     if not any(code.calls(level) for level in LEVELS):
         cause = "get_logger().info(...) is never called."
         return failed(observed, expected, timer_fault(evidence) or Cause("no-log", cause, code.start))
-    why = why_nothing(evidence, LEVELS)
+    why = why_nothing(evidence, LEVELS) or compared_condition(evidence)
     if why is not None:
         return failed(observed, expected, why)
     cause = (

@@ -10,6 +10,7 @@ from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import loops, why_ended
 from grader.checks.causes.why_inactive import never_activated
+from grader.checks.causes.why_not_set import compared_condition
 from grader.checks.causes.why_silent import WAKES, hidden_error, returns_before, why_nothing, why_qos
 from grader.checks.causes.wrong_topic import why_topic
 from grader.checks.kind import Kind, string
@@ -125,7 +126,7 @@ def _why_silent(evidence: Evidence) -> Cause:
     code = evidence.code
     if not code.calls("publish"):
         return Cause("no-publish", "publish is never called.", code.start)
-    why = why_qos(evidence) or why_nothing(evidence, ("publish",))
+    why = why_qos(evidence) or why_nothing(evidence, ("publish",)) or compared_condition(evidence)
     if why is not None:
         return why.at(code.start)
     text = "The line that publishes may never be reached, or it may run only at the start, before anything subscribes."

@@ -10,7 +10,16 @@ NO_NAME = "NameError: name '{}' is not defined"
 NO_ATTRIBUTE = "AttributeError: {} has no attribute '{}'"
 TOO_FEW = "TypeError: Driver.{}() missing 1 required positional argument: '{}'"
 TOO_MANY = "TypeError: Driver.{}() takes {} positional argument{} but {} were given"
-METHODS = "\n    def drive(self, step):\n        pass\n\n    def stop(self):\n        pass\n"
+METHODS = """
+    def drive(self, step):
+        print(step)
+
+    def turn(self, step):
+        pass
+
+    def stop(self):
+        pass
+"""
 SOURCE = "import rclpy\n" + DRIVER.replace("\ndef outside", METHODS + "\ndef outside")
 ROSPY = (
     ("init_node", "The node gets its name in super().__init__."),
@@ -69,6 +78,12 @@ def cause(line: str, error: str) -> str:
             "self.drive()",
             "self.create_timer(1.0, self.drive)",
             TOO_FEW.format("drive", "step"),
+        ),
+        (
+            "turn does not use its parameter 'step', and the call in line 10 passes no value for it.",
+            "self.turn()",
+            "self.drive()",
+            TOO_FEW.format("turn", "step"),
         ),
         (
             "drive is called immediately. To pass the method itself",

@@ -200,3 +200,25 @@ def test_what_a_node_lacks_is_explained_by_its_class(source: str, name: str, dia
     found = reported(source, OWN.format(name))
     assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))
     assert words in found.cause
+
+
+@pytest.mark.parametrize(
+    ("name", "diagnosis"), [("_Node__node", "super-init-missing"), ("_Driver__node", "attribute-missing")]
+)
+def test_an_attribute_of_rclpy_with_two_underscores_is_not_the_students(name: str, diagnosis: str) -> None:
+    source = DRIVER.replace('        super().__init__("driver")\n', "").format(line="self.create_timer(1.0, print)")
+    assert reported(source, f"AttributeError: 'Driver' object has no attribute '{name}'").diagnosis == diagnosis
+
+
+@pytest.mark.parametrize(
+    ("first", "line"),
+    [
+        ("msg = Twist  # look", "msg.linar.x = 1.0"),
+        ("msg = Twist()", "Twist.linar.x = 1.0"),
+        ("other = Twist", "msg.linar.x = 1"),
+    ],
+)
+def test_a_class_that_was_assigned_is_reported_there(first: str, line: str) -> None:
+    source = DRIVER.format(line=f"{first}\n        {line}")
+    found = reported(source, "AttributeError: type object 'Twist' has no attribute 'linar'")
+    assert (found.diagnosis, found.line) == ("class-for-object", to_look_at(source))

@@ -242,3 +242,16 @@ def test_a_turtle_that_exists_is_not_denied() -> None:
     both = replace(trial, graphs=(replace(trial.graphs[0], endpoints=(*trial.graphs[0].endpoints, second)),))
     assert publishes(trial).cause == "There is no turtle with that name."
     assert reported(publishes(both)) == ("wrong-topic", ":9")
+
+
+@pytest.mark.parametrize(
+    ("line", "diagnosis"),
+    [("self.on == True", "equals"), ("self.on = True", "never-publishes"), ("self.off == 1", "never-publishes")],
+)
+def test_a_condition_that_is_only_compared_keeps_a_publisher_silent(line: str, diagnosis: str) -> None:
+    changes = (
+        ("self.timer =", f"{line}\n        self.timer ="),
+        ("        self.publisher.publish(msg)", "        if self.on:\n            self.publisher.publish(msg)"),
+    )
+    finding = publishes(observed(("publisher", TOPIC, TWIST)), *changes)
+    assert reported(finding) == (diagnosis, ":10" if diagnosis == "equals" else ":18")
