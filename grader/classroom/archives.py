@@ -23,12 +23,13 @@ if TYPE_CHECKING:
 ENDINGS = (".zip", ".tar.gz", ".tgz", ".tar")
 OTHER_ENDINGS = (".7z", ".rar", ".tar.xz", ".tar.bz2", ".tar.zst", ".gz", ".xz", ".bz2")
 """Archive formats that are not supported, although students hand them in."""
+EVERY_ENDING = (*ENDINGS, *OTHER_ENDINGS)
 OF_THE_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS)
 
 
 def stem(name: str) -> str | None:
     """Return the name of an archive without its extension, or None if the file is not an archive."""
-    ending = next((each for each in (*ENDINGS, *OTHER_ENDINGS) if name.lower().endswith(each)), None)
+    ending = next((each for each in EVERY_ENDING if name.lower().endswith(each)), None)
     return name[: -len(ending)] or None if ending else None
 
 

@@ -3,12 +3,13 @@
 Three layouts are supported and can be mixed: one folder or archive per student; nbgrader's submitted/STUDENT/EXERCISE;
 and a folder with students' clones of the course, each of which contains exercises/EXERCISE.
 
-No student is omitted. Each folder and archive becomes a submission. A submission that cannot be graded contains the
-reason. This module uses os.path, because the functions of os.path return False for a path that cannot be accessed,
-while the methods of pathlib raise an exception.
+No student is omitted. Each folder and archive becomes a submission, and so does each symbolic link, because a student
+may have replaced a folder by it. A submission that cannot be graded contains the reason. This module uses os.path,
+because the functions of os.path return False for a path that cannot be accessed, while the methods of pathlib raise an
+exception.
 """
 
-# ruff: noqa: PTH110, PTH112, PTH113, PTH114
+# ruff: noqa: PTH100, PTH110, PTH112, PTH113, PTH114, PTH118
 
 from __future__ import annotations
 
@@ -33,7 +34,8 @@ UNKNOWN = ""
 """The exercise id for a folder whose layout does not name an exercise."""
 OWN = "exercises"
 """The folder of a clone in which the student works."""
-_HIDDEN = (".git", ".github", ".ipynb_checkpoints", ".vscode", "__MACOSX")
+_OF_PROGRAMS = (".git", ".github", ".gitlab", ".idea", ".ipynb_checkpoints", ".venv", ".vscode", "__MACOSX")
+"""Folders that programs create beside submissions."""
 _OF_THE_COURSE = ("course", "docs", "grader", "solutions")
 """The other folders of a clone."""
 
@@ -99,7 +101,9 @@ def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
             raise UsageError(message)
         for exercise in known:
             yield replace(
-                each, exercise=exercise, refused=f"{shown(each.student)} does not contain a folder {exercise}."
+                each,
+                exercise=exercise,
+                refused=each.refused or f"{shown(each.student)} does not contain a folder {exercise}.",
             )
 
 
@@ -119,21 +123,17 @@ def _one_of(alike: Sequence[Found]) -> Found:
 
 
 def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:
-    """Return the names of entries that are not submissions, except for hidden files and the folders in _HIDDEN."""
+    """Return the names of entries that are not submissions, except for hidden files."""
     folders = [path for path in given if os.path.isdir(path) and not _is_one_alone(path)]
     return tuple(
         shown(entry.name)
         for folder in folders
         for entry in _entries(folder)
-        if _student(entry) is None and not _is_of_a_program(entry) and not _same(entry, leave_out)
+        if _student(entry) is None
+        and not _why_not_graded(entry)
+        and not (entry.name.startswith(".") and os.path.isfile(entry))
+        and not _same(entry, leave_out)
     )
-
-
-def _is_of_a_program(entry: Path) -> bool:
-    """Return whether a program, and not a student, has probably made a hidden entry."""
-    if entry.name in _HIDDEN or not entry.name.startswith("."):
-        return entry.name in _HIDDEN
-    return os.path.isfile(entry) and archives.stem(entry.name) is None
 
 
 def _entries(folder: Path) -> list[Path]:
@@ -146,8 +146,18 @@ def _entries(folder: Path) -> list[Path]:
 
 
 def _same(one: Path, other: Path) -> bool:
-    """Return whether the two paths lead to the same file or folder. A loop of symbolic links is not an error."""
+    """Return whether the two paths lead to the same file or folder. A loop of symbolic links is not an error.
+
+    A link to the other path is not the same: a student may have made the link in order to be left out.
+    """
+    if os.path.islink(one):
+        return _without_links_above(one) == _without_links_above(other)
     return os.path.realpath(one) == os.path.realpath(other)
+
+
+def _without_links_above(path: Path) -> str:
+    folder, name = os.path.split(os.path.abspath(path))
+    return os.path.join(os.path.realpath(folder), name)
 
 
 def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
@@ -169,9 +179,13 @@ def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
         yield from _of_student(name, absolute, wanted)
         return
     for entry in _entries(absolute):
+        if _same(entry, leave_out):
+            continue
         name = _student(entry)
-        if name is not None and not _same(entry, leave_out):
+        if name is not None:
             yield from _of_student(name, entry, wanted)
+        elif refused := _why_not_graded(entry):
+            yield Found(archives.stem(entry.name) or entry.name, wanted or UNKNOWN, entry, refused)
 
 
 def _is_one(folder: Path) -> bool:
@@ -203,6 +217,18 @@ def _student(entry: Path) -> str | None:
     if stat.S_ISDIR(mode):
         return entry.name
     return archives.stem(entry.name) if stat.S_ISREG(mode) else None
+
+
+def _why_not_graded(entry: Path) -> str:
+    """Return the reason why a link, a hidden folder or a hidden archive is not graded, or "" for any other entry."""
+    if entry.name in _OF_PROGRAMS:
+        return ""
+    if os.path.islink(entry):
+        return f"{shown(entry.name)} is a symbolic link. The grader follows no link to a submission."
+    is_archive = os.path.isfile(entry) and entry.name.lower().endswith(archives.EVERY_ENDING)
+    if entry.name.startswith(".") and (os.path.isdir(entry) or is_archive):
+        return f"{shown(entry.name)} is hidden, because its name begins with a dot. Rename it."
+    return ""
 
 
 def _of_student(student: str, path: Path, wanted: str | None) -> Iterator[Found]:

@@ -89,7 +89,7 @@ def grade_found(
         kept, todo = sort_out(order, folder)
         say(_reported(kept, todo))
         if beside:
-            say(f"Ignored, because these are hidden, or neither folders nor archives: {a_list(beside)}.")
+            say(f"Ignored, because these are not submissions: {a_list(beside)}.")
         unlisted = [shown_name(each.student) for each in found if roster and each.student not in roster]
         if unlisted:
             say(

@@ -82,7 +82,8 @@ def sync(
         which = f" {', '.join(each.checks)}" if each.checks else ""
         typer.echo(printable(f"{each.student} {each.step}{which}: 0 points, needs manual grading: {each.why}."))
     if done.unjudged:
-        typer.echo(f"Not judged because of a fault of the machine: {a_list(done.unjudged)}. Run this command again.")
+        unjudged = printable(a_list(done.unjudged))
+        typer.echo(f"Not judged because of a fault of the machine: {unjudged}. Run this command again.")
         raise typer.Exit(3)
 
 

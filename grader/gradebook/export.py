@@ -1,16 +1,40 @@
-"""`nbgrader export`: export only confirmed scores, and report unconfirmed scores."""
+"""`nbgrader export`: export only confirmed scores, and report unconfirmed scores.
+
+nbgrader's own export writes names without quotes. A student with the name "anna,,,,100,0,100,100" would get, or give to
+somebody else, any score.
+"""
 
 from __future__ import annotations
 
+import csv
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from nbgrader.plugins import CsvExportPlugin
 
 from grader.classroom.results import Results
-from grader.common.words import a_list, count
+from grader.common.words import a_list, count, printable
 from grader.gradebook.class_folders import CLASS, RESULTS
 from grader.gradebook.confirmed import withhold_unconfirmed
+from grader.report.csv import without_formula
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+
+COLUMNS = (
+    "assignment",
+    "duedate",
+    "timestamp",
+    "student_id",
+    "last_name",
+    "first_name",
+    "email",
+    "raw_score",
+    "late_submission_penalty",
+    "score",
+    "max_score",
+)
+"""The columns of nbgrader's table: https://nbgrader.readthedocs.io/en/stable/user_guide/managing_the_database.html"""
 
 
 class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]
@@ -22,10 +46,43 @@ class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]
         results = Results(Path(course.root) / CLASS / RESULTS)
         unconfirmed = withhold_unconfirmed(gradebook, results)
         if unconfirmed:
-            names = [f"{each.student} ({each.step})" for each in unconfirmed]
+            names = [printable(f"{each.student} ({each.step})") for each in unconfirmed]
             self.log.warning(
                 "%s not confirmed, exported as 0 points: %s. Run `grader gradebook sync`, then grade the rest by hand.",
                 count(len(names), "submission"),
                 a_list(names),
             )
-        super().export(gradebook)
+        file = Path(self.to or "grades.csv")
+        with file.open("w", encoding="utf-8", errors="backslashreplace", newline="") as opened:
+            writer = csv.writer(opened, lineterminator="\n")
+            writer.writerow(COLUMNS)
+            writer.writerows(_rows(gradebook, set(map(str, self.assignment)), set(map(str, self.student))))
+        self.log.info("Exported the grades to %s", file)
+
+
+def _rows(gradebook: Any, steps: Collection[str], students: Collection[str]) -> Iterator[list[str]]:  # noqa: ANN401
+    """Yield a line for each assignment and student. An empty `steps` or `students` stands for all of them."""
+    for assignment in gradebook.assignments:
+        submissions = {each.student.id: each for each in assignment.submissions}
+        for student in gradebook.students:
+            if (steps and assignment.name not in steps) or (students and student.id not in students):
+                continue
+            names = (student.id, student.last_name, student.first_name, student.email)
+            submission = submissions.get(student.id)
+            when, raw, penalty = "", 0.0, 0.0
+            if submission is not None:
+                when, raw, penalty = submission.timestamp, submission.score, submission.late_submission_penalty or 0.0
+            yield [
+                without_formula(assignment.name),
+                _text(assignment.duedate),
+                _text(when),
+                *(without_formula(_text(name)) for name in names),
+                _text(raw),
+                _text(penalty),
+                _text(max(0.0, raw - penalty)),
+                _text(assignment.max_score),
+            ]
+
+
+def _text(value: object) -> str:
+    return "" if value is None else str(value)

@@ -2,7 +2,8 @@
 
 nbgrader trusts the metadata of a submission, and stops if the metadata is invalid. From the metadata of a submitted
 notebook, this step uses only the id of each cell. The gradebook determines the points and whether the cell is locked.
-Missing locked cells are added again.
+Missing locked cells are added again. If a cell exists several times, for example because the student copied it, the
+last one counts, and the others become plain cells: nbgrader would stop at them, for the whole class.
 """
 
 from __future__ import annotations
@@ -31,11 +32,12 @@ class RestoreCells(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
                 cell.name: (_metadata(cell, points.get(cell.name), solution=cell.name in solutions), cell.source)
                 for cell in notebook.source_cells
             }
+        last = {_name(cell): number for number, cell in enumerate(nb.cells)}
         observed: set[str] = set()
         cells = []
-        for cell in nb.cells:
+        for number, cell in enumerate(nb.cells):
             name = _name(cell)
-            if name is None or name not in known:
+            if name is None or name not in known or last[name] != number:
                 cell.get("metadata", {}).pop("nbgrader", None)
                 cells.append(cell)
                 continue

@@ -64,7 +64,7 @@ def to_csv(rows: Iterable[tuple[str, Report, str, str, str]]) -> str:
     writer = csv.writer(text, lineterminator="\r\n")  # RFC 4180 specifies these line endings.
     writer.writerow(COLUMNS)
     for row in rows:
-        writer.writerow([_safe(str(value)) for value in _row(*row)])
+        writer.writerow([without_formula(str(value)) for value in _row(*row)])
     return "\ufeff" + text.getvalue()
 
 
@@ -88,7 +88,7 @@ def _row(student: str, report: Report, grader: str, file: str, attention: str) -
     )
 
 
-def _safe(text: str) -> str:
+def without_formula(text: str) -> str:
     """Return the text on one line, changed so that no spreadsheet executes it as a formula (CWE-1236).
 
     A spreadsheet can split cells at a separator other than the comma. Therefore, the text after each separator in

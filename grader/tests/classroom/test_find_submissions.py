@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from typing import TYPE_CHECKING
 
@@ -30,8 +31,8 @@ def test_a_folder_of_folders_and_archives(tmp_path: Path) -> None:
         (tmp_path / name).mkdir()
     for name in ("ben.zip", "clara.tar.gz", "roster.csv", ".DS_Store"):
         (tmp_path / name).touch()
-    (tmp_path / "link").symlink_to("/etc")
-    assert passed_over([tmp_path], tmp_path / "grades") == ("link", "roster.csv")
+    os.mkfifo(tmp_path / "pipe")
+    assert passed_over([tmp_path], tmp_path / "grades") == (".git", "__MACOSX", "pipe", "roster.csv")
     assert names(tmp_path) == [
         ("Zoe", STEP, "Zoe"),
         ("anna", STEP, "anna"),
@@ -72,12 +73,31 @@ def test_no_name_of_a_students_folder_hides_the_class(tmp_path: Path, name: str)
     assert [student for student, *_ in names(tmp_path, STEP)] == sorted(["anna", "ben", name])
 
 
-def test_hidden_folders_and_archives_are_named(tmp_path: Path) -> None:
-    for name in ("anna", "...", ".ben", ".git", "__MACOSX"):
+def test_hidden_folders_hidden_archives_and_links_have_a_line_with_the_reason(tmp_path: Path) -> None:
+    for name in ("anna", "...", ".ben", ".git", "grades"):
         (tmp_path / name).mkdir()
-    for name in (".clara.zip", ".DS_Store"):
+    for name in (".clara.zip", ".rar", ".DS_Store"):
         (tmp_path / name).touch()
-    assert passed_over([tmp_path], tmp_path / "grades") == ("...", ".ben", ".clara.zip")
+    for name, target in {"dora": "anna", "emil": "grades", "finn.zip": "nowhere"}.items():
+        (tmp_path / name).symlink_to(target)
+    reasons = {each.student: each.refused for each in find_submissions([tmp_path], STEP, tmp_path / "grades")}
+    assert [student for student, reason in reasons.items() if "begins with a dot" in reason] == [
+        "...",
+        ".ben",
+        ".clara",
+        ".rar",
+    ]
+    assert [student for student, reason in reasons.items() if "symbolic link" in reason] == ["dora", "emil", "finn"]
+    assert len(reasons) == 8
+    assert passed_over([tmp_path], tmp_path / "grades") == (".git",)
+    content = read(find_submissions([tmp_path], STEP, tmp_path / "grades")[-2], find_exercise(STEP), "emil")
+    assert isinstance(content, Refused)
+
+
+def test_an_output_folder_that_is_a_link_is_left_out(tmp_path: Path) -> None:
+    (tmp_path / "anna").mkdir()
+    (tmp_path / "grades").symlink_to(tmp_path)
+    assert names(tmp_path) == [("anna", STEP, "anna")]
 
 
 def test_a_clone_is_one_submission(tmp_path: Path) -> None:

@@ -73,9 +73,11 @@ def a_closed_folder(folder: Path) -> None:
 
 
 def a_circle_of_links(folder: Path) -> None:
-    (folder / "one").symlink_to("other")
-    (folder / "other").symlink_to("one")
-    (folder / "odd").mkdir()
+    (folder / "odd").symlink_to("odd")
+
+
+def hidden(folder: Path) -> None:
+    copy_solution(STEP, folder / ".odd")
 
 
 def another_exercise_beside_it(folder: Path) -> None:
@@ -111,7 +113,8 @@ ODD: dict[str, tuple[Callable[[Path], None], str]] = {
     "damaged deflate": (damaged(zipfile.ZIP_DEFLATED), "damaged"),
     "an offset beyond the file": (an_offset_beyond_the_file, "damaged"),
     "latin 1": (latin_1, "no package"),
-    "a circle of links": (a_circle_of_links, "no package"),
+    "a circle of links": (a_circle_of_links, "is a symbolic link"),
+    "hidden": (hidden, "begins with a dot"),
     "another exercise": (another_exercise_beside_it, "contains 04-package-files, but no folder 03-circle-publisher"),
     "no archive": (a_file_that_is_no_archive, "is not a supported archive"),
     "twice": (twice, "has 2 submissions"),
@@ -142,13 +145,13 @@ def test_a_class_of_odd_submissions_is_graded_completely(tmp_path: Path) -> None
         make(tmp_path / "made" / str(number))
         for path in (tmp_path / "made" / str(number)).iterdir():
             (tmp_path / "class").mkdir(exist_ok=True)
-            path.rename(tmp_path / "class" / f"{number}{path.name[:250]}")
+            dot = "." if path.name.startswith(".") else ""
+            path.rename(tmp_path / "class" / f"{dot}{number}{path.name[:250]}")
     copy_solution(STEP, tmp_path / "class" / "zoe")
     done = grade(tmp_path / "class", "--exercise", STEP, "--out", tmp_path / "grades", "--trust-submissions")
     assert done.returncode == 0, done.stderr
     found = rows(tmp_path / "grades")
-    submitted = [path for path in (tmp_path / "class").iterdir() if not path.is_symlink()]
-    assert len(found) == len(submitted) - 1  # two submissions belong to the same student
+    assert len(found) == len(list((tmp_path / "class").iterdir())) - 1  # two submissions belong to the same student
     assert {row["points"] for row in found[:-1]} == {"0"}
     assert (found[-1]["submission"], found[-1]["points"]) == ("zoe", "100")
     assert "Traceback" not in done.stderr

@@ -199,3 +199,13 @@ def test_an_export_alone_corrects_an_older_gradebook(term: Term) -> None:
         assert gradebook.find_submission(STEP, "earlier").score == 100
     assert points_of(term)["earlier"] == 0
     assert withheld(term, "earlier")
+
+
+def test_no_name_of_a_student_changes_the_exported_table(term: Term) -> None:
+    forged = "anna,,,,100,0,100,100"
+    with term.gradebook() as gradebook:
+        for student in (forged, "=1+1", "two\nlines"):
+            gradebook.add_student(student, last_name='Doe, "Jo"')
+    exported = points_of(term)
+    assert (exported[forged], exported["'=1+1"], exported["two lines"]) == (0, 0, 0)
+    assert "anna" not in exported

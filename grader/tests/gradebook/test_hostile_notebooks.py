@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import os
 import shutil
@@ -215,6 +216,11 @@ def of_version(version: object) -> Callable[[Path, Path], object]:
     return lambda folder, _: edited(folder, lambda notebook: notebook.cells.append(cell))
 
 
+def twice(folder: Path, _: Path) -> None:
+    """Copy each cell with its nbgrader id. nbgrader itself then stops, and asks for an update."""
+    edited(folder, lambda notebook: notebook.cells.extend(copy.deepcopy(notebook.cells)))
+
+
 def with_a_picture(folder: Path, _: Path) -> None:
     """Add a picture that the student has attached to a cell, and a picture that does not exist."""
     cell = new_markdown_cell("![mine](attachment:a.png) ![none](attachment:b.png)")  # type: ignore[no-untyped-call]
@@ -239,6 +245,7 @@ BESIDE: dict[str, Callable[[Path, Path], object]] = {
     "never": lambda folder, _: (folder / readable.TIMESTAMP).write_text("yesterday evening"),
     "deep": lambda folder, _: (folder / f"{HOMEWORK}.ipynb").write_text("[" * 100_000),
     "blocks": lambda folder, _: pipe(folder / f"{HOMEWORK}.ipynb"),
+    "copied": twice,
     "newer": of_version(99),
     "picture": with_a_picture,
 }
@@ -267,7 +274,7 @@ def test_collect_takes_only_regular_files_of_the_submission(hostile: Hostile) ->
 
 def test_autograde_continues_after_submissions_that_attack_it(hostile: Hostile) -> None:
     full = {name for name, score in hostile.scores.items() if score == 1.0}
-    assert full == {"anna", "beside", "links", "newer", "picture"}
+    assert full == {"anna", "beside", "copied", "links", "newer", "picture"}
     assert TITLE not in hostile.graded
     for student in ("never", "deep", "blocks"):
         assert f"error processing assignment '{HOMEWORK}' for student '{student}'" in hostile.graded
