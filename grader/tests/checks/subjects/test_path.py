@@ -239,3 +239,19 @@ def test_what_the_turtle_does_after_ctrl_c_does_not_count() -> None:
 )
 def test_the_walls(shape: str, status: str) -> None:
     assert finding("wall", evidence(SHAPES[shape]())).status.value == status
+
+
+@pytest.mark.parametrize(
+    ("shape", "words"),
+    [
+        ("clockwise", "The sign of angular.z sets the direction: a positive value turns left"),
+        ("teleported", "Drive the turtle only with velocity commands."),
+        ("stops and goes", "The turtle stops when no command arrives for 1 s."),
+        ("spiral", "The commands change. A circle needs the same command all the time."),
+        ("nan", "A command contained a number that is not finite."),
+        ("radius 2.2", "The radius is linear.x divided by angular.z: 2.2 / 1.0 = 2.2 m."),
+    ],
+)
+def test_the_cause_of_one_trajectory_is_not_told_for_another(shape: str, words: str) -> None:
+    others = ("clockwise", "teleported", "stops and goes", "spiral", "nan", "radius 2.2", "good")
+    assert [each for each in others if words in finding("circle", evidence(SHAPES[each]())).cause] == [shape]

@@ -255,3 +255,22 @@ def test_a_condition_that_is_only_compared_keeps_a_publisher_silent(line: str, d
     )
     finding = publishes(observed(("publisher", TOPIC, TWIST)), *changes)
     assert reported(finding) == (diagnosis, ":10" if diagnosis == "equals" else ":18")
+
+
+def test_the_sentences_about_types_are_told_only_for_a_wrong_type() -> None:
+    wrong, silent = (publishes(observed(("publisher", TOPIC, type_))) for type_ in (TEXT, TWIST))
+    assert wrong.observed == f"{TOPIC} receives messages of type {TEXT}, which the turtle does not understand."
+    assert wrong.cause == "The message type is the first argument of create_publisher."
+    assert "receives messages of type" not in silent.observed
+    assert "The message type is the first argument" not in silent.cause
+    listening, other = (publishes(observed(("subscription", topic, TWIST))) for topic in (TOPIC, "/other"))
+    assert listening.cause == "A subscription only receives messages. Use create_publisher to send messages."
+    assert "A subscription only receives messages" not in other.cause
+    two = observed(("publisher", TOPIC, TWIST), ("publisher", TOPIC, TEXT))
+    second, one = (
+        found(ONLY_TYPE, evidence(each), topic=TOPIC, type=TWIST)
+        for each in (two, observed(("publisher", TOPIC, TWIST)))
+    )
+    assert second.cause.startswith("A topic has one type. Two publishers with different types")
+    assert (one.status, one.cause) == (Status.PASSED, "")
+    assert one.observed == f"Only {TWIST} messages are published on {TOPIC}."

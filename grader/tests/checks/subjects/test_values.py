@@ -137,3 +137,20 @@ def test_an_empty_message_is_reported_where_it_is_published() -> None:
     found, other = (finding("values", given) for given in (evidence(recording(commands), node(empty)), plain))
     assert (found.diagnosis, str(found.where)) == ("empty-twist", f"{NODE_FILE}:13")
     assert (other.diagnosis, str(other.where)) == ("empty-twist", f"{NODE_FILE}:14")
+
+
+@pytest.mark.parametrize(
+    ("shape", "words"),
+    [
+        ("clockwise", "The sign is wrong."),
+        ("degrees", "Angles are in radians. This value looks like degrees."),
+        ("all zero", "All fields of a new Twist are 0. Set the fields before you publish the message."),
+        ("linear.y", "linear.y has the value that belongs in linear.x: the turtle drives along linear.x only."),
+        ("angular.x", "angular.x has the value that belongs in angular.z: the turtle turns about the axis"),
+        ("swapped", "The forward speed and the turning speed are swapped."),
+        ("one wrong", "The other commands were right. Something changes the values while the node runs."),
+    ],
+)
+def test_the_cause_of_one_wrong_value_is_not_told_for_another(shape: str, words: str) -> None:
+    others = ("clockwise", "degrees", "all zero", "linear.y", "angular.x", "swapped", "one wrong", "radius 2.2")
+    assert [each for each in others if words in values(each).cause] == [shape]
