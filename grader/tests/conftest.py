@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import gc
 import os
 import signal
 from pathlib import Path
@@ -13,7 +14,7 @@ from grader.tests.gradings import gradings_of
 from grader.tests.in_ros import InRos
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Generator, Iterator
 
     from grader.tests.gradings import Gradings
 
@@ -43,6 +44,20 @@ LONGEST = (
     *("view/test_view_page.py", "grading/test_grade.py", "ros/test_underlay.py", "ros2/test_bag.py"),
 )
 """The slowest modules. `make test` starts them first, so that all processes finish at about the same time."""
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Collect without the garbage collector, which would search the growing list of tests again and again.
+
+    The collected tests exist until the end of the session, so later runs of the garbage collector skip them.
+    """
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
