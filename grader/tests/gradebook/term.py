@@ -29,7 +29,8 @@ Notebook = dict[str, Any]
 class Term:
     """A class in a separate folder, with a separate exchange."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, step: str = STEP) -> None:
+        self.step = step
         self.root = folder / "course-of-2027"
         self.exchange = folder / "exchange"
         self.exchange.mkdir()
@@ -63,22 +64,22 @@ class Term:
 
     def generate(self) -> None:
         """Generate the assignment and release it to the exchange."""
-        self.run("generate_assignment", STEP)
-        self.run("release_assignment", STEP)
+        self.run("generate_assignment", self.step)
+        self.run("release_assignment", self.step)
 
     def hand_in(self, student: str, change: Callable[[Path], None], at: str = FIRST) -> None:
         """Apply `change` to a copy of the released folder, and put it into the exchange as `nbgrader submit` does."""
-        folder = self.exchange / "ros2-topics" / "inbound" / f"{student}+{STEP}+{at}"
-        shutil.copytree(self.root / "exercises" / STEP, folder)
+        folder = self.exchange / "ros2-topics" / "inbound" / f"{student}+{self.step}+{at}"
+        shutil.copytree(self.root / "exercises" / self.step, folder)
         change(folder)
         (folder / "timestamp.txt").write_text(at)
 
     def grade(self) -> str:
         """Collect, autograde and sync the submissions, and generate the feedback. Return the output of sync."""
-        self.run("collect", STEP, "--update")
-        self.run("autograde", STEP)
-        said = self.run("grader", "gradebook", "sync", STEP)
-        self.run("generate_feedback", STEP)
+        self.run("collect", self.step, "--update")
+        self.run("autograde", self.step)
+        said = self.run("grader", "gradebook", "sync", self.step)
+        self.run("generate_feedback", self.step)
         return said
 
     def exported(self) -> dict[str, tuple[float, float, float]]:
@@ -99,7 +100,7 @@ class Term:
 
     def feedback(self, student: str) -> str:
         """Return the HTML of the feedback."""
-        return (self.root / "class" / "feedback" / student / STEP / f"{STEP}.html").read_text("utf-8")
+        return (self.root / "class" / "feedback" / student / self.step / f"{self.step}.html").read_text("utf-8")
 
 
 def solve(folder: Path) -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 import pexpect
 
 from grader.checks.exercises import find_exercise
-from grader.exercise.model import catalogue
+from grader.exercise.model import Exercise, catalogue
 from grader.exercise.own_numbers import OwnNumbers, from_toml
 from grader.learner.workspace import work_folder
 from grader.tests import made_bag
@@ -59,29 +59,31 @@ class Learner:
     def solves(self, step: str) -> None:
         """Write the complete solution into the workspace, as if the learner had done the work."""
         exercise = find_exercise(step)
-        solution = ROOT / "solutions" / step
-        mine = work_folder(exercise, self.home / "ros2_ws")
-        for file in sorted((solution / exercise.package).rglob("*") if exercise.package else solution.rglob("*")):
-            place = mine / file.relative_to(solution / exercise.package)
-            # Keep the learner's individual numbers for this step.
-            own = exercise.numbers
-            if file.is_file() and not (own is not None and place.name == own.file):
-                place.parent.mkdir(parents=True, exist_ok=True)
-                if place.suffix == ".mcap":
-                    shutil.copyfile(file, place)
-                    continue
-                text = file.read_text(encoding="utf-8")
-                # The files of earlier steps keep the numbers of those steps.
-                if own is not None and place.stem.removeprefix("test_") in {
-                    trial.executable for trial in exercise.trials
-                }:
-                    text = with_numbers(text, place.name, from_toml(own, (mine / own.file).read_bytes()))
-                fresh = place.with_name(f".{place.name}.new")
-                fresh.write_text(text, encoding="utf-8")
-                fresh.replace(place)
-        if exercise.id == BAG_STEP:
-            assert exercise.numbers is not None
-            record_own_bag(mine, from_toml(exercise.numbers, (mine / exercise.numbers.file).read_bytes()))
+        solve_in(work_folder(exercise, self.home / "ros2_ws"), exercise)
+
+
+def solve_in(mine: Path, exercise: Exercise) -> None:
+    """Write the complete solution into the folder `mine`, with the student's numbers that are there."""
+    solution = ROOT / "solutions" / exercise.id
+    for file in sorted((solution / exercise.package).rglob("*") if exercise.package else solution.rglob("*")):
+        place = mine / file.relative_to(solution / exercise.package)
+        # Keep the learner's individual numbers for this step.
+        own = exercise.numbers
+        if file.is_file() and not (own is not None and place.name == own.file):
+            place.parent.mkdir(parents=True, exist_ok=True)
+            if place.suffix == ".mcap":
+                shutil.copyfile(file, place)
+                continue
+            text = file.read_text(encoding="utf-8")
+            # The files of earlier steps keep the numbers of those steps.
+            if own is not None and place.stem.removeprefix("test_") in {trial.executable for trial in exercise.trials}:
+                text = with_numbers(text, place.name, from_toml(own, (mine / own.file).read_bytes()))
+            fresh = place.with_name(f".{place.name}.new")
+            fresh.write_text(text, encoding="utf-8")
+            fresh.replace(place)
+    if exercise.id == BAG_STEP:
+        assert exercise.numbers is not None
+        record_own_bag(mine, from_toml(exercise.numbers, (mine / exercise.numbers.file).read_bytes()))
 
 
 BAG_STEP, BAG = "11-bags", "circle_bag"
