@@ -70,7 +70,7 @@ def grade(
     exception. A caller can replace `build` and `trial`. For example, `grader watch` passes builds and trials that it
     started in advance.
     """
-    turns = Turns(turns_folder())
+    turns = Turns(turns_folder(), tell)
     rebuild = Rebuild(build)
     with turns.shared():
         graded = _Grading(exercise, submission, options, tell, early, rebuild, trial, turns).run()

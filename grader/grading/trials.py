@@ -168,9 +168,10 @@ class Trials:
             first = self._run(evidence, trial, wall, settled)
         attempts = [first]
         while policy.wants_another(attempts):
-            self._tell("The machine was too busy for wall time: running the trial again")
-            with self._turns.alone(), self._trial(evidence, wall.name) as again:
-                attempts.append(self._run(evidence, again, wall, settled))
+            with self._turns.alone():
+                self._tell("The machine was too busy for wall time: running the trial again")
+                with self._trial(evidence, wall.name) as again:
+                    attempts.append(self._run(evidence, again, wall, settled))
         return policy.that_counts(attempts)
 
     def _run_simulated(self, evidence: Evidence, trial: Runs, clock: Clock, settled: Mapping[str, Finding]) -> Attempt:

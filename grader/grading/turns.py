@@ -16,7 +16,7 @@ from typing import IO, TYPE_CHECKING
 from grader.common import xdg
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
 WAIT_S = 120.0
@@ -28,10 +28,12 @@ class Turns:
     """Lets one grader at a time use the machine alone.
 
     All graders use the lock files in `folder`. If these files cannot be used, no grader waits for another grader.
+    `tell` is called with a short message if this grader has to wait.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, tell: Callable[[str], object] = lambda _: None) -> None:
         self._folder = folder
+        self._tell = tell
         self._locks: tuple[IO[bytes], IO[bytes]] | None = None
         """The two lock files (turnstile and machine) while this grader shares the machine, or else None."""
 
@@ -46,8 +48,8 @@ class Turns:
             except OSError:
                 yield
                 return
-            _lock(turnstile, fcntl.LOCK_SH)
-            _lock(machine, fcntl.LOCK_SH)
+            self._lock(turnstile, fcntl.LOCK_SH)
+            self._lock(machine, fcntl.LOCK_SH)
             fcntl.flock(turnstile, fcntl.LOCK_UN)
             self._locks = turnstile, machine
             try:
@@ -65,19 +67,21 @@ class Turns:
         # Release the shared lock first. Otherwise, two graders that want the machine to themselves would wait for each
         # other.
         fcntl.flock(machine, fcntl.LOCK_UN)
-        _lock(turnstile, fcntl.LOCK_EX)
-        _lock(machine, fcntl.LOCK_EX)
+        self._lock(turnstile, fcntl.LOCK_EX)
+        self._lock(machine, fcntl.LOCK_EX)
         try:
             yield
         finally:
             fcntl.flock(machine, fcntl.LOCK_SH)
             fcntl.flock(turnstile, fcntl.LOCK_UN)
 
-
-def _lock(file: IO[bytes], how: int) -> None:
-    until = time.monotonic() + WAIT_S
-    while not _locked(file, how) and time.monotonic() < until:
-        time.sleep(_POLL_S)
+    def _lock(self, file: IO[bytes], how: int) -> None:
+        if _locked(file, how):
+            return
+        self._tell("Waiting until another grader on this machine has finished")
+        until = time.monotonic() + WAIT_S
+        while not _locked(file, how) and time.monotonic() < until:
+            time.sleep(_POLL_S)
 
 
 def _locked(file: IO[bytes], how: int) -> bool:

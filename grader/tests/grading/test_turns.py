@@ -115,9 +115,13 @@ def test_a_machine_that_does_not_become_free_is_used_all_the_same(
     monkeypatch.setattr(turns, "WAIT_S", 0.05)
     with other(tmp_path) as busy:
         assert hears(busy) == "shared"
-        mine = Turns(tmp_path)
-        with mine.shared(), mine.alone():
-            assert busy.poll() is None
+        told: list[str] = []
+        mine = Turns(tmp_path, told.append)
+        with mine.shared():
+            assert told == []
+            with mine.alone():
+                assert busy.poll() is None
+        assert told == ["Waiting until another grader on this machine has finished"]
         go_on(busy)
 
 
