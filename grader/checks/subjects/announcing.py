@@ -83,7 +83,9 @@ def _wrong_names(evidence: Evidence, message: Announcement, expected: str) -> Fi
     from_s, to_s = message.t_s - LATE_S, message.t_s
     where = evidence.place("publish")
     around = {track.turtle for track in tracks if is_there(track, from_s, to_s + AT_ONCE_S)}
-    called = {str(call.request.get("name")) for call in calls_of(evidence) if call.by_trial and call.t_s <= to_s}
+    earlier = [call for call in calls_of(evidence) if call.t_s <= to_s]
+    # A turtle that was caught, or that the node has asked turtlesim to remove, may be missing.
+    called = {str(call.request.get("name")) for call in earlier if call.by_trial or call.service == "/kill"}
     throughout = {
         track.turtle
         for track in tracks

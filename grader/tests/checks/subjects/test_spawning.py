@@ -117,6 +117,15 @@ def test_a_turtle_that_was_caught_is_no_longer_announced() -> None:
     assert diagnosis(of_announces(given(messages=every))) == "still-announced"
 
 
+def test_a_turtle_that_the_node_has_asked_to_remove_need_not_be_announced() -> None:
+    late_s = CAUGHT_S + 0.4
+    early = tuple(said(t_s, "target1" if t_s > CAUGHT_S else " ".join(PLACES)) for t_s in (1.0, 1.5, late_s - 0.2))
+    gone = {"target2": late_s, "target3": late_s}
+    asked = of_announces(given(calls=[catch(), kill("target3")], gone=gone, messages=early))
+    assert diagnosis(asked) != "target-unannounced"
+    assert diagnosis(of_announces(given(calls=[catch()], gone=gone, messages=early))) == "target-unannounced"
+
+
 def test_a_turtle_is_announced_again_and_again() -> None:
     once = (said(1.0, names_at(1.0)), said(CAUGHT_S, names_at(CAUGHT_S)))
     assert diagnosis(of_announces(given(messages=once))) == "timer-period"
