@@ -20,7 +20,7 @@ def is_of_another_user(client: tuple[str, int] | None) -> bool:
 
 
 def _users(host: str, port: int) -> Iterator[int]:
-    """Yield the user of each socket with this address. There is no such user for a connection from another machine."""
+    """Yield the user id of each local socket with this address. A socket on another machine is not found."""
     # The kernel writes addresses as hexadecimal numbers in the byte order of the processor.
     address = f"{int.from_bytes(socket.inet_aton(host), 'little'):08X}"
     names = (f"{address}:{port:04X}", f"0000000000000000FFFF0000{address}:{port:04X}")

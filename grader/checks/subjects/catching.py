@@ -210,7 +210,7 @@ NEAREST_FIRST = Kind(
     "The nearest target is caught first",
     NoParams,
     nearest_first,
-    about="After each catch, turtle1 next catches the turtle that is nearest to turtle1.",
+    about="After each catch, turtle1 drives to the turtle that is then nearest.",
 )
 WITHIN_REACH = Kind(
     "within_reach",

@@ -32,7 +32,8 @@ def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
     spec, by = numbers_spec(evidence), evidence.submission.student
     if by is not None and normal_id(found.student) != normal_id(by):
         observed = (
-            f'The numbers in {spec.file} were drawn for "{shorten(found.student)}", but "{shorten(by)}" submitted them.'
+            f'The numbers in {spec.file} were assigned to "{shorten(found.student)}", '
+            f'but "{shorten(by)}" submitted them.'
         )
         expected = "Every student has their own numbers."
         step = spec.step[:2]
@@ -42,7 +43,7 @@ def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
         return failed(observed, expected, Cause("numbers-of-another", cause, Where(spec.file)))
     wanted = draw_numbers(spec, found.student)
     if found != wanted:
-        observed = f"The numbers in {spec.file} are not the ones that were drawn for this student."
+        observed = f"The numbers in {spec.file} are not the ones that were assigned to this student."
         cause = "Do not change the file. Use the file's numbers in your node."
         return failed(observed, f"{_shown(wanted)}.", Cause("numbers-changed", cause, Where(spec.file)))
     return passed(f"{_shown(found)}.")

@@ -41,7 +41,7 @@ def stop(evidence: Evidence, params: Stop) -> Finding:
         cause = "The node may still be waiting for something after Ctrl-C: a sleep, a thread or a service response."
         return failed(observed, expected, Cause("slow-stop", cause, evidence.place("spin")), near_edge=True)
     force = "it had to be killed" if end.by == "SIGKILL" else "only SIGTERM ended it"
-    cause = "A loop that never ends, or an except that catches everything, can hide Ctrl-C from the node."
+    cause = "A loop that never ends, or an except that catches everything, can keep Ctrl-C from ending the node."
     where = evidence.place("spin", "init")
     return failed(f"The node ignored Ctrl-C: {force}.", expected, Cause("ignores-ctrl-c", cause, where), near_edge=True)
 

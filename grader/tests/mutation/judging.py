@@ -163,8 +163,8 @@ def who_runs(mutant: Mutant, lines: Lines) -> set[str]:
 def requested(mutant: Mutant, lines: Lines, alike: int) -> list[str]:
     """Return some of the cases or tests that run the mutant's lines. Many cases that run the same lines are left out.
 
-    Hundreds of passing cases run the same lines of a check. A mutant can seem to survive although a case that was left
-    out would notice it. Leaving out cases can never make a mutant seem noticed.
+    Hundreds of passing cases run the same lines of a check. A mutant can seem to survive although a case that was not
+    run would detect it. A case that was not run can never make a mutant seem detected.
     """
     names = sorted(who_runs(mutant, lines))
     if mutant.at_import:

@@ -189,7 +189,10 @@ def test_without_any_confinement_it_says_so(monkeypatch: pytest.MonkeyPatch) -> 
 def test_a_named_pipe_does_not_block_it(
     opens: Callable[[Path], object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A named pipe blocks no step that reads files. In an earlier version, only the search for files was protected."""
+    """A named pipe in a submission does not block any step that reads files.
+
+    In an earlier version, only the search for files was protected.
+    """
     monkeypatch.setattr(reader, "TIMEOUT_S", 20.0)
     os.mkfifo(tmp_path / "pipe")
     (tmp_path / "link").symlink_to("pipe")
