@@ -2,9 +2,9 @@ import rclpy
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
 
-RADIUS = 1.4
-RATE = 5.0
-OMEGA = 1.25
+RADIUS = 1.8
+RATE = 2.5
+OMEGA = -1.25
 
 
 class OwnCircle(Node):
