@@ -70,7 +70,7 @@ def begin_message(begun: Begun) -> str:
         lines.append(f"Not changed: {', '.join(started.present)}.")
     for path, lacking in started.lacking.items():
         lines += [
-            f"This step needs more lines in {path}. Add these lines to your file:",
+            workspace.lacking_text(path, lacking),
             *(f"    {line}" for line in lacking),
         ]
     lines += [f"To do in {path}: {task}" for path, tasks in started.tasks.items() for task in tasks]

@@ -14,7 +14,7 @@ from grader.submission import tree
 from grader.submission.search import IGNORE_MARKER
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from grader.exercise.model import Exercise
@@ -24,6 +24,7 @@ APART = "apart"
 """The folder in a workspace for other workspaces, which colcon must not build together with it."""
 _PACKAGE_FILES = ("package.xml", "setup.py", "setup.cfg")
 """Package files to which later steps add lines."""
+_ENTRY_POINT = re.compile(r"[\"'][\w.-]+ = [\w.]+:\w+[\"'],?")
 _TASK = re.compile(r"(?:#|<!--)\s*(TODO \d+: .+?)\s*(?:-->)?$", re.MULTILINE)
 
 
@@ -152,6 +153,19 @@ def lacking_lines(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, t
     source = starting_point(exercise) / exercise.package
     wanted = [path for path in _PACKAGE_FILES if path in files and (source / path).is_file()]
     return {path: lines for path in wanted if (lines := _lacking(source / path, files[path]))}
+
+
+def lacking_text(path: str, lines: Sequence[str]) -> str:
+    """Return the sentence that asks the learner to add `lines` to the package file `path`, and says where."""
+    one = len(lines) == 1
+    what, these = ("one more line", "this line") if one else ("more lines", "these lines")
+    if all(_ENTRY_POINT.fullmatch(line) for line in lines):
+        where = "to the list console_scripts, with a comma after each item"
+    elif all(line.startswith("<depend>") for line in lines):
+        where = "to your file, next to the other dependencies"
+    else:
+        where = "to your file"
+    return f"This step needs {what} in {path}. Add {these} {where}:"
 
 
 def _lacking(theirs: Path, mine: bytes) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ from grader.errors import GraderError, MachineError
 from grader.grading.options import Options
 from grader.learner import steps
 from grader.learner.watch import Watched
-from grader.learner.workspace import lacking_lines
+from grader.learner.workspace import lacking_lines, lacking_text
 from grader.open.verdict_html import verdict_html
 from grader.sandbox import bubblewrap
 
@@ -83,7 +83,7 @@ def _lacking(exercise: Exercise, files: Mapping[str, bytes]) -> list[dict[str, o
         found = lacking_lines(exercise, files)
     except (OSError, MachineError):
         return []
-    return [{"file": path, "lines": list(lines)} for path, lines in found.items()]
+    return [{"file": path, "lines": list(lines), "text": lacking_text(path, lines)} for path, lines in found.items()]
 
 
 def _prove(desk: Desk, events: Events, watched: Watched) -> None:

@@ -66,6 +66,7 @@ def arguments(text: str) -> list[str]:
     except ValueError as error:
         message = f"The command has a quote that is not closed: {text}."
         raise UsageError(message) from error
+    words = words[1:] if words[:1] == ["$"] else words
     words = words[1:] if words[:1] == ["ros2"] else words
     if len(words) < 2 or words[1] not in VERBS.get(words[0], ()):
         guess = _meant(words)
@@ -73,7 +74,7 @@ def arguments(text: str) -> list[str]:
             message = f"`ros2 {shorten(' '.join(words[:2]))}` is not a command. Did you mean `ros2 {guess}`?"
             raise UsageError(message)
         allowed = "; ".join(f"{group} {', '.join(verbs)}" for group, verbs in VERBS.items())
-        message = f"Only commands that change nothing can be run here: {allowed}."
+        message = f"Only commands that change nothing can be run here: {allowed}. Use a terminal for other commands."
         raise UsageError(message)
     wrong = [each for each in words[2:] if each not in _OPTIONS and not _WORD.fullmatch(each)]
     if wrong or len(words) > _MOST_WORDS:
@@ -102,6 +103,7 @@ def answer(words: list[str], env: Mapping[str, str]) -> Answer:
     """Run `ros2` with the arguments that `arguments` returned, and return the output of `ros2`."""
     start = interpreter("-m", "grader.ros2.main", *words, env=env, searches=True)
     endless = words[:2] == ["topic", "hz"]
+    patience_s = HZ_S if endless else PATIENCE_S
     process = subprocess.Popen(
         start.argv,
         env=start.env,
@@ -113,7 +115,7 @@ def answer(words: list[str], env: Mapping[str, str]) -> Answer:
     )
     stopped = False
     try:
-        output, _ = process.communicate(timeout=HZ_S if endless else PATIENCE_S)
+        output, _ = process.communicate(timeout=patience_s)
     except subprocess.TimeoutExpired:
         stopped = True
         process.send_signal(signal.SIGINT)
@@ -122,4 +124,6 @@ def answer(words: list[str], env: Mapping[str, str]) -> Answer:
         except subprocess.TimeoutExpired:
             process.kill()
             output, _ = process.communicate()
+    if stopped and not output and words[0] == "topic":
+        return Answer(f"No message arrived within {patience_s:.0f} s.", stopped=False)
     return Answer(output[:LONGEST].decode("utf-8", "replace"), stopped and not endless)

@@ -70,7 +70,7 @@ class Crash:
     @property
     def observed(self) -> str:
         """The exception with its message, such as 'ZeroDivisionError: division by zero'."""
-        return f"{self.error}: {shorten(self.message, 90)}" if self.message else self.error
+        return f"{self.error}: {shorten(self.message.rstrip(' :'), 90)}" if self.message else self.error
 
     @property
     def meaning(self) -> str:

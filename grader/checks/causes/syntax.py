@@ -82,6 +82,7 @@ OTHER_LANGUAGES = (
     (r"\s*else\s+if\b.*", "Python spells else if as one word: elif."),
     (r".*(?:\+\+|--)\s*;?\s*", "Python has no ++ and no --. Write += 1 or -= 1."),
     (r"\s*(?:def|class|if|for|while)\b.*\{\s*", "In Python, a block begins with a colon, not with a brace."),
+    (r"\s*import\s+[\w\s,]+\s+from\s+[\w.]+\s*", "In Python, from comes first: from MODULE import NAME."),
     (r"\s*//.*", "In Python, a comment begins with #."),
     (
         r".*=\s*new\s+\w+.*",

@@ -1,7 +1,7 @@
 // The progress in the list of all steps.
 
 const SIGNS = { passed: "✓", begun: "→", new: "" };
-const WORDS = { passed: "passed", begun: "started", new: "" };
+const WORDS = { passed: "passed; your best result", begun: "started; your best result", new: "" };
 
 export function showSteps(steps) {
   for (const { id, state, current, points, max } of steps) {

@@ -25,7 +25,7 @@ function button(text, click) {
 }
 
 // Return a box with the lines that the learner has to add to a package file for this step.
-function lacking({ file, lines }) {
+function lacking({ file, lines, text }) {
   const code = document.createElement("code");
   code.textContent = lines.join("\n");
   const block = document.createElement("pre");
@@ -38,7 +38,7 @@ function lacking({ file, lines }) {
   frame.append(block);
   const box = document.createElement("div");
   box.className = "box";
-  box.append(paragraph(`This step needs more lines in \`${file}\`. Add these lines to your file:`), frame);
+  box.append(paragraph(text.replace(file, `\`${file}\``)), frame);
   addCopyButtons(box);
   return box;
 }

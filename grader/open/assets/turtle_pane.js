@@ -6,6 +6,7 @@ import { LogLines } from "./log_lines.js";
 import { act } from "./requests.js";
 import { session } from "./session.js";
 import { Simulator } from "./simulator.js";
+import { Tail } from "./tail.js";
 
 const find = (id) => document.getElementById(id);
 
@@ -16,6 +17,7 @@ export class TurtlePane {
     this.running = { turtlesim: false, node: false };
     this.simulator = new Simulator({ send: (said) => this.link?.send(said), within: pane });
     this.log = new LogLines(find("rosout"));
+    this.output = new Tail(find("node-lines"));
     this.status = find("sim-status");
     find("sim-switch").addEventListener("click", () => this.change("turtlesim", { on: !this.running.turtlesim }));
     find("node-switch").addEventListener("click", () => this.change("node",
@@ -42,9 +44,9 @@ export class TurtlePane {
     find("node-buttons").hidden = executables.length === 0 && !programs.node;
     this.choose(executables);
     for (const name of ["sim-switch", "node-switch", "again"]) find(name).disabled = programs.busy;
-    find("node-part").hidden = programs.lines.length === 0;
+    find("node-part").hidden = programs.lines.length === 0 || find("node-buttons").hidden;
     find("old").hidden = !programs.old;
-    this.lines(programs.lines.join("\n"));
+    this.output.write(programs.lines.join("\n"));
     if (programs.turtlesim && !this.link) this.connect();
     if (!programs.turtlesim && this.link) this.disconnect();
     this.tell();
@@ -64,15 +66,6 @@ export class TurtlePane {
     if (JSON.stringify(shown) === JSON.stringify(names)) return;
     const before = select.value;
     select.replaceChildren(...names.map((name) => new Option(name, name, false, name === before)));
-  }
-
-  // Keep the last line visible unless the reader has scrolled up.
-  lines(text) {
-    const place = find("node-lines");
-    if (place.textContent === text) return;
-    const below = place.scrollTop + place.clientHeight >= place.scrollHeight - 4;
-    place.textContent = text;
-    if (below) place.scrollTop = place.scrollHeight;
   }
 
   connect() {

@@ -124,9 +124,10 @@ def test_start_lists_lines_that_a_later_step_needs_in_package_files(home: Path) 
         "setup.py": ('"draw_circle = my_robot_controller.draw_circle:main",',),
     }
     assert (
-        'This step needs more lines in setup.py. Add these lines to your file:\n    "draw_circle'
+        'Add this line to the list console_scripts, with a comma after each item:\n    "draw_circle'
         in steps.begin_message(begun)
     )
+    assert "package.xml. Add these lines to your file, next to the other dependencies:" in steps.begin_message(begun)
     assert steps.start("03", None, fresh=True).started.lacking == {}
 
 

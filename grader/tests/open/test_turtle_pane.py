@@ -154,14 +154,26 @@ def drive(learner: Course, browser: Browser) -> None:
 
     page.get_by_role("button", name="Stop it").click()
     page.get_by_role("button", name="Run it").wait_for()
+    page.get_by_label("ros2").fill("topic hz /turtle1/cmd_vel")
+    page.keyboard.press("Enter")
+    page.locator("#asked").get_by_text("No message arrived within 5 s.").wait_for()
     with connect(f"ws://{learner.host}/turtle?token={learner.token}", origin=Origin(f"http://{learner.host}")) as link:
         assert '"kind":"all"' in str(link.recv())
     page.get_by_role("button", name="Stop turtlesim").click()
     page.get_by_role("button", name="Start turtlesim").wait_for()
     page.get_by_text("No turtlesim was started here.").wait_for()
     assert "See it move" not in page.content()
+    # The text may be shown for less time than the browser takes to look for it, so the page collects the texts.
+    page.evaluate(
+        """() => {
+            const status = document.getElementById("sim-status");
+            globalThis.told = [];
+            new MutationObserver(() => globalThis.told.push(status.textContent))
+                .observe(status, { subtree: true, childList: true, characterData: true });
+        }"""
+    )
     page.get_by_role("button", name="Run it").click()
-    page.get_by_text("Starting turtlesim …").wait_for()
+    until(lambda: "Starting turtlesim …" in page.evaluate("globalThis.told"))
     page.locator("#node-lines").get_by_text("[draw_circle]").wait_for()
     assert problems == []
     page.close()

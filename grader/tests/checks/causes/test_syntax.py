@@ -82,6 +82,7 @@ def test_a_comma_in_place_of_a_dot_is_named(line: str, words: str | None) -> Non
         ("else if x:", "elif x:", "Python spells else if as one word: elif."),
         ("count++", "count += 1", "Python has no ++ and no --."),
         ("count --;", "count -= 1", "Python has no ++ and no --."),
+        ("import Twist from a.msg", "from a.msg import Twist Pose", "from comes first: from MODULE import NAME."),
         ("// a comment", "/ a", "In Python, a comment begins with #."),
         ("msg = new Twist()", "msg = knew Twist()", "Python has no keyword new."),
         ("if x {", "if x }", "In Python, a block begins with a colon, not with a brace."),
