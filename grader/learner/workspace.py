@@ -24,7 +24,7 @@ APART = "apart"
 """The folder in a workspace for other workspaces, which colcon must not build together with it."""
 _PACKAGE_FILES = ("package.xml", "setup.py", "setup.cfg")
 """Package files to which later steps add lines."""
-_ENTRY_POINT = re.compile(r"[\"'][\w.-]+ = [\w.]+:\w+[\"'],?")
+_ENTRY_POINT = re.compile(r"[\"'](?P<name>[\w.-]+) = [\w.]+:\w+[\"'],?")
 _TASK = re.compile(r"(?:#|<!--)\s*(TODO \d+: .+?)\s*(?:-->)?$", re.MULTILINE)
 
 
@@ -101,9 +101,9 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
         own = exercise.numbers
         numbers = {own.file: to_toml(draw_numbers(own, student)).encode()} if own is not None else {}
         added, present = add_missing(source, folder, numbers)
-        changed = [path for path in present if path in _PACKAGE_FILES]
-        lacking = lacking_lines(exercise, {path: (folder / path).read_bytes() for path in changed})
-        tasks = {path: lines for path in changed if added and (lines := _tasks(source / path, folder / path))}
+        mine = {path: (folder / path).read_bytes() for path in present if path in _PACKAGE_FILES}
+        lacking = lacking_lines(exercise, mine)
+        tasks = open_tasks(exercise, mine) if added else {}
     except (FileExistsError, NotADirectoryError) as error:
         message = f"{error.filename} is a file, but it must be a folder. Choose another workspace with --workspace."
         raise UsageError(message) from error
@@ -142,17 +142,39 @@ def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tup
 def lacking_lines(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, tuple[str, ...]]:
     """Return the lines of the step's package files that are missing in the learner's files, by the path of the file.
 
-    `files` has the content of the learner's files by path. Files that are not in `files` are left out. For a step with
-    a package of its own, no lines are returned, because the learner's task is to change the files of that package.
+    `files` has the content of the learner's files by path. Files that are not in `files` are left out, as are the entry
+    points of other steps. For a step with a package of its own, no lines are returned, because the learner's task is to
+    change the files of that package.
 
     Raises:
         OSError: a file of the starting point cannot be read.
     """
+    here = {trial.executable for trial in exercise.trials}
+
+    def needed(line: str) -> bool:
+        point = _ENTRY_POINT.fullmatch(line)
+        return point is None or point["name"] in here
+
+    source = _package_files(exercise, files)
+    found = {path: _lacking(file, files[path]) for path, file in source.items()}
+    return {path: kept for path, lines in found.items() if (kept := tuple(filter(needed, lines)))}
+
+
+def open_tasks(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, tuple[str, ...]]:
+    """Return the tasks (TODO 1: ...) in the step's package files that are missing in the learner's files.
+
+    `files`, the keys of the result and the errors are those of `lacking_lines`.
+    """
+    source = _package_files(exercise, files)
+    return {path: tasks for path, file in source.items() if (tasks := _tasks(file, files[path]))}
+
+
+def _package_files(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, Path]:
+    """Return the package files of the step's starting point that the learner has too, by path."""
     if not exercise.package or exercise.apart:
         return {}
     source = starting_point(exercise) / exercise.package
-    wanted = [path for path in _PACKAGE_FILES if path in files and (source / path).is_file()]
-    return {path: lines for path in wanted if (lines := _lacking(source / path, files[path]))}
+    return {path: source / path for path in _PACKAGE_FILES if path in files and (source / path).is_file()}
 
 
 def lacking_text(path: str, lines: Sequence[str]) -> str:
@@ -182,9 +204,9 @@ def _lacking(theirs: Path, mine: bytes) -> tuple[str, ...]:
     return tuple(line for line in lines if not line.startswith(("#", "<!--")) and plain(line) not in known)
 
 
-def _tasks(theirs: Path, mine: Path) -> tuple[str, ...]:
+def _tasks(theirs: Path, mine: bytes) -> tuple[str, ...]:
     """Return the tasks in the comments of the step's file that are missing in the learner's file."""
-    known = mine.read_text(encoding="utf-8", errors="replace")
+    known = mine.decode("utf-8", "replace")
     tasks = (task.strip() for task in _TASK.findall(theirs.read_text(encoding="utf-8")))
     return tuple(task for task in tasks if task not in known)
 

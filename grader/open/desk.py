@@ -51,7 +51,7 @@ class Content:
     digest: str = ""
     """The digest of the submission that was read last."""
     lacking: list[dict[str, object]] = field(default_factory=list)
-    """For each package file, the lines that the step needs and the learner's file does not have."""
+    """For each package file, the lines and tasks of the step that the learner's file does not have."""
 
 
 class Desk:

@@ -9,7 +9,7 @@ from grader.errors import GraderError, MachineError
 from grader.grading.options import Options
 from grader.learner import steps
 from grader.learner.watch import Watched
-from grader.learner.workspace import lacking_lines, lacking_text
+from grader.learner.workspace import lacking_lines, lacking_text, open_tasks
 from grader.open.verdict_html import verdict_html
 from grader.sandbox import bubblewrap
 
@@ -65,7 +65,7 @@ def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
     desk.tell("Reading")
     try:
         graded = watched.grade(
-            desk.tell, desk.early, lambda opened: desk.read(opened.digest, _lacking(watched.exercise, opened.files))
+            desk.tell, desk.early, lambda opened: desk.read(opened.digest, lacking(watched.exercise, opened.files))
         )
         # Store the progress before the verdict is shown, even on a slow disk: the verdict's button for the next step
         # needs it.
@@ -77,13 +77,19 @@ def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
     watched.prepare()
 
 
-def _lacking(exercise: Exercise, files: Mapping[str, bytes]) -> list[dict[str, object]]:
-    """Return the lines that the step needs and the learner's package files do not have yet."""
+def lacking(exercise: Exercise, files: Mapping[str, bytes]) -> list[dict[str, object]]:
+    """Return the lines that the step needs, and the tasks of the step, that the learner's package files do not have."""
     try:
-        found = lacking_lines(exercise, files)
+        lines, tasks = lacking_lines(exercise, files), open_tasks(exercise, files)
     except (OSError, MachineError):
         return []
-    return [{"file": path, "lines": list(lines), "text": lacking_text(path, lines)} for path, lines in found.items()]
+    to_add: list[dict[str, object]] = [
+        {"file": path, "lines": list(each), "text": lacking_text(path, each)} for path, each in lines.items()
+    ]
+    to_do: list[dict[str, object]] = [
+        {"file": path, "lines": [], "text": f"To do in {path}: {each}"} for path in tasks for each in tasks[path]
+    ]
+    return [*to_add, *to_do]
 
 
 def _prove(desk: Desk, events: Events, watched: Watched) -> None:

@@ -24,8 +24,12 @@ function button(text, click) {
   return made;
 }
 
-// Return a box with the lines that the learner has to add to a package file for this step.
+// Return a box with the lines or the task that the learner has to add to a package file for this step.
 function lacking({ file, lines, text }) {
+  const box = document.createElement("div");
+  box.className = "box";
+  box.append(paragraph(text.replace(file, `\`${file}\``)));
+  if (!lines.length) return box;
   const code = document.createElement("code");
   code.textContent = lines.join("\n");
   const block = document.createElement("pre");
@@ -36,9 +40,7 @@ function lacking({ file, lines, text }) {
   const frame = document.createElement("div");
   frame.className = "code";
   frame.append(block);
-  const box = document.createElement("div");
-  box.className = "box";
-  box.append(paragraph(text.replace(file, `\`${file}\``)), frame);
+  box.append(frame);
   addCopyButtons(box);
   return box;
 }

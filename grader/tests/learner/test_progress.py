@@ -128,6 +128,8 @@ def test_start_lists_lines_that_a_later_step_needs_in_package_files(home: Path) 
         in steps.begin_message(begun)
     )
     assert "package.xml. Add these lines to your file, next to the other dependencies:" in steps.begin_message(begun)
+    # The entry points of the steps in between are not needed.
+    assert "setup.py" not in steps.start("08", None).started.lacking
     assert steps.start("03", None, fresh=True).started.lacking == {}
 
 
