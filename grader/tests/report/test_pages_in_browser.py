@@ -109,3 +109,11 @@ def test_a_printed_page_has_open_details_and_no_player(page: Page, pages: Path) 
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
     assert not page.locator(".player").is_visible()
     assert page.locator("details[open]").count() == 0
+
+
+def test_a_printed_class_page_names_every_failed_check(page: Page, pages: Path) -> None:
+    opened(page, pages, "class")
+    page.emulate_media(media="print")
+    failed = page.locator(".failure > summary")
+    assert failed.count() > 1
+    assert all(each.is_visible() for each in failed.all())
