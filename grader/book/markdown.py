@@ -75,6 +75,7 @@ def _parser() -> MarkdownIt:
     markdown.add_render_rule("table_open", _table_open)
     markdown.add_render_rule("table_close", _table_close)
     markdown.add_render_rule("th_open", _th_open)
+    markdown.add_render_rule("th_close", _th_close)
     return markdown
 
 
@@ -103,8 +104,13 @@ def _table_close(_: RendererHTML, _tokens: Sequence[Token], _at: int, _options: 
     return "</table>\n</div>\n"
 
 
-def _th_open(_: RendererHTML, _tokens: Sequence[Token], _at: int, _options: OptionsDict, _env: EnvType) -> str:
-    return '<th scope="col">'
+def _th_open(_: RendererHTML, tokens: Sequence[Token], at: int, _options: OptionsDict, _env: EnvType) -> str:
+    # A header without text is no header for a screen reader.
+    return '<th scope="col">' if tokens[at + 1].content else "<td>"
+
+
+def _th_close(_: RendererHTML, tokens: Sequence[Token], at: int, _options: OptionsDict, _env: EnvType) -> str:
+    return "</th>\n" if tokens[at - 1].content else "</td>\n"
 
 
 # --- changes to the tokens ------------------------------------------------------------------------------------------

@@ -44,6 +44,11 @@ def test_links_to_lessons_lead_to_their_pages() -> None:
     assert 'href="https://docs.ros.org/"' in html
 
 
+def test_the_empty_corner_of_a_table_is_no_header() -> None:
+    html = rendered("# T\n\n| | topic |\n| --- | --- |\n| who | all |\n").html
+    assert '<tr>\n<td></td>\n<th scope="col">topic</th>\n</tr>' in html
+
+
 def test_a_picture_is_a_figure_with_its_text() -> None:
     made = rendered('# T\n\n![A "circle"](circle.png)\n')
     assert made.pictures == ("circle.png",)
