@@ -77,6 +77,12 @@ def test_the_sliders_change_the_circle_by_keyboard(page: Page) -> None:
         page.keyboard.press("ArrowRight")
     figure.get_by_text("= 2.50 m. One turn takes 2π / w = 6.28 s.").wait_for()
     assert slider.get_attribute("aria-valuetext") == "2.5 m/s"
+    # A short slider cannot be set precisely, also where the figure is narrow.
+    page.set_viewport_size({"width": 700, "height": 900})
+    assert all(
+        width > 200
+        for width in page.locator(".explore input").evaluate_all("all => all.map((each) => each.clientWidth)")
+    )
 
 
 def test_the_other_figures_say_what_they_show(page: Page) -> None:
