@@ -14,6 +14,7 @@ from grader.checks.causes.why_fields import why_field
 from grader.checks.causes.why_imports import why_no_import
 from grader.checks.causes.why_interface import why_interface
 from grader.checks.causes.why_names import why_no_name, why_unbound
+from grader.checks.causes.why_none import why_none
 from grader.checks.causes.why_passed import why_passed
 from grader.checks.causes.why_response import why_response
 from grader.checks.causes.why_transition import why_no_transition
@@ -93,7 +94,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "ParameterNotDeclaredException": _why_undeclared,
     "RCLError": lambda scene: why_no_transition(scene) or why_refused(scene),
     "RuntimeError": why_refused,
-    "TypeError": why_type,
+    "TypeError": lambda scene: why_none(scene) or why_type(scene),
     "UnboundLocalError": why_unbound,
     "ValueError": _why_value,
 }

@@ -1,0 +1,49 @@
+"""Explain a TypeError of a computation with None, such as `None + 1.0`."""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.common.words import shorten
+from grader.submission.constants import dotted
+
+if TYPE_CHECKING:
+    from grader.checks.causes.crash_scene import CrashScene
+
+WITH_NONE = re.compile(
+    r"unsupported operand type\(s\) for .*'NoneType'|bad operand type for unary .*'NoneType'|"
+    r"not supported between instances of .*'NoneType'"
+)
+"""What Python says if a side of an operator is None."""
+
+
+def why_none(scene: CrashScene) -> Cause | None:
+    """Return the cause if a side of an operator is None, else None."""
+    if not WITH_NONE.search(scene.crash.message):
+        return None
+    names = {name for node in scene.on_line for name in map(dotted, _sides(node)) if name}
+    empty = [name for name in names if _is_none_at_first(scene, name)]
+    if len(empty) == 1:
+        text = f"{shorten(empty[0])} is None until it gets a value. Check for None before you compute with it."
+        return Cause("none-before-message", text)
+    return Cause("crash", "One side of the operator is None, which is not a number.")
+
+
+def _sides(node: ast.AST) -> list[ast.expr]:
+    if isinstance(node, ast.BinOp):
+        return [node.left, node.right]
+    if isinstance(node, ast.Compare):
+        return [node.left, *node.comparators]
+    if isinstance(node, ast.AugAssign):
+        return [node.target, node.value]
+    return [node.operand] if isinstance(node, ast.UnaryOp) else []
+
+
+def _is_none_at_first(scene: CrashScene, name: str) -> bool:
+    """Return whether the program sets this name to None in one place, and to another value in another place."""
+    values = [node.value for node in scene.nodes if isinstance(node, ast.Assign) and name in map(dotted, node.targets)]
+    none = [isinstance(value, ast.Constant) and value.value is None for value in values]
+    return any(none) and not all(none)

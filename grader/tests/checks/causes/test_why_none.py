@@ -1,0 +1,53 @@
+"""The reason why a computation with None fails."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.tests.checks.crashes import reported
+
+NODE = """\
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        self.x = {first}
+        self.step = None
+        self.old = None
+
+    def take(self, pose):
+        self.x = pose.x
+        self.old = pose
+
+    def send(self):
+        {line}  # crashed
+"""
+FIRST = "self.x is None until it gets a value. Check for None before you compute with it."
+ONE_SIDE = "One side of the operator is None, which is not a number."
+
+
+@pytest.mark.parametrize(
+    ("line", "error"),
+    [
+        ("dx = place.x - self.x", "unsupported operand type(s) for -: 'float' and 'NoneType'"),
+        ("dx = self.x + 1.0", "unsupported operand type(s) for +: 'NoneType' and 'float'"),
+        ("self.x += 1.0", "unsupported operand type(s) for +=: 'NoneType' and 'float'"),
+        ("dx = self.old.x - self.x", "unsupported operand type(s) for -: 'float' and 'NoneType'"),
+        ("dx = -self.x", "bad operand type for unary -: 'NoneType'"),
+        ("near = self.x < 3.0", "'<' not supported between instances of 'NoneType' and 'float'"),
+    ],
+)
+def test_an_attribute_that_is_none_at_first_is_named(line: str, error: str) -> None:
+    found = reported(NODE.format(first="None", line=line), f"TypeError: {error}")
+    assert (found.diagnosis, found.cause) == ("none-before-message", FIRST)
+
+
+@pytest.mark.parametrize(("first", "line"), [("0.0", "dx = self.x + 1.0"), ("None", "dx = self.step + 1.0")])
+def test_a_none_from_elsewhere_blames_no_attribute(first: str, line: str) -> None:
+    error = "TypeError: unsupported operand type(s) for +: 'NoneType' and 'float'"
+    found = reported(NODE.format(first=first, line=line), error)
+    assert (found.diagnosis, found.cause) == ("crash", ONE_SIDE)
+
+
+def test_a_string_plus_a_number_has_nothing_to_do_with_none() -> None:
+    error = "TypeError: unsupported operand type(s) for +: 'int' and 'str'"
+    assert reported(NODE.format(first="None", line="dx = 1 + self.x"), error).diagnosis == "string-and-number"
