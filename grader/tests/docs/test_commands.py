@@ -53,15 +53,19 @@ def without_set_up(block: Block) -> Block:
     return Block(block.language, block.about, "\n".join(kept))
 
 
-@pytest.mark.parametrize(("page", "number"), [(page, n) for page in PAGES for n in range(len(CONSOLE[page]))])
-def test_commands_do_what_the_page_shows(page: str, number: int, checkout: Path) -> None:
-    environment = {
+def environment_of(checkout: Path) -> dict[str, str]:
+    return {
         **os.environ,
         "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
         # A reader's workspace and progress are separate from those of the user. The cache is shared.
         "HOME": str(checkout / "home"),
         "XDG_CACHE_HOME": os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache"),
     }
+
+
+@pytest.mark.parametrize(("page", "number"), [(page, n) for page in PAGES for n in range(len(CONSOLE[page]))])
+def test_commands_do_what_the_page_shows(page: str, number: int, checkout: Path) -> None:
+    environment = environment_of(checkout)
     for earlier in CONSOLE[page][:number]:  # a reader has run the previous blocks first
         copies = [f"$ {step.command}" for step in earlier.steps() if step.command.startswith(("cp ", "mkdir "))]
         run(Block("console", "", "\n".join(copies)), checkout, environment, 60.0)
@@ -69,6 +73,18 @@ def test_commands_do_what_the_page_shows(page: str, number: int, checkout: Path)
         assert exit_code == bool(FAILS.match(step.command)), f"{step.command}\n{printed}"
         assert "Traceback" not in printed
         assert differs(step.printed, printed) is None, f"{step.command}\n{printed}"
+
+
+def test_the_package_that_the_page_creates_is_built_and_runs(checkout: Path) -> None:
+    creating = [block for block in blocks(text_of("docs/learner.md")) if block.text.startswith("ros2 pkg create")]
+    assert len(creating) == 1
+    workspace = checkout / "home/own workspace"
+    workspace.mkdir()
+    typed = [f"source {checkout / '.venv/setup.bash'}", *creating[0].text.splitlines()]
+    block = Block("console", "", "\n".join(f"$ {line}" for line in typed))
+    for step, printed, exit_code in run(block, workspace, environment_of(checkout), 300.0):
+        assert exit_code == 0, f"{step.command}\n{printed}"
+        assert not step.command.startswith("ros2 run") or "Hi from my_robot_controller." in printed, printed
 
 
 def test_every_door_has_commands_that_are_run() -> None:
