@@ -48,7 +48,7 @@ MEANINGS = {
     "ParameterNotDeclaredException": "Declare a parameter with declare_parameter before you read the parameter.",
     "SyntaxError": "Python cannot read this line or the line before it.",
     "TabError": "The indentation mixes tabs and spaces.",
-    "TypeError": "A function was called with the wrong number or type of arguments.",
+    "TypeError": "A function or an operator got a value of the wrong type, or the wrong number of arguments.",
     "ValueError": "An argument has the right type, but its value is not allowed.",
     "ZeroDivisionError": "A number was divided by zero.",
 }

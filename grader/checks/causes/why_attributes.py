@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
+from grader.checks.causes.attribute_of_none import attribute_of_none
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
 from grader.checks.causes.no_entry_point import line as entry_point_line
 from grader.checks.causes.why_not_set import compared
 from grader.checks.causes.why_other_object import (
     CREATE_OBJECT,
     class_for_object,
-    no_object,
     set_twice,
     subscription_for_publisher,
 )
@@ -180,31 +180,12 @@ def _of_a_wrong_thing(scene: CrashScene, owner: str, name: str) -> Cause | None:
         text = f"{shorten(ast.unparse(made.value)) if made is not None else 'It'} is a class. {CREATE_OBJECT}"
         return Cause("class-for-object", text, scene.at(made))
     if owner == "NoneType":
-        return _of_none(scene, name)
+        return attribute_of_none(scene, name)
     return Cause("not-called", "The function is named but not called: the parentheses are missing.")
 
 
 def _is_message(value: ast.expr) -> bool:
     return (dotted(value) or "").rpartition(".")[2] in ros_names.FIELDS
-
-
-def _of_none(scene: CrashScene, name: str) -> Cause | None:
-    """Return the cause if a value is None, for example because no message has arrived yet."""
-    holders = [dotted(node.value) for node in scene.on_line if isinstance(node, ast.Attribute) and node.attr == name]
-    for holder in filter(None, holders):
-        values = [node for node in scene.nodes if isinstance(node, ast.Assign) and holder in map(dotted, node.targets)]
-        if any(isinstance(each.value, ast.Constant) and each.value.value is None for each in values):
-            text = (
-                f"{shorten(holder)} is None until the first message arrives. Check for None before you use the value."
-            )
-            return Cause("none-before-message", text)
-    if name == "executor":
-        return no_object(scene)
-    known = [holder for holder in holders if holder]
-    what = f"{shorten(known[0])} is None here, so it" if len(known) == 1 else "The value is None here, so it"
-    return Cause(
-        "attribute-missing", f"{what} has no attribute {shorten(name)}. A function without return returns None."
-    )
 
 
 def _of_own_class(scene: CrashScene, owner: str, name: str) -> Cause:

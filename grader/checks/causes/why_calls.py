@@ -10,6 +10,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.comma_for_dot import comma_for_dot
 from grader.checks.causes.crash_scene import attributes_set, methods
+from grader.checks.causes.why_operands import why_operands
 from grader.checks.causes.why_other_object import CREATE_OBJECT, message_for_class, published_other
 from grader.checks.causes.why_parameters import too_few, too_many
 from grader.checks.edit import at
@@ -27,9 +28,8 @@ TOO_MANY = re.compile(
 KEYWORD = re.compile(r"(?:\w+\.)*(?P<function>\w+)\(\) got an unexpected keyword argument '(?P<name>\w+)'")
 NOT_CALLABLE = re.compile(r"'(?P<type>\w+)' object is not callable")
 EXPECTED = re.compile(r"Expected <class '[\w.]*\.(?P<wanted>\w+)'>, got <class '(?P<got>[\w.]+)'>")
-STRING_AND_NUMBER = re.compile(
-    r"can only concatenate str|unsupported operand type\(s\) for \+|rcutils_log\(\): incompatible"
-)
+LOGGED = "rcutils_log(): incompatible"
+"""rclpy's message if a log method gets something other than a string."""
 MAKERS = {
     "create_timer": 1,
     "create_subscription": 2,
@@ -119,7 +119,7 @@ def why_type(scene: CrashScene) -> Cause | None:
         return published_other(scene, expected["wanted"], expected["got"])
     if (called := NOT_CALLABLE.search(text)) is not None:
         return _not_callable(scene, called["type"])
-    return _by_message(scene, text)
+    return why_operands(scene) or _by_message(scene, text)
 
 
 def _by_message(scene: CrashScene, text: str) -> Cause | None:
@@ -136,7 +136,7 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
         return Cause("class-for-object", text, scene.at(set_to)).fixed_by(fix)
     if "descriptor '__init__'" in text and "'super'" in text:
         return Cause("not-called", "super is a function. Write super().__init__, with parentheses after super.")
-    if STRING_AND_NUMBER.search(text):
+    if LOGGED in text:
         return Cause(
             "string-and-number", "A string and a number cannot be added. Use an f-string to put a number into a string."
         )

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from grader.testbench.result import NodeRun
 
 FIXTURE = re.compile(r"fixture '(?P<name>\w+)' not found")
+UNNAMED = re.compile(r"'FixtureFunctionDefinition' object|Fixture \"\w+\" called directly")
+FIELD = re.compile(r"The '(?P<name>\w+)' field must be of type 'float'")
 TWICE = re.compile(r"Context\.init\(\) must only be called once")
 NOT_YET = re.compile(
     r"NotInitializedException|rclpy\.init\(\) has not been called|[Cc]ontext (?:is|was) not (?:valid|initialized)"
@@ -46,26 +48,9 @@ def why_rejected(run: NodeRun, code: TestCode, numbers: str = "") -> Cause:
     if run.over:
         text = "A loop that waits for a message needs a deadline. rclpy.spin never returns."
         return Cause("test-hangs", text, where or (code.tests[0].where if code.tests else None))
-    fixture = FIXTURE.search(run.message)
-    if fixture is not None:
-        text = (
-            f"No fixture is named {shorten(fixture['name'], 60)}. Does a function with this name have the "
-            "decorator @pytest.fixture?"
-        )
-        return Cause("fixture-missing", text, where)
-    if TWICE.search(run.message):
-        text = "The previous test did not call rclpy.shutdown. A fixture calls rclpy.shutdown after the yield."
-        return Cause("not-shut-down", text, where)
-    if NOT_YET.search(run.message):
-        text = "Call rclpy.init before you create a node. A fixture calls rclpy.init before the yield."
-        return Cause("no-init", text, where)
-    if OUTSIDE.search(run.message):
-        text = "A test must also run without a display and without a network."
-        return Cause("needs-the-outside", text, where)
-    constant = OF_THE_NODE.search(run.message)
-    if constant is not None:
-        text = f"Only the class is promised, not {shorten(constant['name'], 60)}. Write your numbers into the tests."
-        return Cause("test-import", text, where)
+    known = _known(run.message, where)
+    if known is not None:
+        return known
     if run.outcome == "import":
         return Cause("test-import", shorten(last_error(run.message), 150), where)
     false = always_false(code)
@@ -75,6 +60,43 @@ def why_rejected(run: NodeRun, code: TestCode, numbers: str = "") -> Cause:
     if numbers:
         text = f"Compare the test with the promise, and with your numbers: {numbers}. Does the node get enough time?"
     return Cause("rejects-right", text, where)
+
+
+def _known(message: str, where: Where | None) -> Cause | None:
+    """Return the cause if pytest's message alone shows it, else None."""
+    fixture = FIXTURE.search(message)
+    if fixture is not None:
+        text = (
+            f"No fixture is named {shorten(fixture['name'], 60)}. Does a function with this name have the "
+            "decorator @pytest.fixture?"
+        )
+        return Cause("fixture-missing", text, where)
+    unnamed = UNNAMED.search(message)
+    if unnamed is not None:
+        text = "The name of a fixture is not a parameter of the test. Then the name means the fixture's function."
+        return Cause("fixture-missing", text, where)
+    field = FIELD.search(message)
+    if field is not None:
+        text = f"The field {shorten(field['name'], 60)} is a float. Write the number with a decimal point."
+        return Cause("int-for-float", text, where)
+    return _of_ros(message, where)
+
+
+def _of_ros(message: str, where: Where | None) -> Cause | None:
+    if TWICE.search(message):
+        text = "The previous test did not call rclpy.shutdown. A fixture calls rclpy.shutdown after the yield."
+        return Cause("not-shut-down", text, where)
+    if NOT_YET.search(message):
+        text = "Call rclpy.init before you create a node. A fixture calls rclpy.init before the yield."
+        return Cause("no-init", text, where)
+    if OUTSIDE.search(message):
+        text = "A test must also run without a display and without a network."
+        return Cause("needs-the-outside", text, where)
+    constant = OF_THE_NODE.search(message)
+    if constant is not None:
+        text = f"Only the class is promised, not {shorten(constant['name'], 60)}. Write your numbers into the tests."
+        return Cause("test-import", text, where)
+    return None
 
 
 def last_error(message: str) -> str:

@@ -11,6 +11,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash import read_traceback
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_fit import RADIUS_OF_C, Fit, why_fit
+from grader.checks.causes.why_no_error import why_no_error
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, count, nearest, shorten
@@ -160,11 +161,7 @@ def refuses(evidence: Evidence, params: OneCall) -> Finding:
         return broken
     where = evidence.place("ValueError", "lstsq", "solve")
     if called.ended == "exit 0":
-        cause = (
-            "The function does not check the points before the computation. A printed message, NaN or None is not an "
-            "exception."
-        )
-        return failed(f"{name} returned {_form(called)}.", expected, Cause("no-error", cause, where))
+        return failed(f"{name} returned {_form(called)}.", expected, why_no_error(evidence))
     if crash is not None and called.kind:
         cause = "The caller expects ValueError, and cannot know what another exception means."
         return failed(f"{name} raised {crash.observed}.", expected, Cause("other-error", cause, crash.where or where))

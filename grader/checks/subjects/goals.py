@@ -11,6 +11,7 @@ from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.waiting import waits_in_callback
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_no_goal import SENDS, why_aborted, why_no_goal
+from grader.checks.causes.why_unread import why_unread
 from grader.checks.kind import Kind, NoParams, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.tolerance import Band
@@ -114,7 +115,11 @@ def _no_more(evidence: Evidence, goals: list[Goal], expected: str) -> Finding:
     if goals[-1].result_asked_s is None:
         return failed(observed, expected, waits_in_callback(evidence) or _no_result(evidence))
     text = "The callback that receives the result must send the next goal."
-    cause = waits_in_callback(evidence) or Cause("goal-not-sent", text, evidence.place("get_result_async", *SENDS))
+    cause = (
+        waits_in_callback(evidence)
+        or why_unread(evidence)
+        or Cause("goal-not-sent", text, evidence.place("get_result_async", *SENDS))
+    )
     return failed(observed, expected, cause)
 
 

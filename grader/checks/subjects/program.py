@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -14,6 +16,7 @@ from grader.checks.subjects.fit import OneCall, stopped, tolerances
 from grader.checks.subjects.log import FORMAT
 from grader.common.words import shorten
 from grader.evidence.student_log import Format
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -39,6 +42,10 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
     truth = _truth(bag)
     expected = f"{name} bags/{bag.id} prints {_line(params.format, truth)}"
     crash = read_traceback(called.stderr, evidence.submission.files)
+    program = _first_argument(evidence)
+    if crash is not None and crash.error == "AnyReaderError" and program is not None:
+        text = "sys.argv[0] is the name of the program. The first argument is sys.argv[1]."
+        return failed(f"{name} raised {crash.observed}.", expected, Cause("crash", text, program))
     if crash is not None and crash.error == "AttributeError" and "Twist" in crash.message:
         observed = f"{name} raised {crash.observed}."
         cause = "The program used a command as a pose. Read only the messages on the topic of the poses."
@@ -63,7 +70,9 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
     wrong = [key for key in params.values if not abs(given[key] - truth[key]) <= _within(bag)[key]]
     if not wrong:
         return passed(f'{name} printed "{shorten(found[0], 80)}".')
-    return failed(f'{name} printed "{shorten(found[0], 80)}".', expected, _why(wrong[0], given, bag).at(where))
+    return failed(
+        f'{name} printed "{shorten(found[0], 80)}".', expected, _why(evidence, wrong[0], given, bag).at(where)
+    )
 
 
 def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
@@ -87,7 +96,7 @@ def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
     return passed(f'{name} says "{shorten(called.stderr.strip().splitlines()[-1], 80)}"')
 
 
-def _why(key: str, given: dict[str, float], bag: BagInput) -> Cause:
+def _why(evidence: Evidence, key: str, given: dict[str, float], bag: BagInput) -> Cause:
     count, rate = bag.arc.count, bag.rate_hz
     more = count + bag.commands
     if key == "messages" and given[key] == more:
@@ -108,6 +117,9 @@ def _why(key: str, given: dict[str, float], bag: BagInput) -> Cause:
                 "period-for-rate",
                 "This is the time between two messages in seconds. The rate is 1 divided by this time.",
             )
+        rounded = _rounded_down(evidence, value, bag)
+        if rounded is not None:
+            return rounded
         return Cause(
             "wrong-rate", "The rate is the number of intervals divided by the time from the first to the last message."
         )
@@ -116,6 +128,21 @@ def _why(key: str, given: dict[str, float], bag: BagInput) -> Cause:
         values = (given["x"], given["y"], given["radius"])
         return why_fit(Fit(bag.arc, values, (within["x"], within["y"], within["radius"])))
     return Cause("wrong-count", "Each message on the topic counts once.")
+
+
+def _rounded_down(evidence: Evidence, value: float, bag: BagInput) -> Cause | None:
+    """Return the cause if // rounded the rate or the times in it down to whole numbers, else None."""
+    intervals, rate = bag.arc.count - 1, bag.rate_hz
+    seconds = intervals / rate
+    whole = {math.floor(rate), *(intervals / each for each in (math.floor(seconds), math.ceil(seconds)) if each)}
+    if not any(abs(value - each) <= HUNDREDTH for each in whole):
+        return None
+    for module in evidence.code.modules:
+        for node in module.nodes:
+            if isinstance(node, ast.BinOp | ast.AugAssign) and isinstance(node.op, ast.FloorDiv):
+                text = "// rounds down to a whole number, so the decimal places are lost. / keeps the decimal places."
+                return Cause("wrong-rate", text, Where(module.file, node.lineno))
+    return None
 
 
 def _truth(bag: BagInput) -> dict[str, float]:
@@ -130,6 +157,16 @@ def _within(bag: BagInput) -> dict[str, float]:
 
 def _line(form: str, truth: dict[str, float]) -> str:
     return form.format(**{key: round(value) if key == "messages" else value for key, value in truth.items()})
+
+
+def _first_argument(evidence: Evidence) -> Where | None:
+    """Return the place of a call that gets sys.argv[0] as an argument, else None."""
+    for module in evidence.code.modules:
+        for call in (node for node in module.nodes if isinstance(node, ast.Call)):
+            for given in call.args:
+                if isinstance(given, ast.Subscript) and ast.unparse(given) in ("sys.argv[0]", "argv[0]"):
+                    return Where(module.file, call.lineno)
+    return None
 
 
 def _bag(evidence: Evidence, id_: str) -> BagInput:

@@ -1,0 +1,33 @@
+"""Explain why Python refuses an operator between two values: one of them is a list or a string."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+
+if TYPE_CHECKING:
+    from grader.checks.causes.crash_scene import CrashScene
+
+OPERANDS = re.compile(r"unsupported operand type\(s\) for (?P<operator>[^:]+): '(?P<left>\w+)' and '(?P<right>\w+)'")
+CONCATENATED = re.compile(r"can only concatenate (?P<left>\w+) \(not \"(?P<right>\w+)\"\) to \w+")
+NUMBERS = frozenset({"int", "float", "float64"})
+
+
+def why_operands(scene: CrashScene) -> Cause | None:
+    """Return the cause of a TypeError of an operator, or None for another TypeError."""
+    found = OPERANDS.search(scene.crash.message) or CONCATENATED.search(scene.crash.message)
+    if found is None:
+        return None
+    left, right = found["left"], found["right"]
+    types = {left, right}
+    adds = "operator" not in found.groupdict() or found["operator"].startswith("+")
+    if adds and "str" in types and types & NUMBERS:
+        return Cause(
+            "string-and-number", "A string and a number cannot be added. Use an f-string to put a number into a string."
+        )
+    if "list" in types and types & NUMBERS:
+        text = "A list is not an array: Python cannot compute with all values of a list. `np.array` makes an array."
+        return Cause("crash", text)
+    return Cause("crash", f"Python cannot do this with a value of type {left} and a value of type {right}.")
