@@ -1,0 +1,32 @@
+"""The reasons why Python refuses an operator between two values."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.tests.checks.crashes import DRIVER, reported
+
+LISTS = "A list is not an array: Python cannot compute with all values of a list."
+STRINGS = "A string and a number cannot be added."
+OTHERS = "Python cannot do this with a value of type {} and a value of type {}."
+
+
+@pytest.mark.parametrize(
+    ("error", "diagnosis", "cause"),
+    [
+        ("unsupported operand type(s) for -: 'list' and 'float'", "crash", LISTS),
+        ("unsupported operand type(s) for /: 'int' and 'list'", "crash", LISTS),
+        ('can only concatenate list (not "float") to list', "crash", LISTS),
+        ('can only concatenate str (not "float") to str', "string-and-number", STRINGS),
+        ("unsupported operand type(s) for +: 'int' and 'str'", "string-and-number", STRINGS),
+        ("unsupported operand type(s) for +=: 'float' and 'str'", "string-and-number", STRINGS),
+        ("unsupported operand type(s) for /: 'str' and 'float'", "crash", OTHERS.format("str", "float")),
+        ("unsupported operand type(s) for -: 'list' and 'list'", "crash", OTHERS.format("list", "list")),
+        ("unsupported operand type(s) for +: 'Twist' and 'float'", "crash", OTHERS.format("Twist", "float")),
+    ],
+)
+def test_the_types_of_both_values_decide(error: str, diagnosis: str, cause: str) -> None:
+    told = reported(DRIVER.format(line="both = self.count - step"), f"TypeError: {error}")
+    assert told.diagnosis == diagnosis
+    assert told.cause.startswith(cause)
+    assert [text for text in (LISTS, STRINGS) if text != cause and text in told.cause] == []
