@@ -266,6 +266,8 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "extremes-for-centre": "the midpoint between the extremes of an arc is used as the centre",
         "wrong-fit": "the circle is wrong",
         "lists-refused": "a function works with arrays but not with lists",
+        "list-for-array": "a program computes with a whole list, as if the list were an array",
+        "own-name-read": "the program reads its own name instead of its first argument",
         "lstsq-result": "numpy's lstsq is called or its result is used incorrectly",
         "no-error": "a function returns a value although it must raise an exception",
         "other-error": "a function raises the wrong exception",

@@ -247,6 +247,8 @@ Diagnosis = Literal[
     "extremes-for-centre",
     "wrong-fit",
     "lists-refused",
+    "list-for-array",
+    "own-name-read",
     "lstsq-result",
     "no-error",
     "other-error",

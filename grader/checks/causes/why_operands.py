@@ -29,5 +29,5 @@ def why_operands(scene: CrashScene) -> Cause | None:
         )
     if "list" in types and types & NUMBERS:
         text = "A list is not an array: Python cannot compute with all values of a list. `np.array` makes an array."
-        return Cause("crash", text)
+        return Cause("list-for-array", text)
     return Cause("crash", f"Python cannot do this with a value of type {left} and a value of type {right}.")

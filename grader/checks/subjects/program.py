@@ -45,7 +45,7 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
     program = _first_argument(evidence)
     if crash is not None and crash.error == "AnyReaderError" and program is not None:
         text = "sys.argv[0] is the name of the program. The first argument is sys.argv[1]."
-        return failed(f"{name} raised {crash.observed}.", expected, Cause("crash", text, program))
+        return failed(f"{name} raised {crash.observed}.", expected, Cause("own-name-read", text, program))
     if crash is not None and crash.error == "AttributeError" and "Twist" in crash.message:
         observed = f"{name} raised {crash.observed}."
         cause = "The program used a command as a pose. Read only the messages on the topic of the poses."

@@ -14,9 +14,9 @@ OTHERS = "Python cannot do this with a value of type {} and a value of type {}."
 @pytest.mark.parametrize(
     ("error", "diagnosis", "cause"),
     [
-        ("unsupported operand type(s) for -: 'list' and 'float'", "crash", LISTS),
-        ("unsupported operand type(s) for /: 'int' and 'list'", "crash", LISTS),
-        ('can only concatenate list (not "float") to list', "crash", LISTS),
+        ("unsupported operand type(s) for -: 'list' and 'float'", "list-for-array", LISTS),
+        ("unsupported operand type(s) for /: 'int' and 'list'", "list-for-array", LISTS),
+        ('can only concatenate list (not "float") to list', "list-for-array", LISTS),
         ('can only concatenate str (not "float") to str', "string-and-number", STRINGS),
         ("unsupported operand type(s) for +: 'int' and 'str'", "string-and-number", STRINGS),
         ("unsupported operand type(s) for +=: 'float' and 'str'", "string-and-number", STRINGS),
