@@ -11,7 +11,7 @@ OF_CATCHING: dict[str, dict[Diagnosis, str]] = {
     "Spawning and catching": {
         "target-count": "the number of spawned turtles is wrong",
         "target-name": "a spawned turtle has the wrong name",
-        "target-place": "a turtle is spawned outside the field, or all turtles are spawned at one place",
+        "target-place": "a turtle is spawned outside the field, or all turtles are spawned in the same place",
         "target-unannounced": "an existing turtle is not announced",
         "target-format": "the names in an announcement are not separated by spaces only",
         "still-announced": "a turtle that was caught, or never existed, is announced",

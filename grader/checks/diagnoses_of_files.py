@@ -15,7 +15,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
     "package.xml": {
         "package-xml-missing": "the package has no package.xml",
         "xml-malformed": "package.xml is not valid XML: a tag is not closed, or there is text after the last tag",
-        "package-xml-invalid": "a required tag is missing in package.xml, or a tag is not allowed there",
+        "package-xml-invalid": "a required tag is missing from package.xml, or a tag is not allowed there",
         "package-xml-old-tag": "package.xml has a tag that only ROS 1 uses",
         "ros-1-package-xml": "package.xml requires catkin, the build tool of ROS 1",
         "build-type": "the build type in package.xml is not ament_python",

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from grader.exercise.tables import Table
 
 ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
-ID_WORDS = "small letters, digits and single dashes, as in half-circle"
+ID_WORDS = "lowercase letters, digits and single hyphens, as in half-circle"
 FUNCTION = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*:[A-Za-z_]\w*")
 MOST_POINTS = 10_000
 MOST_M = 1000.0

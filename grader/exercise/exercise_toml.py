@@ -96,7 +96,7 @@ def _read(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) 
     head = top.table("exercise")
     # An exercise that only needs answers.toml has no package, and its trials have no node.
     package = head.string("package", ROS_NAME, NAME, default=None if "package" in head.values else "")
-    id_ = head.string("id", ID, "small letters, digits and single dashes, as in 03-circle-publisher")
+    id_ = head.string("id", ID, "lowercase letters, digits and single hyphens, as in 03-circle-publisher")
     numbers = _numbers(top.table("numbers"), id_) if "numbers" in top.values else None
     trials = read_trials(top, package)
     checks = _checks(top, tuple(trial.id for trial in trials), kinds, numbers)
@@ -182,7 +182,7 @@ def _without_presets(tables: list[Table], trials: tuple[str, ...]) -> list[Table
 def _check(
     table: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec], numbers: NumbersSpec | None
 ) -> CheckSpec:
-    id_ = table.string("id", ID, "small letters, digits and single dashes, as in circle-radius")
+    id_ = table.string("id", ID, "lowercase letters, digits and single hyphens, as in circle-radius")
     if id_:
         table.place += f" ({id_})"
     trial = table.string("trial", default=trials[0] if trials else "?")

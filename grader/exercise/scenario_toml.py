@@ -50,7 +50,7 @@ def read_trials(top: Table, package: str) -> tuple[TrialSpec, ...]:
 
 
 def _trial(table: Table, package: str) -> TrialSpec:
-    id_ = table.string("id", ID, "small letters, digits and single dashes, as in figure-eight")
+    id_ = table.string("id", ID, "lowercase letters, digits and single hyphens, as in figure-eight")
     if id_:
         table.place += f" ({id_})"
     if "tests" in table.values:

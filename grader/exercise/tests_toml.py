@@ -56,7 +56,7 @@ def unknown_numbers(trials: Sequence[TrialSpec], numbers: NumbersSpec | None) ->
 
 
 def _broken(table: Table, right: Behaviour) -> NodeUnderTest:
-    id_ = table.string("id", ID, "small letters, digits and single dashes, as in wrong-topic")
+    id_ = table.string("id", ID, "lowercase letters, digits and single hyphens, as in wrong-topic")
     behaviour = _behaviour(table, right, ("id",))
     if behaviour == right:
         table.problem("this node equals the right node: change at least one key.")

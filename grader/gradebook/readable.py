@@ -81,7 +81,7 @@ def notebook(path: Path) -> str:
 def _require_small(read: object) -> None:
     for number, (_, depth) in enumerate(walk(read)):
         if number >= MOST_VALUES:
-            message = f"the notebook has more than the maximum of {MOST_VALUES} values"
+            message = f"the notebook has more than {MOST_VALUES} values"
             raise TooLargeError(message)
         if depth > MOST_DEPTH:
             message = f"the notebook has more than {MOST_DEPTH} nested objects"
@@ -99,6 +99,6 @@ def _content(path: Path, most: int) -> bytes:
     except ValueError as error:
         raise UnreadableError(str(error)) from error
     if len(data) > most:
-        message = f"{path.name} has more than the maximum of {most} bytes"
+        message = f"{path.name} is larger than the maximum of {most} bytes"
         raise TooLargeError(message)
     return data

@@ -82,7 +82,7 @@ def work_folder(exercise: Exercise, workspace: Path) -> Path:
 
 
 def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = False) -> Started:
-    """Add the files of the step that are missing in the workspace. With `fresh`, existing work is moved away first.
+    """Add the files of the step that are missing from the workspace. With `fresh`, existing work is moved away first.
 
     If the numbers of the step differ for each student, the numbers of `student` are written.
 
@@ -114,7 +114,7 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
 
 
 def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Copy the files of `source` that are missing in `folder`, except for notebooks.
+    """Copy the files of `source` that are missing from `folder`, except for notebooks.
 
     `instead` replaces the content of some files. Return the paths that were added, and the paths that were not changed.
     Raises OSError.
@@ -140,7 +140,7 @@ def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tup
 
 
 def lacking_lines(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, tuple[str, ...]]:
-    """Return the lines of the step's package files that are missing in the learner's files, by the path of the file.
+    """Return the lines of the step's package files that are missing from the learner's files, by the path of the file.
 
     `files` has the content of the learner's files by path. Files that are not in `files` are left out, as are the entry
     points of other steps. For a step with a package of its own, no lines are returned, because the learner's task is to
@@ -161,7 +161,7 @@ def lacking_lines(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, t
 
 
 def open_tasks(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, tuple[str, ...]]:
-    """Return the tasks (TODO 1: ...) in the step's package files that are missing in the learner's files.
+    """Return the tasks (TODO 1: ...) in the step's package files that are missing from the learner's files.
 
     `files`, the keys of the result and the errors are those of `lacking_lines`.
     """
@@ -191,7 +191,7 @@ def lacking_text(path: str, lines: Sequence[str]) -> str:
 
 
 def _lacking(theirs: Path, mine: bytes) -> tuple[str, ...]:
-    """Return the lines of the step's file that are missing in the learner's file.
+    """Return the lines of the step's file that are missing from the learner's file.
 
     Comments, spaces, commas at the end of a line and the kind of quotes are ignored.
     """
@@ -205,7 +205,7 @@ def _lacking(theirs: Path, mine: bytes) -> tuple[str, ...]:
 
 
 def _tasks(theirs: Path, mine: bytes) -> tuple[str, ...]:
-    """Return the tasks in the comments of the step's file that are missing in the learner's file."""
+    """Return the tasks in the comments of the step's file that are missing from the learner's file."""
     known = mine.decode("utf-8", "replace")
     tasks = (task.strip() for task in _TASK.findall(theirs.read_text(encoding="utf-8")))
     return tuple(task for task in tasks if task not in known)

@@ -112,7 +112,7 @@ def starting_text(exercise: Exercise, path: str) -> str | None:
 
 
 def begin(exercise: Exercise, folder: Path, *, alone: bool = False) -> tuple[str, ...]:
-    """Add the step's files that are missing in `folder`, next to the notebook. Return the paths that were written.
+    """Add the step's files that are missing from `folder`, next to the notebook. Return the paths that were written.
 
     A missing package is copied from the learner's workspace, or else from the starting point. With `alone`, a missing
     package is always copied from the starting point. Files of the student are never overwritten.

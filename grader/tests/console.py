@@ -76,7 +76,7 @@ def run(block: Block, cwd: Path, env: Mapping[str, str], timeout_s: float) -> li
 
 
 def differs(shown: tuple[str, ...], printed: str) -> str | None:
-    """Return the first expected line that is missing in the output, or None. Numbers are not compared."""
+    """Return the first expected line that is missing from the output, or None. Numbers are not compared."""
     lines = [_plain(line) for line in printed.splitlines()]
     at, jump = 0, True
     for line in shown:

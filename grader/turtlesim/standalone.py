@@ -167,7 +167,7 @@ def _options(arguments: Sequence[str]) -> argparse.Namespace:
         choices=("page", "terminal"),
         help="show the turtles: on a page on this machine (the default), or in this terminal",
     )
-    parser.add_argument("--port", type=int, help="port of the page (default: the same as the last time, or a free one)")
+    parser.add_argument("--port", type=int, help="port of the page (default: the same as last time, or a free one)")
     options = parser.parse_args(arguments)
     if options.port is not None and options.view != "page":
         parser.error("--port needs --view, which serves a page on this port")

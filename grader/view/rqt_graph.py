@@ -77,7 +77,7 @@ def _parse(argv: Sequence[str]) -> argparse.Namespace:
         "-o", "--output", type=Path, metavar="FILE", help="write the graph to a file: graph.svg, graph.png or graph.dot"
     )
     parser.add_argument("--text", action="store_true", help="print the graph as text, even on a machine with a browser")
-    parser.add_argument("--port", type=int, help="port of the page (default: the same as the last time, or a free one)")
+    parser.add_argument("--port", type=int, help="port of the page (default: the same as last time, or a free one)")
     parser.add_argument("--active", action="store_true", help="hide topics without a publisher or without a subscriber")
     parser.add_argument("--debug", action="store_true", help="also show /rosout, /parameter_events, /clock and tools")
     parser.add_argument(

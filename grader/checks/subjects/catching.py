@@ -156,7 +156,7 @@ def _other_order(
     elif [each.turtle for each in by_start] == names:
         text = (
             "The targets were caught in the order of their distances from the start. After each catch, turtle1 is "
-            "at another place."
+            "in a different place."
         )
     elif gone[0] is farthest:
         text = "The first target was the farthest one."

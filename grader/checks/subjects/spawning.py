@@ -68,7 +68,7 @@ def spawns(evidence: Evidence, params: Spawns) -> Finding:
     """The node spawned this many turtles with the right names, in different places on the field."""
     wanted = [f"{params.name}{index + 1}" for index in range(int(params.turtles))]
     expected = (
-        f"The node spawns {count(len(wanted), 'turtle')}, {wanted[0]} to {wanted[-1]}, at random places. "
+        f"The node spawns {count(len(wanted), 'turtle')}, {wanted[0]} to {wanted[-1]}, in random places. "
         f"x and y are from {params.low_m:g} to {params.high_m:g}."
     )
     calls = [call for call in calls_of(evidence) if not call.by_trial and call.service == "/spawn"]
@@ -117,7 +117,7 @@ def _places(evidence: Evidence, params: Spawns, calls: list[Call], expected: str
 
 def places_differ(evidence: Evidence, params: PlacesDiffer) -> Finding:
     """The places of the turtles differ from their places in another trial of the same node."""
-    expected = "Each time the node is started, the turtles are at other places."
+    expected = "Each time the node starts, the turtles are in different places."
     now, before = (_spawned(each) for each in (evidence, evidence.from_trial(params.other)))
     if now and now[: len(before)] == before[: len(now)]:
         observed = f"The node was started twice, and {params.name}1 was at {_at(now[0])} both times."
@@ -197,7 +197,7 @@ SPAWNS = Kind(
     "The node spawns turtles",
     Spawns,
     spawns,
-    about="The node spawns a number of turtles with the right names, on the field and at different places.",
+    about="The node spawns a number of turtles with the right names, on the field and in different places.",
 )
 PLACES_DIFFER = Kind(
     "places_differ",
@@ -205,7 +205,7 @@ PLACES_DIFFER = Kind(
     "The places are random",
     PlacesDiffer,
     places_differ,
-    about="The turtles are at other places than in the other trial of the same node.",
+    about="The turtles are in different places from those in the other trial of the same node.",
 )
 REMOVES = Kind(
     "removes_targets",

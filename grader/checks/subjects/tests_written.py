@@ -39,14 +39,17 @@ def code_of(evidence: Evidence) -> TestCode:
 
 def declared(evidence: Evidence, _: NoParams) -> Finding:
     """setup.py says that pytest runs the tests, and package.xml says that pytest must be installed."""
-    expected = f'setup.py names "{PYTEST}" as "test" in extras_require, and package.xml {TEST_DEPEND} as <test_depend>.'
+    expected = (
+        f'setup.py lists "{PYTEST}" under "test" in extras_require, '
+        f"and package.xml declares {TEST_DEPEND} as a <test_depend>."
+    )
     setup, manifest = evidence.setup_py, evidence.manifest
     if setup is not None and not any(_name(each) == PYTEST for each in setup.tested_with):
         old = setup.tests_require_line
         cause = "Without this entry, colcon test runs unittest, which finds no test function of pytest."
         if old is not None:
             cause = "setuptools ignores tests_require since version 72, and colcon test then runs unittest."
-        observed = f'setup.py does not name "{PYTEST}" in extras_require.'
+        observed = f'setup.py does not list "{PYTEST}" in extras_require.'
         where = Where("setup.py", old or setup.setup_line)
         return failed(observed, expected, Cause("tests-require" if old else "pytest-undeclared", cause, where))
     depends = () if manifest is None else (*manifest.run_depends, *manifest.other_depends)

@@ -15,7 +15,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--topics", default=[], metavar="topic", nargs="+", help="publish only these topics")
     parser.add_argument("--remap", "-m", default=[], nargs="+", help="publish on other topics: /old:=/new")
     parser.add_argument(
-        "--start-offset", type=not_negative, default=0.0, help="skip the first seconds of the recording"
+        "--start-offset", type=not_negative, default=0.0, help="start this many seconds into the bag (default: 0)"
     )
     parser.add_argument(
         "-n",

@@ -65,7 +65,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--start-offset",
         type=not_negative,
         default=0.0,
-        help="skip the first seconds of the recording",
+        help="start this many seconds into the bag (default: 0)",
     )
     parser.add_argument("--wait-for-all-acked", type=int, default=-1, metavar="TIMEOUT", help=argparse.SUPPRESS)
     add_log_level(parser)

@@ -122,7 +122,7 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
             'id = "99-test"',
             'id = "99 Test"',
             (
-                '[exercise]: "id" is "99 Test"; it must be small letters, digits and single dashes, as in '
+                '[exercise]: "id" is "99 Test"; it must be lowercase letters, digits and single hyphens, as in '
                 "03-circle-publisher."
             ),
         ),

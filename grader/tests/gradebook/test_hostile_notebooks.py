@@ -57,7 +57,7 @@ NOTEBOOKS: dict[str, tuple[Callable[[Path], object], str]] = {
     "a pipe": (pipe, "is not a regular file"),
     "a link to endless zeros": (lambda file: link(file, "/dev/zero"), "changed while it was read"),
     "a link to another student's": (lambda file: link(file, __file__), "changed while it was read"),
-    "20 GiB": (sparse, "has more than the maximum of 8388608 bytes"),
+    "20 GiB": (sparse, "is larger than the maximum of 8388608 bytes"),
     "deep lists": (lambda file: file.write_text("[" * 100_000 + "]" * 100_000), "nested too deeply"),
     "deep metadata": (
         lambda file: file.write_text(
@@ -67,7 +67,7 @@ NOTEBOOKS: dict[str, tuple[Callable[[Path], object], str]] = {
     ),
     "many values": (
         lambda file: file.write_text(json.dumps({"cells": [], "metadata": {"a": [[]] * 1_000_000}})),
-        "more than the maximum of 500000 values",
+        "more than 500000 values",
     ),
     "many cells": (
         lambda file: file.write_text(a_notebook(*(code("1") for _ in range(1001)))),

@@ -1,7 +1,8 @@
 """A fresh clone of the course, with nothing installed.
 
 Each `make` target is run in a separate clone, and one real task is done with the result. These tests need the network
-if packages are missing in the caches of pip and uv. `.ci/doors` and `make test-all` run the tests that use such clones.
+if packages are missing from the caches of pip and uv. `.ci/doors` and `make test-all` run the tests that use such
+clones.
 """
 
 from __future__ import annotations

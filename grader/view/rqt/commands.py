@@ -53,7 +53,7 @@ def rqt_plot() -> int:
 
 def _parser(command: str, description: str, epilog: str) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog=command, description=description, epilog=epilog)
-    parser.add_argument("--port", type=int, help="port of the page (default: the same as the last time, or a free one)")
+    parser.add_argument("--port", type=int, help="port of the page (default: the same as last time, or a free one)")
     return parser
 
 

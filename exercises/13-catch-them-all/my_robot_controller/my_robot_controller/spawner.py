@@ -1,4 +1,4 @@
-"""Spawn turtles at random places, announce those that are left, and remove each one that was caught."""
+"""Spawn turtles in random places, announce those that are left, and remove each one that was caught."""
 
 import random
 
