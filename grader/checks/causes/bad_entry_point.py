@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
@@ -13,6 +14,9 @@ from grader.submission.where import Where
 if TYPE_CHECKING:
     from grader.submission.setup_py import EntryPoint
 
+JOINED = re.compile(r"=[^=]*:[^=]*=")
+"""The middle of two entry points without a comma between them."""
+
 
 def bad_entry_point(point: EntryPoint) -> Finding:
     """Return a failed finding about an entry point that setuptools cannot read."""
@@ -20,7 +24,8 @@ def bad_entry_point(point: EntryPoint) -> Finding:
     expected = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION."
     where = Where("setup.py", point.line)
     why = Cause("entry-point-format", "Check the entry point character by character: = and : must each appear once.")
-    if point.text.count("=") > 1:
+    module = point.text.partition("=")[2].partition(":")[0]
+    if is_joined(point):
         why = Cause("entry-point-comma", "A comma is missing between two strings, so Python joins them into one.")
     elif "/" in point.text:
         why = Cause(
@@ -37,4 +42,12 @@ def bad_entry_point(point: EntryPoint) -> Finding:
     elif ":" not in point.text:
         text = "The entry point does not name a function. After the module, write a colon and the function name."
         why = Cause("entry-point-no-function", text)
+    elif "-" in module:
+        text = "A module name has no hyphen. The folder with the Python files is named with underscores."
+        why = Cause("entry-point-format", text).fixed_by(at(where, module, module.replace("-", "_")))
     return failed(observed, expected, why.at(where))
+
+
+def is_joined(point: EntryPoint) -> bool:
+    """Return whether the string contains two entry points."""
+    return JOINED.search(point.text) is not None

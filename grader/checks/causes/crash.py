@@ -45,7 +45,7 @@ MEANINGS = {
     "ModuleNotFoundError": "No module with that name is installed. Compare the name letter by letter.",
     "NameError": "This name was never defined. Check the spelling of the name, and the imports.",
     "NotInitializedException": "ROS 2 was used before rclpy.init or after rclpy.shutdown.",
-    "ParameterNotDeclaredException": "Declare a parameter with declare_parameter before you read the parameter.",
+    "ParameterNotDeclaredException": "Declare a parameter with declare_parameter before you read or set it.",
     "SyntaxError": "Python cannot read this line or the line before it.",
     "TabError": "The indentation mixes tabs and spaces.",
     "TypeError": "A function or an operator got a value of the wrong type, or the wrong number of arguments.",

@@ -8,7 +8,7 @@ import tokenize
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.bad_entry_point import bad_entry_point
+from grader.checks.causes.bad_entry_point import bad_entry_point, is_joined
 from grader.checks.edit import at
 from grader.checks.outcome import Finding, failed
 from grader.common.words import nearest, shorten
@@ -40,10 +40,12 @@ def no_entry_point(evidence: Evidence) -> Finding:
     executable, setup = evidence.trial.executable, evidence.setup_py
     expected = f"{FORM}. NAME is {executable}."
     points = (setup.entry_points if setup is not None else None) or ()
-    joined = next((point for point in points if point.text.count("=") > 1), None)
+    joined = next((point for point in points if is_joined(point)), None)
     if joined is not None:
         return bad_entry_point(joined)
     observed = f"The package has no executable {executable}."
+    if executable in evidence.built.executables:
+        observed = f"The executable {executable} is not an entry point."
     cause = _unread(evidence, setup) or _script(evidence)
     if cause is None:
         others = sorted(set(evidence.built.entry_points) | set(evidence.built.executables))

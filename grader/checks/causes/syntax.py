@@ -103,28 +103,31 @@ COMMA_FOR_DOT = (
     ),
 )
 """(pattern of a line that Python cannot read, cause): a comma in place of a dot."""
-CONFLICT = r"^(<<<<<<<|=======|>>>>>>>)"
+CONFLICT = r"^(<<<<<<<|>>>>>>>)"
+MIDDLE = "======="
+"""Git's line between two versions. In a docstring, the same line can underline a heading."""
 OTHERWISE = "The mistake is often at the end of the previous line: a bracket, a colon or the indentation."
 
 
 def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
     """Return the cause of a SyntaxError, with the line to look at if Python names a different line."""
-    conflict = line_of(data, CONFLICT)
+    line = _line(unreadable, data)
+    conflict = line_of(data, CONFLICT) or (unreadable.line if line.rstrip() == MIDDLE else None)
     open_string = "unterminated string" in unreadable.message and unreadable.line != conflict
     if conflict is not None and not open_string:
         text = (
             "Git left two versions in the file, between <<<<<<< and >>>>>>>. Keep one version and delete the markers."
         )
         return Cause("merge-conflict", text, Where(file, conflict))
-    unquoted = _unquoted(unreadable, data)
-    if unquoted:
-        return Cause("syntax-error", "An entry point is a string, so it needs quotation marks.", Where(file, unquoted))
-    glued = NO_SPACE.fullmatch(_line(unreadable, data))
+    place = Where(file, unreadable.line)
+    if file.rpartition("/")[2] == "setup.py" and ENTRY_POINT.fullmatch(line):
+        return Cause("syntax-error", "An entry point is a string, so it needs quotation marks.", place)
+    glued = NO_SPACE.fullmatch(line)
     if glued is not None:
-        place = Where(file, unreadable.line)
         fix = at(place, glued["keyword"] + glued["rest"], f"{glued['keyword']} {glued['rest']}")
-        return Cause("syntax-error", f"A space is missing after {glued['keyword']}.", place).fixed_by(fix)
-    line = _line(unreadable, data)
+        changed = applied({file: data}, fix)
+        if changed is not None and _reads_further(file, changed[file], unreadable):
+            return Cause("syntax-error", f"A space is missing after {glued['keyword']}.", place).fixed_by(fix)
     other_syntax = _other_syntax(line, unreadable.message)
     if other_syntax is not None:
         return other_syntax
@@ -192,11 +195,6 @@ def _line(unreadable: Unreadable, data: bytes) -> str:
     """Return the line that Python's error message refers to, or an empty string."""
     lines = data.decode("utf-8", "replace").splitlines()
     return lines[unreadable.line - 1] if unreadable.line and unreadable.line <= len(lines) else ""
-
-
-def _unquoted(unreadable: Unreadable, data: bytes) -> int | None:
-    """Return the line number in Python's message if that line is an entry point without quotation marks, else None."""
-    return unreadable.line if ENTRY_POINT.fullmatch(_line(unreadable, data)) else None
 
 
 def unreadable_observed(file: str, unreadable: Unreadable) -> str:

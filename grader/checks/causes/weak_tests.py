@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.common.words import shorten
+from grader.submission.constants import dotted
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -35,14 +36,14 @@ def without_assert(code: TestCode) -> tuple[TestFunction, ...]:
 
 def why_without_assert(test: TestFunction) -> Cause:
     """Return the reason why a test contains no assert."""
-    for node in ast.walk(test.node):
+    for node in _own(test.node):
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Compare):
             text = "Without assert before it, a comparison has no effect."
             return Cause("compares-only", text, Where(test.module.file, node.lineno))
         if isinstance(node, ast.Return) and isinstance(node.value, ast.Compare):
             text = "pytest ignores the return value of a test. Write assert instead of return."
             return Cause("compares-only", text, Where(test.module.file, node.lineno))
-    return Cause("no-assert", "A test without an assert passes on every node that does not crash.", test.where)
+    return Cause("no-assert", "A test without an assert fails only if something raises an exception.", test.where)
 
 
 def always_true(code: TestCode) -> Cause | None:
@@ -56,9 +57,14 @@ def always_true(code: TestCode) -> Cause | None:
 
 
 def always_false(code: TestCode) -> Cause | None:
-    """Return the cause if a test fails whatever the node does."""
+    """Return the cause if a test fails whatever the node does.
+
+    A test that may return or skip itself before it fails is not meant.
+    """
     for test in code.tests:
         for node in test.node.body:
+            if any(isinstance(each, ast.Return) or _is_call_of(each, "skip") for each in ast.walk(node)):
+                break
             value = node.test if isinstance(node, ast.Assert) else None
             is_false = isinstance(value, ast.Constant) and not value.value
             if is_false or _is_call_of(node, "fail"):
@@ -68,15 +74,25 @@ def always_false(code: TestCode) -> Cause | None:
 
 
 def swallowed(code: TestCode) -> Cause | None:
-    """Return the cause if an except clause catches the failure of an assert."""
+    """Return the cause if an except clause catches the failure of an assert and does nothing that fails the test."""
     for module in code.modules:
         for node in module.nodes:
             if isinstance(node, ast.Try) and any(isinstance(each, ast.Assert) for each in _below(node.body)):
-                for handler in node.handlers:
-                    if _catches(handler) and not any(isinstance(each, ast.Raise) for each in ast.walk(handler)):
-                        text = "This except catches the AssertionError, so pytest does not notice the failure."
-                        return Cause("swallows-failure", text, Where(module.file, handler.lineno))
+                handler = next(filter(_catches, node.handlers), None)
+                if handler is not None and not _asserts(handler) and not _asserted_later(module, node, handler):
+                    text = "This except catches the AssertionError, so pytest does not notice the failure."
+                    return Cause("swallows-failure", text, Where(module.file, handler.lineno))
     return None
+
+
+def _asserted_later(module: Module, tried: ast.Try, handler: ast.ExceptHandler) -> bool:
+    """Return whether an assert outside the try statement uses a name that the except clause sets or appends to."""
+    kept = {each.id for each in ast.walk(handler) if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)}
+    calls = (each.func for each in ast.walk(handler) if isinstance(each, ast.Call))
+    kept |= {_last(each.value) for each in calls if isinstance(each, ast.Attribute) and each.attr in ("append", "add")}
+    inside = set(map(id, ast.walk(tried)))
+    later = [node for node in module.nodes if isinstance(node, ast.Assert) and id(node) not in inside]
+    return any(isinstance(each, ast.expr) and _last(each) in kept for node in later for each in ast.walk(node))
 
 
 def in_a_loop(code: TestCode) -> Cause | None:
@@ -86,10 +102,18 @@ def in_a_loop(code: TestCode) -> Cause | None:
         loops = [node for node in ast.walk(test.node) if isinstance(node, ast.For)]
         for node in loops if asserts else ():
             inside = set(map(id, ast.walk(node)))
-            if not isinstance(node.iter, ast.Call | ast.List | ast.Tuple) and {id(each) for each in asserts} <= inside:
+            if _may_be_empty(node.iter, test.module) and {id(each) for each in asserts} <= inside:
                 text = "If no message arrives, the list is empty and the assert in this loop never runs."
                 return Cause("assert-in-loop", text, Where(test.module.file, node.lineno))
     return None
+
+
+def _may_be_empty(listed: ast.expr, module: Module) -> bool:
+    """Return whether a loop over this expression may have no iteration. Nothing is said about the result of a call."""
+    if isinstance(listed, ast.Call | ast.List | ast.Tuple):
+        return False
+    value = module.names.get(dotted(listed) or "")
+    return not (isinstance(value, ast.List | ast.Tuple) and value.elts)
 
 
 def timed_loop(code: TestCode) -> Cause | None:
@@ -147,8 +171,16 @@ def _last(node: ast.expr) -> str:
     return node.attr if isinstance(node, ast.Attribute) else getattr(node, "id", "")
 
 
-def _is_call_of(node: ast.stmt, name: str) -> bool:
+def _is_call_of(node: ast.AST, name: str) -> bool:
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Call) and _last(node.value.func) == name
+
+
+def _own(function: ast.AST) -> Iterator[ast.AST]:
+    """Yield the syntax nodes of a function, except the nodes of functions and classes that are defined inside it."""
+    for node in ast.iter_child_nodes(function):
+        yield node
+        if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda | ast.ClassDef):
+            yield from _own(node)
 
 
 def _below(body: list[ast.stmt]) -> Iterator[ast.AST]:

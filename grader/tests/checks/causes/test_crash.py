@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.checks.causes.crash import START, Crash, crash_of, end_observed, ended_early, read_traceback
+from grader.checks.causes.crash import MEANINGS, START, Crash, crash_of, end_observed, ended_early, read_traceback
+from grader.submission.where import Where
 from grader.tests.checks.made import NODE_FILE, evidence, recording
 from grader.tests.checks.shapes import TRACEBACK
 from grader.trial.recording import Output, ProcessEnd
@@ -85,6 +86,34 @@ def test_an_exception_is_reported_with_its_words_if_it_has_any() -> None:
 def test_an_error_has_a_meaning(crash: Crash, meaning: str) -> None:
     assert crash.meaning.startswith(meaning)
     assert Crash("BananaError", "").meaning == ""
+
+
+@pytest.mark.parametrize(
+    ("error", "meaning"),
+    [
+        ("ParameterNotDeclaredException", "Declare a parameter with declare_parameter before you read or set it."),
+        ("SyntaxError", "Python cannot read this line or the line before it."),
+        ("ZeroDivisionError", "A number was divided by zero."),
+    ],
+)
+def test_a_meaning_belongs_to_its_error_only(error: str, meaning: str) -> None:
+    assert crash_of(ended(stderr=traceback(f"{error}: x"))) == Crash(error, "x", Where(NODE_FILE, 14))
+    assert Crash(error, "x").meaning == meaning
+    assert [other for other, said in MEANINGS.items() if said == meaning] == [error]
+
+
+@pytest.mark.parametrize(
+    ("between", "error"),
+    [
+        ("During handling of the above exception, another exception occurred:", "ValueError"),
+        ("The above exception was the direct cause of the following exception:", "ValueError"),
+        ("The above exception was printed by the node itself:", "KeyError"),
+    ],
+)
+def test_only_pythons_own_words_make_a_chain(between: str, error: str) -> None:
+    crash = read_traceback(f"{traceback('ValueError: a')}\n{between}\n\n{traceback('KeyError: b')}", FILES)
+    assert crash is not None
+    assert crash.error == error
 
 
 @pytest.mark.parametrize(

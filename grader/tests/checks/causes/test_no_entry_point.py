@@ -55,7 +55,7 @@ def setup_py(instead: str, more: str = "") -> Files:
             setup_py('            "a = b.c:main" "draw_circle = my_robot_controller.draw_circle:main",\n'),
             "entry-point-comma",
             "setup.py:14",
-            "A comma is missing",
+            "A comma is missing between two strings, so Python joins them into one.",
         ),
         (
             setup_py(f"            # {POINT.strip()}\n"),
@@ -86,6 +86,10 @@ def test_another_group_is_shown_at_its_line() -> None:
         "entry-point-group"
     ] * 2
     assert [str(found({"setup.py": text}).where) for text in (other, other.replace(POINT, ""))] == ["setup.py:13"] * 2
+    words = 'entry_points has the group "console_script". Executables belong in the group console_scripts.'
+    assert found({"setup.py": other}).cause == words
+    both = other.replace("    },", '        "console_scripts": [],\n    },')
+    assert "has the group" not in found({"setup.py": both}).cause
 
 
 def test_comments_that_are_no_entry_point_are_none() -> None:
@@ -117,13 +121,13 @@ SCRIPT = replace(BUILD, entry_points={})
             {"scripts/draw_circle": "#!/usr/bin/env python3\nprint(1)\n"},
             "script-for-entry-point",
             "scripts/draw_circle:1",
-            "",
+            "scripts/draw_circle is installed as a script. Use an entry point that names a function in a module.",
         ),
         (
             {"scripts/draw_circle": "import rclpy\nprint(1)\n"},
             "script-shebang",
             "scripts/draw_circle:1",
-            '"import rclpy"',
+            'scripts/draw_circle is installed as a script, and its first line, "import rclpy", does not name Python.',
         ),
         ({"scripts/draw_circle": "#!/bin/sh\necho python\n"}, "script-shebang", "scripts/draw_circle:1", '"#!/bin/sh"'),
         ({"scripts/draw_circle": "#!/usr/bin/python\r\n1\r\n"}, "script-shebang", "scripts/draw_circle:1", ""),
@@ -136,6 +140,10 @@ def test_a_script_is_no_entry_point(files: Files, diagnosis: str, where: str, wo
     got = found({**setup_py(""), **files}, SCRIPT)
     assert (got.diagnosis, str(got.where)) == (diagnosis, where)
     assert words in got.cause
+    assert got.observed == "The executable draw_circle is not an entry point."
+    without = found({**setup_py(""), **files})
+    assert without.observed == "The package has no executable draw_circle."
+    assert "is installed as a script" not in without.cause
 
 
 @pytest.mark.parametrize(

@@ -21,17 +21,6 @@ METHODS = """
         pass
 """
 SOURCE = "import rclpy\n" + DRIVER.replace("\ndef outside", METHODS + "\ndef outside")
-ROSPY = (
-    ("init_node", "The node gets its name in super().__init__."),
-    ("is_shutdown", "In ROS 2, rclpy.ok() returns the opposite."),
-    ("get_time", "the node's clock gives the time"),
-    ("get_param", "a node has declare_parameter and get_parameter"),
-    ("loginfo", "the logger has the method info"),
-    ("logwarn", "the logger has the method warning"),
-    ("logerr", "the logger has the method error"),
-    ("Rate", "a node does regular work in the callback of a timer"),
-)
-"""Names of rospy, with their replacements in ROS 2."""
 
 
 def cause(line: str, error: str) -> str:
@@ -176,13 +165,6 @@ def test_a_sentence_is_printed_where_it_is_true_and_not_near_it(
 ) -> None:
     assert words in cause(true, error)
     assert words not in cause(near or true, error if near else "ZeroDivisionError: division by zero")
-
-
-@pytest.mark.parametrize(("name", "words"), ROSPY)
-def test_what_replaces_a_name_of_rospy(name: str, words: str) -> None:
-    assert words in cause(f"rclpy.{name}()", NO_ATTRIBUTE.format("module 'rclpy'", name))
-    others = [other for other, _ in ROSPY if other != name]
-    assert not any(words in cause(f"rclpy.{each}()", NO_ATTRIBUTE.format("module 'rclpy'", each)) for each in others)
 
 
 INSIDE = "\n    def publish_it(self):\n        pass\n"

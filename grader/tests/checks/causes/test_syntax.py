@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from grader.checks.causes.syntax import unreadable_finding
-from grader.submission.code import Unreadable
+from grader.submission.code import Unreadable, read_module
+from grader.tests.checks.made import NODE_FILE, evidence, finding, submission
 
 WORDS = {
     "(unicode error) 'utf-8' codec can't decode byte 0xe4": "not-utf8",
@@ -38,10 +39,26 @@ def test_pythons_words_lead_to_the_mistake(words: str, diagnosis: str) -> None:
     assert not found.observed.endswith("..")
 
 
-@pytest.mark.parametrize("mark", [b"<<<<<<< HEAD", b"=======", b">>>>>>> main"])
+@pytest.mark.parametrize("mark", [b"<<<<<<< HEAD", b">>>>>>> main"])
 def test_marks_of_a_conflict_are_reported_whatever_python_says(mark: bytes) -> None:
     found = unreadable_finding("a.py", Unreadable("expected ':'", 1), b"x = 1\n" + mark + b"\n")
     assert found.diagnosis == "merge-conflict"
+
+
+@pytest.mark.parametrize(("line", "conflict"), [(4, True), (6, False)])
+def test_a_heading_in_a_docstring_is_no_conflict(line: int, *, conflict: bool) -> None:
+    data = b'"""The node\n\nDrawing\n=======\n"""\nx = (\n'
+    assert (
+        unreadable_finding("a.py", Unreadable("invalid syntax", line), data).diagnosis == "merge-conflict"
+    ) == conflict
+
+
+@pytest.mark.parametrize(("source", "reads"), [(b"def send(:\n", False), (b"def send():\n", True)])
+def test_a_file_that_python_cannot_read_is_expected_to_be_valid(source: bytes, *, reads: bool) -> None:
+    module = read_module(NODE_FILE, source + b"    pass\n\ndef main():\n    pass\n")
+    assert (module.unreadable is None) == reads
+    found = finding("entry-point", evidence(package=submission({NODE_FILE: source + b"    pass\nmain = send\n"})))
+    assert (found.expected == "The file is valid Python.") == (not reads)
 
 
 @pytest.mark.parametrize(
@@ -86,14 +103,26 @@ def test_a_comma_in_place_of_a_dot_is_named(line: str, words: str | None) -> Non
         ("// a comment", "/ a", "In Python, a comment begins with #."),
         ("msg = new Twist()", "msg = knew Twist()", "Python has no keyword new."),
         ("if x {", "if x }", "In Python, a block begins with a colon, not with a brace."),
-        ("defsend(self):", "send(self):", "A space is missing after def."),
-        ("classNode(object):", "Node(object):", "A space is missing after class."),
-        ("first = a.b:main,", '"first = a.b:main",', "An entry point is a string, so it needs quotation marks."),
+        ("defsend(self):\n    pass", "default(1, :\n    pass", "A space is missing after def."),
+        ("classNode(object):\n    pass", "classify(1, :\n    pass", "A space is missing after class."),
     ],
 )
 def test_a_line_that_python_cannot_read_is_explained(source: str, line: str, words: str) -> None:
     assert words in unreadable_finding("a.py", Unreadable("invalid syntax", 1), f"{source}\n".encode()).cause
     assert words not in unreadable_finding("a.py", Unreadable("invalid syntax", 1), f"{line}\n".encode()).cause
+
+
+@pytest.mark.parametrize(
+    ("file", "line", "found"),
+    [
+        ("setup.py", "first = a.b:main,", True),
+        ("setup.py", '"first = a.b:main",', False),
+        ("my_robot_controller/draw_circle.py", "x = msg.x:float", False),
+    ],
+)
+def test_an_entry_point_without_quotation_marks_is_one_of_setup_py(file: str, line: str, *, found: bool) -> None:
+    given = unreadable_finding(file, Unreadable("invalid syntax", 1), f"{line}\n".encode()).cause
+    assert (given == "An entry point is a string, so it needs quotation marks.") == found
 
 
 SAID = {

@@ -119,6 +119,15 @@ def test_the_cause_names_the_deadlock_and_the_line() -> None:
     assert str(cause.where) == f"{NODE_FILE}:16"
 
 
+@pytest.mark.parametrize(("step", "found"), [("time.sleep(0.5)", True), ("self.pen.call(1)", False)])
+def test_a_sleep_in_a_callback_is_told_from_a_deadlock(step: str, *, found: bool) -> None:
+    source = NODE.format(init="pass", callback="self.step", step=step, ask="pass", main="time.sleep(0.5)")
+    (wait,) = waits_in_callbacks(evidence(package=submission({NODE_FILE: source})))
+    words = "While a callback sleeps, the node calls no other callback. Count the calls of the timer instead,"
+    assert wait.cause.text.startswith(words) == found
+    assert wait.deadlock != found
+
+
 def test_a_spin_in_a_callback_has_no_method_of_the_same_name() -> None:
     source = NODE.format(init="pass", callback="self.step", step="until(self, future)", ask="pass", main="pass")
     cause = waits_in_callback(evidence(package=submission({NODE_FILE: source})))

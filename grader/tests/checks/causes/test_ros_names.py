@@ -1,0 +1,43 @@
+"""The names that the grader knows from ROS 1 and ROS 2."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.checks.causes.ros_names import OF_ROS_1
+from grader.tests.checks.crashes import DRIVER, reported
+
+
+def cause(name: str) -> str:
+    """Return the cause for a node that calls a function of the module rclpy that does not exist."""
+    error = f"AttributeError: module 'rclpy' has no attribute '{name}'"
+    return reported("import rclpy\n" + DRIVER.format(line=f"rclpy.{name}()"), error).cause
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("init_node", "The node gets its name in super().__init__."),
+        ("is_shutdown", "In ROS 2, rclpy.ok() returns the opposite."),
+        ("Publisher", "In ROS 2, the method create_publisher of the node creates a publisher."),
+        ("Subscriber", "In ROS 2, the method create_subscription of the node creates a subscription."),
+        ("Rate", "In ROS 2, a node does regular work in the callback of a timer."),
+        ("Timer", "In ROS 2, the method create_timer of the node creates a timer."),
+        ("sleep", "In ROS 2, a node does regular work in the callback of a timer."),
+        ("get_time", "In ROS 2, the node's clock gives the time: get_clock().now()."),
+        ("get_param", "In ROS 2, a node has declare_parameter and get_parameter."),
+        ("loginfo", "In ROS 2, the logger has the method info."),
+        ("logwarn", "In ROS 2, the logger has the method warning."),
+        ("logerr", "In ROS 2, the logger has the method error."),
+    ],
+)
+def test_what_replaces_a_name_of_rospy_is_told_for_that_name_only(name: str, words: str) -> None:
+    assert cause(name) == f"{name} belongs to rospy, the library of ROS 1. {words}"
+    others = [other for other, text in OF_ROS_1.items() if text != words]
+    assert not any(words in cause(other) for other in (*others, "spinn"))
+
+
+@pytest.mark.parametrize(("near", "name"), [("spinn", "spin"), ("intt", "init")])
+def test_a_name_that_rospy_does_not_have_is_not_one_of_ros_1(near: str, name: str) -> None:
+    assert "belongs to rospy" not in cause(near)
+    assert f"A similar name exists: {name}." in cause(near)

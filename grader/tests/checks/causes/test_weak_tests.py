@@ -1,0 +1,108 @@
+"""The sentences about tests that prove nothing, each with a test that proves something."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.checks.causes.weak_tests import always_false, always_true, in_a_loop, swallowed, why_without_assert
+from grader.submission.pytest_files import TestCode, read_test_code
+
+SEARCH = "    for each in bench.heard:\n        if each.linear.x == 0.0:\n            return\n"
+TRY = "    try:\n        assert bench.heard\n    {handler}\n"
+
+
+def code(body: str, above: str = "") -> TestCode:
+    """Return a test file with one test. `above` is the source code above the test."""
+    return read_test_code({"test/test_guard.py": f"{above}def test_it(bench):\n{body}\n".encode()}, "my_package")
+
+
+@pytest.mark.parametrize(
+    ("body", "words", "line"),
+    [
+        ("    bench.count() == 10", "Without assert before it, a comparison has no effect.", 2),
+        ("    return bench.count() == 10", "pytest ignores the return value of a test. Write assert instead", 2),
+        ("    print(bench.count())", "A test without an assert fails only if something raises an exception.", 1),
+        (
+            "    def done():\n        return bench.count() == 10\n    bench.spin(done)",
+            "A test without an assert fails only if something raises an exception.",
+            1,
+        ),
+    ],
+)
+def test_what_a_test_has_in_place_of_an_assert_is_told(body: str, words: str, line: int) -> None:
+    given = code(body)
+    cause = why_without_assert(given.tests[0])
+    assert (cause.text.startswith(words), cause.where and cause.where.line) == (True, line)
+    others = {"Without assert before it", "pytest ignores the return value", "A test without an assert fails"}
+    assert [each for each in others if each in cause.text] == [each for each in others if each in words]
+
+
+@pytest.mark.parametrize(
+    ("body", "found"),
+    [
+        ("    assert (bench.count() == 10, 'ten')", True),
+        ("    assert (bench.count() == 10), 'ten'", False),
+        ("    assert bench.count() == (10, 'ten')", False),
+    ],
+)
+def test_an_assert_of_a_tuple_is_always_true(body: str, *, found: bool) -> None:
+    cause = always_true(code(body))
+    words = "assert (condition, message) tests a tuple, which is always true. Remove the parentheses."
+    assert (cause is not None and cause.text == words) == found
+
+
+@pytest.mark.parametrize(
+    ("body", "found"),
+    [
+        ("    assert False, 'to do'", True),
+        ("    pytest.fail('to do')", True),
+        (f"{SEARCH}    assert False, 'never zero'", False),
+        ("    if not bench.heard:\n        pytest.skip('silent')\n    assert False", False),
+        ("    if not bench.heard:\n        pytest.fail('silent')", False),
+        ("    assert bench.heard", False),
+    ],
+)
+def test_only_a_test_that_cannot_end_earlier_always_fails(body: str, *, found: bool) -> None:
+    cause = always_false(code(body))
+    assert (cause is not None) == found
+    assert cause is None or cause.text == "test_it fails on every node, even on the correct node."
+
+
+@pytest.mark.parametrize(
+    ("handler", "after", "found"),
+    [
+        ("except AssertionError:\n        print('it drives')", "", True),
+        ("except:\n        pass", "", True),
+        ("except (ValueError, Exception):\n        pass", "", True),
+        ("except ValueError:\n        pass", "", False),
+        ("except AssertionError:\n        raise", "", False),
+        ("except AssertionError:\n        raise\n    except Exception:\n        pass", "", False),
+        ("except AssertionError:\n        pytest.fail('it drives')", "", False),
+        ("except AssertionError:\n        assert False, 'it drives'", "", False),
+        ("except AssertionError:\n        wrong = True", "    assert not wrong", False),
+        ("except AssertionError:\n        wrong.append(1)", "    assert not wrong", False),
+        ("except AssertionError:\n        wrong = True", "    print(wrong)", True),
+    ],
+)
+def test_an_except_that_hides_a_failure_is_found(handler: str, after: str, *, found: bool) -> None:
+    cause = swallowed(code(TRY.format(handler=handler) + after))
+    assert (cause is not None) == found
+    words = "This except catches the AssertionError, so pytest does not notice the failure."
+    assert cause is None or (cause.text, cause.where and cause.where.line) == (words, 4)
+
+
+@pytest.mark.parametrize(
+    ("above", "listed", "found"),
+    [
+        ("", "bench.heard", True),
+        ("heard = []\n", "heard", True),
+        ("SPEEDS = [0.5, 1.0]\n", "SPEEDS", False),
+        ("SPEEDS = (0.5, 1.0)\n", "SPEEDS", False),
+        ("", "range(3)", False),
+        ("", "[0.5, 1.0]", False),
+    ],
+)
+def test_a_loop_over_what_may_be_empty_is_found(above: str, listed: str, *, found: bool) -> None:
+    cause = in_a_loop(code(f"    for each in {listed}:\n        assert each", above))
+    words = "If no message arrives, the list is empty and the assert in this loop never runs."
+    assert (cause is not None and cause.text == words) == found
