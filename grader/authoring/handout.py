@@ -7,7 +7,8 @@ from pathlib import Path
 
 from grader.authoring.release import release
 from grader.checks.exercises import find_exercise
-from grader.errors import MachineError, UsageError
+from grader.common.new_folder import new_folder
+from grader.errors import UsageError
 from grader.exercise.model import catalogue, course_folder
 
 _FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore", "COLCON_IGNORE")
@@ -24,17 +25,13 @@ def hand_out(to: Path) -> None:
         MachineError: the folder cannot be written.
     """
     root = course_folder().parent
-    if to.exists() and (not to.is_dir() or any(to.iterdir())):
-        message = f"{to} is not an empty folder. Name a new folder."
-        raise UsageError(message)
     if not (root / "solutions").is_dir():
         message = f"The repository for students needs solutions/, but {root} does not have this folder."
         raise UsageError(message)
     package = Path(__file__).parent.parent
     files = package / "repository" if (package / "repository").is_dir() else root
     skipped = shutil.ignore_patterns(*_NOT_FOR_STUDENTS, *_IN_A_WHEEL)
-    try:
-        to.mkdir(parents=True, exist_ok=True)
+    with new_folder(to):
         for name in _FILES:
             shutil.copyfile(files / name, to / name)
         shutil.copytree(root / "course", to / "course", ignore=shutil.ignore_patterns(*_NOT_FOR_STUDENTS))
@@ -43,9 +40,6 @@ def hand_out(to: Path) -> None:
         for name in catalogue():
             release(root / "solutions" / name, to / "exercises" / name)
         (to / "README.md").write_text(_readme(), encoding="utf-8")
-    except OSError as error:
-        message = f"{error.filename or to} could not be written: {error.strerror}."
-        raise MachineError(message) from error
 
 
 def _readme() -> str:

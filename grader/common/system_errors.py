@@ -5,8 +5,10 @@ Like machine.py, this module runs under any Python 3 before anything is installe
 
 import errno
 import os
+import re
 import resource
-from typing import Optional
+import shutil
+from typing import Optional, Tuple
 
 OF_THE_DISK = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS})
 """Errors which mean that the disk is full or broken. Any other error concerns a single file."""
@@ -14,23 +16,57 @@ ROOM = "free some space there, or set another folder with XDG_CACHE_HOME, XDG_ST
 _SCARCE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN, errno.EIO})
 _NOT_ALLOWED = "see the output of `grader doctor`"
 
+_NO_TEMPORARY_FOLDER = (
+    "No folder for temporary files can be written: free some space in /tmp, or set another folder with TMPDIR."
+)
+
 
 def refusal(error: BaseException) -> Optional[str]:
     """Return the sentence for an error raised by the operating system, or None for any other error."""
     if isinstance(error, MemoryError):
         return sentence(errno.ENOMEM)
+    if isinstance(error, RecursionError):
+        return _refusal_behind(error)
     if isinstance(error, RuntimeError):
         return sentence(errno.EAGAIN) if "start new thread" in str(error) else refusal_in(str(error))
+    if isinstance(error, shutil.Error):
+        path, reason = path_and_reason(error)
+        return refusal_in(reason) or sentence(0, path)
+    if isinstance(error, FileNotFoundError) and str(error.strerror).startswith("No usable temporary directory"):
+        return _NO_TEMPORARY_FOLDER
     if isinstance(error, OSError):
-        where = os.fsdecode(error.filename) if isinstance(error.filename, (str, bytes)) else ""
-        return sentence(error.errno or 0, where)
+        return sentence(error.errno or 0, path_and_reason(error)[0])
     return None
+
+
+def _refusal_behind(error: BaseException) -> Optional[str]:
+    """Return the sentence for the system error that Python was handling when `error` was raised, or None.
+
+    Removing a temporary folder that may not be opened recurses endlessly in Python 3.10 to 3.12.
+    """
+    behind = error.__context__
+    while behind is not None and not isinstance(behind, OSError):
+        behind = behind.__context__
+    return refusal(behind) if behind else None
 
 
 def refusal_in(said: str) -> Optional[str]:
     """Return a sentence for users if the message `said` mentions a lack of disk space, memory, files or processes."""
     found = next((number for number in sorted(_SCARCE) if os.strerror(number) in said), None)
     return sentence(found) if found else None
+
+
+def path_and_reason(error: OSError) -> Tuple[str, str]:
+    """Return the path of an error of the file system ("" if there is none), and the reason.
+
+    shutil.copytree collects the errors of all files, and has no reason of its own. The first error counts.
+    """
+    if isinstance(error, shutil.Error) and error.args and error.args[0]:
+        _, path, said = error.args[0][0]
+        found = re.match(r"\[Errno (\d+)\]", said)
+        return str(path), os.strerror(int(found.group(1))) if found else said
+    path = os.fsdecode(error.filename) if isinstance(error.filename, (str, bytes)) else ""
+    return path, error.strerror or str(error) or "it gave no reason"
 
 
 def of_the_machine(error: OSError) -> bool:

@@ -7,14 +7,17 @@ from typing import TYPE_CHECKING
 
 from grader.authoring.release import release
 from grader.classroom.roster import read_roster
+from grader.common.new_folder import new_folder
 from grader.common.words import shorten
-from grader.errors import MachineError, UsageError
+from grader.errors import UsageError
 from grader.exercise.model import catalogue, course_folder
-from grader.gradebook.class_folders import CONFIG, open_class
+from grader.gradebook.class_folders import open_class
 from grader.submission.search import IGNORE_MARKER
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from grader.gradebook.class_folders import ClassFolders
 
 COLUMNS = ("id", "first_name", "last_name", "email")
 _LEFTOVERS = shutil.ignore_patterns("__pycache__", "*.pyc", ".ipynb_checkpoints", "build", "install", "log")
@@ -29,33 +32,28 @@ def make_class(folder: Path, roster: Path | None) -> int:
     """
     students = read_students(roster) if roster else []
     root = course_folder().parent
-    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        message = f"{folder} is not an empty folder. Name a new folder."
-        raise UsageError(message)
     if not (root / "solutions").is_dir():
         message = "This copy of the course has no solutions. A class needs a complete checkout of the course."
         raise UsageError(message)
-    try:
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        folder.mkdir(mode=0o700, exist_ok=True)  # other users must not read the solutions and the gradebook
+    with new_folder(folder, mode=0o700):  # other users must not read the solutions and the gradebook
         # Without this file, colcon in this folder would run the setup.py of every submission outside the sandbox.
         (folder / IGNORE_MARKER).touch()
         shutil.copytree(root / "course", folder / "course", ignore=_LEFTOVERS)
         for name in catalogue():
             shutil.copytree(root / "solutions" / name, folder / "solutions" / name, ignore=_LEFTOVERS)
             release(folder / "solutions" / name, folder / "exercises" / name)
-    except OSError as error:
-        message = f"{error.filename or folder} could not be written: {error.strerror}."
-        raise MachineError(message) from error
-    assert (folder / "course" / CONFIG).is_file()
-    folders = open_class(folder / "course")
+        _enrol(students, open_class(folder / "course"))
+    return len(students)
+
+
+def _enrol(students: list[dict[str, str]], folders: ClassFolders) -> None:
+    """Add the students to the gradebook, which is created."""
     from nbgrader.api import Gradebook
 
     with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
         for student in students:
             about = {key: value for key, value in student.items() if key != "id" and value}
             gradebook.update_or_create_student(student["id"], **about)
-    return len(students)
 
 
 def read_students(file: Path) -> list[dict[str, str]]:

@@ -247,10 +247,19 @@ def _sourced(env: Mapping[str, str]) -> Ros | None:
         version=_version(prefix),
         prefix=prefix,
         prefixes=(prefix,),
-        python=Path(sys.executable),
+        python=_this_python(Path(sys.executable)),
         python_path=own("PYTHONPATH"),
         library_path=own("LD_LIBRARY_PATH"),
     )
+
+
+def _this_python(started: Path) -> Path:
+    """Return this interpreter as `python3`, although it may have been started as `python`.
+
+    The path is a part of the underlay's key, and the underlay must not be built once for each name.
+    """
+    usual = started.with_name("python3")
+    return usual if usual.exists() and usual.samefile(started) else started
 
 
 def _wheels(prefix: Path) -> Ros | None:

@@ -77,8 +77,8 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
 
     say("Installing " + ("what the grader needs" if sourced else "ROS 2 Jazzy and what the grader needs"))
     selected = lock.select(text, parts, without=without)
-    if sourced and numpy_is_too_old():
-        say("The system's numpy is too old for the images: .venv gets a newer one, and the system keeps its own")
+    if sourced and numpy_is_missing():
+        say("The system has no numpy that can draw the images: .venv gets one, and the system is not changed")
         selected += _NUMPY.read_text(encoding="utf-8")
     rest = _write("rest", selected)
     downloading = _uv("-r", str(rest), *_OPTIONS, "--compile-bytecode")
@@ -94,12 +94,16 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
     return {"download": downloading or 0.0, "install": total - (downloading or 0.0)}
 
 
-def numpy_is_too_old() -> bool:
-    """Return whether the system's numpy, which .venv of a sourced ROS 2 uses, is too old to draw the images."""
+def numpy_is_missing() -> bool:
+    """Return whether .venv of a sourced ROS 2 needs a numpy of its own.
+
+    The system may have no numpy, or one that is too old to draw the images. A numpy inside the prefix of the sourced
+    ROS 2 does not count: the grader's own processes do not search PYTHONPATH.
+    """
     try:
         version = metadata.version("numpy")
     except metadata.PackageNotFoundError:
-        return False  # the sourced ROS 2 has a numpy of its own
+        return True
     return tuple(map(int, version.split(".")[:2])) < _OLDEST_NUMPY
 
 

@@ -74,6 +74,7 @@ def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> 
     Raises:
         TooLargeError: the function took too much time or memory.
         UnreadableError: the function raised an exception other than the grader's own errors.
+        MachineError: a module that the function needs is not installed.
         GraderError: the function itself raised this error.
     """
     if _Child.inside:
@@ -197,6 +198,9 @@ def _answer(function: Callable[[], object]) -> bytes:
         raised = TooLargeError("it is nested too deeply to be read")
     except GraderError as error:
         raised = error
+    except ModuleNotFoundError as error:
+        # The child imports only the grader's modules and libraries, so the installation is incomplete.
+        raised = MachineError(f"{error.name} is not installed: run `make demo` in the course's folder.")
     except Exception as error:
         if os.environ.get("GRADER_DEBUG"):
             traceback.print_exc()

@@ -33,6 +33,7 @@ OUR_TURTLESIM = "grader sim" if REAL_TURTLESIM else "ros2 run turtlesim turtlesi
 of_the_wheels = pytest.mark.skipif(
     bool(SOURCED_ENV), reason="this test needs the course's own ROS 2, but another ROS 2 is sourced"
 )
+of_a_sourced_ros = pytest.mark.skipif(not SOURCED_ENV, reason="this test needs a sourced ROS 2")
 of_our_ros2 = pytest.mark.skipif(
     REAL_ROS2, reason="this test needs the course's own ros2, but the real one is installed"
 )

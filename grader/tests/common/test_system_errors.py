@@ -1,10 +1,15 @@
 from __future__ import annotations
 
 import errno
+import shutil
+from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.common.system_errors import of_the_machine, refusal
+from grader.common.system_errors import of_the_machine, path_and_reason, refusal
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 @pytest.mark.parametrize(
@@ -24,6 +29,7 @@ from grader.common.system_errors import of_the_machine, refusal
         ),
         (OSError(errno.EROFS, "x", 7), "The disk cannot be written to: "),
         (OSError(), "it gave no reason"),
+        (FileNotFoundError(errno.ENOENT, "No usable temporary directory found in ['/tmp']"), "with TMPDIR"),
     ],
 )
 def test_what_the_system_refuses_is_one_sentence_with_what_to_do(error: BaseException, said: str) -> None:
@@ -43,3 +49,19 @@ def test_a_path_that_does_not_exist_is_whoever_named_its_mistake() -> None:
     assert of_the_machine(OSError(errno.ENOSPC, "x"))
     assert not of_the_machine(FileNotFoundError(errno.ENOENT, "x"))
     assert not of_the_machine(PermissionError(errno.EACCES, "x"))
+
+
+def test_the_reason_of_a_folder_that_was_not_copied_is_that_of_its_first_file(tmp_path: Path) -> None:
+    (tmp_path / "from").mkdir()
+    (tmp_path / "from/gone").symlink_to(tmp_path / "nowhere")
+    with pytest.raises(shutil.Error) as raised:
+        shutil.copytree(tmp_path / "from", tmp_path / "to")
+    assert path_and_reason(raised.value) == (f"{tmp_path}/to/gone", "No such file or directory")
+    full = shutil.Error([("from/a", "to/a", "[Errno 28] No space left on device: 'to/a'")])
+    assert str(refusal(full)).startswith("The disk is full: ")
+
+
+def test_a_recursion_while_an_error_is_handled_is_told_as_that_error() -> None:
+    recursion = RecursionError()
+    recursion.__context__ = PermissionError(errno.EPERM, "x", "/tmp/grader-run")
+    assert "for /tmp/grader-run (Operation not permitted)" in str(refusal(recursion))

@@ -14,24 +14,18 @@ import pytest
 
 from grader.setup import machine
 from grader.tests.case import ROOT
-from grader.tests.faults.inject import ALL, LIMIT_S, Done, Fault, environment, failures, no_traceback, run
+from grader.tests.faults.doors import DOORS, PACKAGE, SOLUTION, STEP, commanded
+from grader.tests.faults.inject import ALL, LIMIT_S, Done, Fault, environment, failures, no_traceback
 
-STEP = "03-circle-publisher"
-COMMANDS = {
-    "class": ("grader.classroom.grade_class:grade_class", f"grader grade class --exercise {STEP} --out out"),
-    "start": ("grader.learner.steps:start", "grader start 01"),
-    "env": ("grader.ros.shell:code", "grader env"),
-    "list": ("grader.ros2.main:run", "ros2 topic list"),
-    "create": ("grader.ros2.main:run", "ros2 pkg create --build-type ament_python --node-name drive my_package"),
-    "run": ("grader.ros2.main:run", "ros2 run turtlesim nothing"),
-    "show": ("grader.ros2.main:run", "ros2 interface show turtlesim/msg/Pose"),
-}
 EVERY_DAY = [
     ("class", "fork", errno.EAGAIN, 1),
     ("class", "open", errno.EMFILE, 1),
     ("class", "mkdir", errno.ENOSPC, 1),
     ("start", "mkdir", errno.ENOSPC, 1),
     ("start", "open", errno.EPERM, 1),
+    ("own run", "write", errno.ENOSPC, 1),
+    ("new", "open", errno.EMFILE, 5),
+    ("new", "mkdir", errno.ENOSPC, 40),
     ("env", "open", errno.EMFILE, 1),
     ("list", "open", errno.EMFILE, 1),
     ("list", "thread", errno.EAGAIN, 1),
@@ -46,28 +40,20 @@ sys.exit(setup_errors.guarded(lambda: bootstrap.main(["learner"])))
 """
 
 
-def commanded(name: str, folder: Path, shim: Path, call: str, number: int, nth: int) -> Done:
-    since, command = COMMANDS[name]
-    if name == "class":
-        for student in ("ada", "bob"):
-            shutil.copytree(ROOT / "solutions" / STEP, folder / "class" / student)
-    home = {"HOME": str(folder), "XDG_CACHE_HOME": os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")}
-    return run(command.split(), folder, shim, Fault(call, number, nth, since), home)
-
-
 def reported(done: Done) -> None:
     """Check that the command either succeeded or reported a machine error."""
     no_traceback(done)
     if done.failures and done.code not in (0, 1):
         assert done.code == 3, done
         assert done.said.strip().splitlines()[-1].endswith("."), done
+        assert "None" not in done.said, done
 
 
 @pytest.mark.parametrize(("name", "call", "number", "nth"), EVERY_DAY)
 def test_what_the_system_refuses_a_command_is_a_sentence(
     tmp_path: Path, shim: Path, name: str, call: str, number: int, nth: int
 ) -> None:
-    done = commanded(name, tmp_path, shim, call, number, nth)
+    done = commanded(name, tmp_path, shim, (call, number, nth))
     reported(done)
     assert done.failures > 0
 
@@ -76,8 +62,8 @@ def test_what_the_system_refuses_a_command_is_a_sentence(
 def test_what_the_system_refuses_watch_is_said_and_it_ends_as_it_was_requested_to(
     tmp_path: Path, shim: Path, call: str, number: int
 ) -> None:
-    package = tmp_path / "my_robot_controller"
-    shutil.copytree(ROOT / "solutions" / STEP / "my_robot_controller", package)
+    package = tmp_path / PACKAGE
+    shutil.copytree(SOLUTION / PACKAGE, package)
     env = environment(tmp_path, shim, Fault(call, number, 1, "grader.grading.grade:grade"))
     screen: pexpect.spawn[str] = pexpect.spawn(
         str(Path(sys.prefix, "bin/grader")),
@@ -134,8 +120,8 @@ def test_what_the_system_refuses_the_set_up_is_a_sentence(tmp_path: Path, shim: 
 
 @pytest.mark.exhaustive
 @pytest.mark.parametrize(("call", "number", "nth"), ALL)
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", DOORS)
 def test_nothing_that_the_system_refuses_a_command_is_a_traceback(
     tmp_path: Path, shim: Path, name: str, call: str, number: int, nth: int
 ) -> None:
-    reported(commanded(name, tmp_path, shim, call, number, nth))
+    reported(commanded(name, tmp_path, shim, (call, number, nth)))

@@ -17,6 +17,7 @@ import pytest
 
 from grader.errors import MachineError
 from grader.ros import installation, underlay
+from grader.tests.both_worlds import of_a_sourced_ros
 from grader.tests.traps import Traps, careless
 
 if TYPE_CHECKING:
@@ -57,6 +58,14 @@ def builds(monkeypatch: pytest.MonkeyPatch) -> list[Sequence[str]]:
 def without(monkeypatch: pytest.MonkeyPatch, *programs: str) -> None:
     found = shutil.which
     monkeypatch.setattr(shutil, "which", lambda name, path=None: None if name in programs else found(name, path=path))
+
+
+@of_a_sourced_ros
+def test_it_is_found_whatever_name_this_python_was_started_with() -> None:
+    code = "from grader.ros.installation import find_ros; print(find_ros().python)"
+    names = [str(Path(sys.executable).with_name(name)) for name in ("python", "python3")]
+    said = {subprocess.check_output([name, "-I", "-c", code], text=True) for name in names}
+    assert said == {f"{names[1]}\n"}
 
 
 @pytest.mark.exhaustive

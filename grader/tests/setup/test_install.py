@@ -80,12 +80,12 @@ def test_a_numpy_that_is_too_old_for_the_images_is_replaced_in_the_environment(
     assert "numpy==1.26.4" not in installers.uv[-1], "the wheels of ROS 2 use the numpy of the lock file"
 
 
-def test_a_numpy_of_the_ros_itself_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_numpy_that_only_the_ros_itself_can_import_is_none_of_the_graders(monkeypatch: pytest.MonkeyPatch) -> None:
     def missing(name: str) -> str:
         raise metadata.PackageNotFoundError(name)
 
     monkeypatch.setattr(metadata, "version", missing)
-    assert not install.numpy_is_too_old()
+    assert install.numpy_is_missing()
 
 
 def test_pip_installs_what_uv_could_not(installers: Installers) -> None:

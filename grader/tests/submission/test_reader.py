@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+from importlib import import_module
 from pathlib import Path
 from typing import NoReturn
 
@@ -86,6 +87,11 @@ def test_errors_of_ours_come_back_and_others_are_the_submissions() -> None:
         read(breaks)
     with pytest.raises(UnreadableError, match="SIGSEGV"):
         read(crashes)
+
+
+def test_a_module_that_is_not_installed_is_not_the_submissions_fault() -> None:
+    with pytest.raises(MachineError, match="no_such_module is not installed"):
+        read(import_module, "no_such_module")
 
 
 @pytest.mark.parametrize("function", [hoards, nests, overflows, spins, sleeps])
