@@ -61,8 +61,7 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
     """Return the cause of an AttributeError, depending on the type of the object."""
     taken = OF_THE_NODE.search(scene.crash.message)
     if taken is not None:
-        name = next(filter(None, taken.groups()))
-        return Cause("name-of-node", f"Every node already has an attribute named {name}. Choose another name.")
+        return _without_setter(scene, next(filter(None, taken.groups())))
     match = NO_ATTRIBUTE.search(scene.crash.message)
     if match is None:
         return None
@@ -79,6 +78,17 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
     if match["type"] or owner.startswith("Metaclass_"):
         return class_for_object(scene, owner.removeprefix("Metaclass_"), name)
     return _of_another_object(scene, owner, name)
+
+
+def _without_setter(scene: CrashScene, name: str) -> Cause | None:
+    """Return the cause if a property cannot be set: the student's own property, or one that rclpy's nodes have."""
+    own = next((each for each in scene.functions(name) if "property" in map(dotted, each.decorator_list)), None)
+    if own is not None:
+        text = f"{name} is a property without a setter, so nothing can be assigned to it. Use another name inside it."
+        return Cause("name-used-twice", text, scene.at(own))
+    if not any(isinstance(node, ast.Attribute) and dotted(node) == f"self.{name}" for node in scene.on_line):
+        return None
+    return Cause("name-of-node", f"Every node already has an attribute named {name}. Choose another name.")
 
 
 def _written_name(scene: CrashScene, name: str) -> str:

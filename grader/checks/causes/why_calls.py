@@ -156,8 +156,9 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
 
 def _with_init(scene: CrashScene) -> Cause | None:
     """Return the cause if a with statement on the line calls rclpy.init, else None."""
+    entered = [item.context_expr for node in scene.nodes if isinstance(node, ast.With) for item in node.items]
     for call in scene.calls_on_line("init"):
-        if dotted(call.func) == "rclpy.init":
+        if call in entered and dotted(call.func) == "rclpy.init":
             text = "Only newer distributions allow rclpy.init in a with statement. In Jazzy, rclpy.init returns None."
             return Cause("crash", text, scene.at(call))
     return None
@@ -192,8 +193,8 @@ def _too_few(scene: CrashScene, function: str, names: str) -> Cause:
 
 
 def _init_misspelt(scene: CrashScene) -> Cause | None:
-    """Return the cause if a class has a method whose name is a misspelling of __init__, else None."""
-    for own in scene.classes:
+    """Return the cause if the class of the new object has a method with a misspelt name of __init__, else None."""
+    for own in (each for each in scene.classes if scene.calls_on_line(each.name)):
         names = {each.name: each for each in methods(own)}
         found = [name for name in names if name.strip("_") in ("init", "int", "inti") or name == "__intit__"]
         if "__init__" not in names and found:
@@ -225,7 +226,7 @@ def _too_many(scene: CrashScene, many: re.Match[str]) -> Cause | None:
     passed = len(calls[0].args)
     # Python counts `self` as an argument of a method, too.
     most = int(many["most"]) - (int(many["given"]) - passed)
-    takes = f"at most {count(most, 'argument')}" if most else "no arguments"
+    takes = f"at most {count(most, 'positional argument')}" if most else "no positional arguments"
     text = (
         f"{function} takes {takes}, but {passed} {'is' if passed == 1 else 'are'} passed here.{MORE.get(function, '')}"
     )

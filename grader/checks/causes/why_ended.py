@@ -89,13 +89,20 @@ def why_no_node(evidence: Evidence) -> Cause:
         return bare
     if not code.calls("init"):
         return Cause("no-init", "rclpy.init is never called.", code.start)
+    entry = (evidence.entry_point() or "").rpartition(":")[2]
+    mentioned = {entry, *(_named(node) for module in code.modules for node in module.nodes)}
     for module in code.modules:
         for node in module.nodes:
-            if isinstance(node, ast.ClassDef) and not code.calls(node.name) and _is_node(node):
+            if isinstance(node, ast.ClassDef) and node.name not in mentioned and _is_node(node):
                 text = f"The class {node.name} is defined but never called. Call the class to create the node."
                 return Cause("node-not-made", text, Where(module.file, node.lineno))
     text = "The program may wait or loop forever before it creates the node, or it may never create a node."
     return Cause("no-node", text, evidence.place("init"))
+
+
+def _named(node: ast.AST) -> str:
+    """Return the name or the attribute that an expression reads, or an empty string."""
+    return getattr(node, "id", "") if isinstance(node, ast.Name) else getattr(node, "attr", "")
 
 
 def named_only(evidence: Evidence, *names: str) -> Cause | None:

@@ -14,9 +14,12 @@ if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
     from grader.checks.edit import Edit
 
-FIELD = re.compile(r"The '(?P<field>\w+)' field must be (?:of|a sub message of) type '(?P<type>\w+)'")
+FIELD = re.compile(r"The '(?P<field>\w+)' field must be (?P<inner>of|a sub message of) type '(?P<type>\w+)'")
+RANGE = re.compile(r"The '(?P<field>\w+)' field must be an (?:un)?signed integer in \[(?P<low>-?\d+), (?P<high>\d+)\]")
 LIST = re.compile(r"The '(?P<field>\w+)' field must be a set or sequence")
 FLOAT = ("float", "double")
+KINDS = {"int": "a whole number", "str": "a string", "bool": "True or False"}
+"""Maps Python's type of a field to a phrase for its values."""
 READS = ("input", "get", "str", "format", "getenv")
 """Functions that return a string."""
 
@@ -25,6 +28,10 @@ def why_field(scene: CrashScene) -> Cause | None:
     """Return the cause of a wrong value, such as an int, a string or a NumPy number in a float field."""
     match = FIELD.search(scene.crash.message)
     if match is None:
+        limits = RANGE.search(scene.crash.message)
+        if limits is not None:
+            text = f"The field {limits['field']} is a whole number from {limits['low']} to {limits['high']}."
+            return Cause("field-type", text)
         many = LIST.search(scene.crash.message)
         if many is not None:
             text = f"The field {many['field']} is a list. Write square brackets, even for one element."
@@ -33,15 +40,14 @@ def why_field(scene: CrashScene) -> Cause | None:
             return Cause("message-arguments", "Create the message without arguments, then set its fields one by one.")
         return None
     field, wanted = match["field"], match["type"]
-    if wanted == "int":
-        return Cause("field-type", f"The field {field} is a whole number: write it without a decimal point.")
-    if wanted in ("str", "bool"):
-        kind = "a string" if wanted == "str" else "True or False"
-        return Cause("field-type", f"The field {field} must be {kind}.")
-    if wanted not in FLOAT:
-        return Cause("field-type", f"The field {field} is a {wanted} with its own fields. Set these fields.")
     value = assigned(scene, field)
     resolved = value and _resolved(scene, value)
+    if match["inner"] != "of":
+        return Cause("field-type", f"The field {field} is a {wanted} with its own fields. Set these fields.")
+    if wanted not in FLOAT:
+        point = isinstance(resolved, ast.Constant) and isinstance(resolved.value, float)
+        more = ": write it without a decimal point" if point else ""
+        return Cause("field-type", f"The field {field} must be {KINDS.get(wanted, wanted)}{more}.")
     cause = why_no_float(field, resolved) or Cause(
         "field-type", f"The field {field} is a float, but the value has another type. Convert it with float(...)."
     )

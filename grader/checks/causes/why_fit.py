@@ -90,7 +90,10 @@ def _why_radius(fit: Fit) -> tuple[Diagnosis, str] | None:
     value, within = fit.values[2], fit.within[2]
     c = radius**2 - x**2 - y**2
     more = within * (1.0 + 2.0 * (radius + abs(x) + abs(y)))
-    if abs(value - radius**2) <= within * (1.0 + 2.0 * radius):
+    squared = abs(value - radius**2) <= within * (1.0 + 2.0 * radius)
+    if squared and abs(value - 2.0 * radius) <= 2.0 * within:
+        return "radius-squared", "This is the square of the radius, or twice the radius."
+    if squared:
         return "radius-squared", "This is the square of the radius. The equation of the circle contains r squared."
     if abs(value - 2.0 * radius) <= 2.0 * within:
         return "diameter", "This is the diameter, twice the radius."

@@ -42,8 +42,10 @@ def _no_module(scene: CrashScene, name: str) -> Cause:
             "Newer ROS 2 distributions have these messages in turtlesim_msgs. In Jazzy, these messages are in "
             "turtlesim.",
         ).fixed_by(at(scene.crash.where, "turtlesim_msgs", "turtlesim"))
-    if top in NOT_HERE:
-        return Cause("module-missing", f"{NOT_HERE[top]} This grader does not have {top}, so it cannot run this node.")
+    if name in NOT_HERE:
+        return Cause(
+            "module-missing", f"{NOT_HERE[name]} This grader does not have {name}, so it cannot run this node."
+        )
     files = scene.evidence.submission.files
     if f"{top}.py" in files:
         text = (

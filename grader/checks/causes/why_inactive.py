@@ -18,12 +18,14 @@ TRANSITIONS = ("on_activate", "on_configure")
 
 
 def never_activated(evidence: Evidence) -> Cause | None:
-    """Return the cause if the node is a lifecycle node that does not activate itself, else None.
+    """Return the cause if the node is a lifecycle node that needs to be activated and does not activate itself.
 
+    A lifecycle node without such methods and publishers works like any other node.
     The grader never activates a node: an exercise asks for a node that works as soon as it is started.
     """
     if evidence.code.calls("trigger_activate"):
         return None
+    publishes = evidence.code.calls("create_lifecycle_publisher")
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.ClassDef) and LIFECYCLE in [
@@ -31,7 +33,9 @@ def never_activated(evidence: Evidence) -> Cause | None:
             ]:
                 methods = {each.name: each.lineno for each in node.body if isinstance(each, ast.FunctionDef)}
                 name = next((each for each in TRANSITIONS if each in methods), None)
-                text = "A lifecycle node does nothing until it is activated, and nothing activates this node."
+                if not name and not publishes:
+                    continue
+                text = "A lifecycle node waits until it is activated, and nothing activates this node."
                 more = f" So {name} is never called." if name else ""
                 return Cause(
                     "method-never-called", text + more, Where(module.file, methods.get(name or "", node.lineno))

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 KILL, RESET = "/kill", "/reset"
 SAME_TIME_S = 0.1
 """The maximum difference between the recorded times of two simultaneous events (s)."""
+LONGEST_S = 1.0
+"""The maximum time (s) from a call to the removal that it causes."""
 
 
 def why_killed(evidence: Evidence, track: Track, service: str) -> Cause:
@@ -24,7 +26,7 @@ def why_killed(evidence: Evidence, track: Track, service: str) -> Cause:
     text = f"Remove a target only in the callback of {service}."
     gone_s = track.gone_s or 0.0
     for call in evidence.recording.calls:
-        if call.by_trial or not gone_s - call.t_s >= -SAME_TIME_S:
+        if call.by_trial or not -SAME_TIME_S <= gone_s - call.t_s <= LONGEST_S:
             continue
         if call.service == KILL and call.request.get("name") == track.turtle:
             text = (

@@ -100,6 +100,7 @@ def main():
         ("class Driver(Node):", "rclpy.init()", "rclpy.spin(node)", "node-not-made", 6),
         ("class Driver(rclpy.node.Node):", "rclpy.init()", "rclpy.spin(node)", "node-not-made", 6),
         ("class Driver(Base()):", "rclpy.init()", "rclpy.spin(node)", "no-node", 10),
+        ("class Driver(Node):", "rclpy.init()", "kind = Driver; rclpy.spin(kind())", "no-node", 10),
         ("class Driver(Node):", "rclpy.init()", "rclpy.spin(Driver())", "no-node", 10),
         ("def drive():", "rclpy.init()", "rclpy.spin(node)", "no-node", 10),
     ],
@@ -112,3 +113,5 @@ def test_a_program_without_a_node_is_explained_by_the_source(
     assert (cause.diagnosis, cause.where and cause.where.line) == (diagnosis, line)
     assert cause.where is not None
     assert cause.where.file == NODE_FILE
+    words = "The class Driver is defined but never called. Call the class to create the node."
+    assert (cause.text == words) == (diagnosis == "node-not-made")

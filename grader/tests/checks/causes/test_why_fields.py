@@ -41,6 +41,36 @@ def test_the_value_tells_why_it_is_no_float(line: str, diagnosis: str, words: st
     )
 
 
+@pytest.mark.parametrize(
+    ("line", "error", "cause"),
+    [
+        (
+            "msg.linear = 2.0",
+            "The 'linear' field must be a sub message of type 'Vector3'",
+            "The field linear is a Vector3 with its own fields. Set these fields.",
+        ),
+        ("msg.data = 2", "The 'data' field must be of type 'str'", "The field data must be a string."),
+        ("msg.data = 1", "The 'data' field must be of type 'bool'", "The field data must be True or False."),
+        ("msg.data = b''", "The 'data' field must be of type 'bytes' or", "The field data must be bytes."),
+        (
+            "pen.r = 2.0",
+            "The 'r' field must be of type 'int'",
+            "The field r must be a whole number: write it without a decimal point.",
+        ),
+        ("pen.r = '2'", "The 'r' field must be of type 'int'", "The field r must be a whole number."),
+        (
+            "pen.r = 300",
+            "The 'r' field must be an unsigned integer in [0, 255]",
+            "The field r is a whole number from 0 to 255.",
+        ),
+    ],
+)
+def test_a_field_that_is_no_float_has_its_own_sentence(line: str, error: str, cause: str) -> None:
+    found = reported(f"{line}  # crashed\n", f"AssertionError: {error}")
+    assert (found.diagnosis, found.line, found.cause) == ("field-type", 1, cause)
+    assert reported(f"{line}  # crashed\n", FLOAT).cause != cause
+
+
 def test_a_value_of_which_nothing_is_known_is_of_another_type() -> None:
     assert reported("", FLOAT).diagnosis == "field-type"
 

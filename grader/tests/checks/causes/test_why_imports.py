@@ -39,6 +39,12 @@ HELPER = {"my_robot_controller/helper.py": "", "my_robot_controller/unhelper.py"
             "import-name",
             "The module geometry_msgs.msg has no such name",
         ),
+        (
+            "No module named 'tkinter'",
+            "module-missing",
+            "tkinter is Python's module for graphical windows. This grader does not have tkinter, so it",
+        ),
+        ("No module named 'tkinter.mesages'", "module-missing", "No installed package has a module tkinter.mesages."),
         ("DLL load failed", "crash", "That name cannot be imported from this module."),
     ],
 )

@@ -1,0 +1,39 @@
+"""A target that was removed without being caught: by /kill, by /reset, or for an unknown reason."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.checks.causes.why_killed import why_killed
+from grader.tests.checks.made import evidence, recording
+from grader.trial.observed import Call, Track
+
+FAR = Track("far", ((0.0, 9.0, 5.5, 0.0),), 5.0)
+KILLED = (
+    "/kill was called for far, but /catch was not. Call /kill only in the callback of /catch, with the name in its "
+    "request."
+)
+ONLY = "Remove a target only in the callback of /catch."
+
+
+def kill(t_s: float, name: str) -> Call:
+    return Call(t_s, "/kill", "turtlesim/srv/Kill", {"name": name}, {}, t_s)
+
+
+def reset(t_s: float, *, by_trial: bool = False) -> Call:
+    return Call(t_s, "/reset", "std_srvs/srv/Empty", {}, {}, t_s, by_trial=by_trial)
+
+
+@pytest.mark.parametrize(
+    ("call", "cause"),
+    [
+        (kill(4.9, "far"), KILLED),
+        (kill(4.9, "near"), ONLY),
+        (reset(4.9), "/reset was called, which removes all turtles except turtle1."),
+        (reset(1.0), ONLY),
+        (reset(5.5), ONLY),
+        (reset(4.9, by_trial=True), ONLY),
+    ],
+)
+def test_only_the_call_that_removed_the_target_is_told(call: Call, cause: str) -> None:
+    assert why_killed(evidence(recording([], calls=(call,))), FAR, "/catch").text == cause
