@@ -8,8 +8,11 @@ export PATH := $(if $(PATH),$(PATH):)/usr/local/sbin:/usr/local/bin:/usr/sbin:/u
 
 BIN := .venv/bin
 # `make demo PYTHON=python3.12` chooses the Python of .venv, and replaces a .venv of another Python.
+# The first python3 that runs: pyenv, asdf and Windows put programs with this name into PATH that are not Python.
+RUNS = -EsB -c "print(3)" 2> /dev/null
+STARTER = $(shell for each in python3 /usr/bin/python3; do [ "$$($$each $(RUNS))" = 3 ] && echo $$each && break; done)
 # Without compiled modules: a full disk may have truncated them, and the set-up must still start.
-SET_UP := python3 -EsB -X pycache_prefix=/dev/null -m grader.setup.bootstrap
+SET_UP = $(STARTER) -EsB -X pycache_prefix=/dev/null -m grader.setup.bootstrap
 CHOSEN := $(if $(findstring command line,$(origin PYTHON)),--python $(PYTHON))
 
 help: ## this list
@@ -52,4 +55,4 @@ clean: ## remove .venv and the files of the tools; never your own work
 	@$(SET_UP) tests $(CHOSEN)
 
 python3:
-	@command -v python3 > /dev/null || sh grader/setup/get_python3.sh
+	@[ -n "$(STARTER)" ] || sh grader/setup/get_python3.sh

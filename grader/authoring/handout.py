@@ -11,7 +11,7 @@ from grader.common.new_folder import new_folder
 from grader.errors import UsageError
 from grader.exercise.model import catalogue, course_folder
 
-_FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore", "COLCON_IGNORE")
+_FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore", ".gitattributes", "COLCON_IGNORE")
 _NOT_FOR_STUDENTS = ("tests", "benchmarks", "__pycache__", "*.pyc")
 _IN_A_WHEEL = ("course", "exercises", "solutions", "repository")
 """Folders that a wheel contains inside the package, and a checkout next to the package (see hatch_build.py)."""

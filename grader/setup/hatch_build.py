@@ -8,7 +8,7 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 _FOLDERS = ("course", "exercises", "solutions")
-_FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore", "COLCON_IGNORE")
+_FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore", ".gitattributes", "COLCON_IGNORE")
 
 
 class CourseHook(BuildHookInterface):  # type: ignore[type-arg]

@@ -117,11 +117,10 @@ def _pip(requirements: Path) -> None:
     if done.code != 0:
         known = setup_errors.of_output(done.said, STAMP.parent)
         network = setup_errors.offline(done.said)
-        if network and not known:
-            known = setup_errors.NO_NETWORK.format(network)
-        if not known:
+        if not known and not network:
             _repeat(done)
-        raise MachineError(known or _UNKNOWN)
+        known = known or (setup_errors.NO_NETWORK.format(network) if network else _UNKNOWN)
+        raise MachineError(known + setup_errors.configured_indexes(done.said))
 
 
 def _uv(*arguments: str) -> float | None:

@@ -28,9 +28,10 @@ _FULL_MB = 50
 _NUMBER = re.compile(r"\[Errno (\d+)\]|\(os error (\d+)\)")
 _OFFLINE = re.compile(
     "(?:Temporary failure in )?name resolution|Name or service not known|No address associated with hostname|"
-    "Network is unreachable|No route to host|failed to lookup address",
+    "Network is unreachable|No route to host|Connection refused|failed to lookup address",
     re.IGNORECASE,
 )
+_INDEXES = re.compile(r"^Looking in indexes: (.+)$", re.MULTILINE)
 _WRITE = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
 
 
@@ -88,6 +89,12 @@ def offline(said: str) -> Optional[str]:
     """Return the part of an installer's output that shows that the network is missing, or None."""
     found = _OFFLINE.search(said)
     return found.group() if found else None
+
+
+def configured_indexes(said: str) -> str:
+    """Return a sentence with the indexes that pip printed because they are configured, or an empty string."""
+    found = _INDEXES.search(said)
+    return f" pip is configured to use {found.group(1)} (`pip config list`)." if found else ""
 
 
 def cache() -> Path:

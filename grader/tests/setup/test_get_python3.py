@@ -109,6 +109,7 @@ def test_make_runs_it_where_there_is_no_python3(tmp_path: Path) -> None:
     machine = Machine(tmp_path / "bin", 0)
     program = shutil.which("make") or give_up("make", "make")
     without = MAKEFILE.read_text("utf-8").replace("/usr/bin:/sbin:/bin", "").replace("/usr/sbin:", "")
+    without = without.replace("python3 /usr/bin/python3;", "python3;")
     (tmp_path / "Makefile").write_text(without)
     (tmp_path / "grader").symlink_to(SCRIPT.parents[1])
     env = {"PATH": machine.stand_ins.path}

@@ -94,6 +94,13 @@ def test_pip_installs_what_uv_could_not(installers: Installers) -> None:
     assert installers.pip[1] == installers.uv[0]
 
 
+@pytest.mark.parametrize("failed", ["Retrying: [Errno 111] Connection refused\n", "ERROR: No matching distribution\n"])
+def test_an_index_that_pip_was_configured_to_use_is_named(installers: Installers, failed: str) -> None:
+    installers.failed["pip"] = f"Looking in indexes: http://127.0.0.1:9/simple\n{failed}"
+    with pytest.raises(MachineError, match=r"configured to use http://127\.0\.0\.1:9/simple \(`pip config list`\)\.$"):
+        install.install(PARTS["learner"], sourced=False)
+
+
 def test_without_a_network_it_is_the_machine(installers: Installers, capfd: pytest.CaptureFixture[str]) -> None:
     installers.failed["pip"] = "WARNING: Retrying: [Errno -3] Temporary failure in name resolution\nERROR: none\n"
     with pytest.raises(MachineError, match=r"\(Temporary failure in name resolution\)\. Is it online\? A proxy"):

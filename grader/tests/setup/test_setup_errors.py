@@ -44,6 +44,9 @@ def test_words_of_a_missing_network_are_found() -> None:
         "Temporary failure in name resolution"
     )
     assert setup_errors.offline("dns error: failed to lookup address information") == "failed to lookup address"
+    assert setup_errors.offline("Failed to establish a new connection: [Errno 111] Connection refused')") == (
+        "Connection refused"
+    )
     assert setup_errors.offline("ERROR: THESE PACKAGES DO NOT MATCH THE HASHES") is None
 
 
