@@ -6,6 +6,7 @@
 F (see grader.benchmarks.check) is measured before and after the class, in the same run. The class is mixed: out of
 every eight submissions, four are correct, three are wrong in different ways, and one is hostile. With `--mix right`,
 all submissions are correct. Each submission contains a different comment, so that the grader grades every submission.
+Half of the students wrote their name into package.xml, so that these packages cannot share a build.
 The benchmark also measures the memory of all processes of the run, including those in sandbox cells. The benchmark
 samples the memory several times per second, and counts shared memory once.
 """
@@ -136,6 +137,9 @@ def _class(folder: Path, size: int, mix: str) -> Path:
         }
         text = text.replace(*changes.get(kind, ("", "")), 1) if kind in changes else text
         node.write_text(f"{text}\n# {student.name}\n", "utf-8")
+        if number // 2 % 2:
+            manifest = node.parents[1] / "package.xml"
+            manifest.write_text(f"{manifest.read_text('utf-8')}<!-- {student.name} -->\n", "utf-8")
     return folder
 
 

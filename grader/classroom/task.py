@@ -11,6 +11,7 @@ from grader.checks.cause import Cause
 from grader.checks.exercises import exercise_from
 from grader.checks.outcome import Finding, Outcome, Status, failed
 from grader.classroom.key import grader_key
+from grader.colcon.shared_builds import SharedBuilds
 from grader.errors import MachineError
 from grader.grading.grade import Graded, grade
 from grader.grading.options import Options
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 
 Pace = Literal["waits", "works"]
+_builds = cache(SharedBuilds)
 
 
 @dataclass(frozen=True)
@@ -110,7 +112,7 @@ def perform(
     # Run one trial at a time: other submissions use the processors, and memory is calculated per submission.
     options = Options(in_cell=in_cell, clock=task.clock, seed=task.seed, explain=task.explain, trials_at_once=1)
     try:
-        return _with_page(grade(exercise, _submission(task), options, tell, trial=Waiting))
+        return _with_page(grade(exercise, _submission(task), options, tell, build=_builds(), trial=Waiting))
     except MachineError as error:  # other submissions can still be readable on this machine
         return set_aside(task, str(error))
 

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from grader.submission.plain_setup import PlainSetup
 
 PYTHON = f"{sys.version_info.major}.{sys.version_info.minor}"
+SITE = f"lib/python{PYTHON}/site-packages"
+"""The folder of the modules in install/<package>."""
 _OTHER_BUILDS = frozenset({"pyproject.toml", "CMakeLists.txt", "COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE"})
 """Files that make colcon or setuptools install other files, or no files."""
 _TEMPLATE = re.compile(r'r"""\n([ \t]*# EASY-INSTALL-ENTRY-SCRIPT: %\(spec\)r.*?)"""', re.DOTALL)
@@ -94,8 +96,7 @@ def predict(submission: Submission, ros: Ros, executables: Collection[str]) -> P
 
 def _installed(setup: PlainSetup, submission: Submission, template: str, python: str) -> Predicted | None:
     files, name = submission.files, setup.name
-    site = f"lib/python{PYTHON}/site-packages"
-    metadata = f"{site}/{name}-{setup.version}-py{PYTHON}.egg-info"
+    metadata = f"{SITE}/{name}-{setup.version}-py{PYTHON}.egg-info"
     modules = [path for path in files if _is_module(path, setup.packages)]
     data = {f"{folder}/{path.rpartition('/')[2]}": path for folder, path in setup.data_files}
     marker, manifest = f"share/ament_index/resource_index/packages/{name}", f"share/{name}/package.xml"
@@ -109,7 +110,7 @@ def _installed(setup: PlainSetup, submission: Submission, template: str, python:
         for point in setup.entry_points
     }
     installed = {
-        **{f"{site}/{path}": (files[path], 0o644) for path in modules},
+        **{f"{SITE}/{path}": (files[path], 0o644) for path in modules},
         f"{metadata}/entry_points.txt": (f"[console_scripts]\n{''.join(points)}".encode(), 0o644),
         **{path: (text.encode(), 0o755) for path, text in scripts.items()},
         **{to: (files[path], 0o755 if path in submission.executable else 0o644) for to, path in data.items()},

@@ -1,0 +1,141 @@
+"""Shared builds: in a class, colcon runs once for all submissions that differ only in the text of their modules.
+
+If setup.py and setup.cfg have the usual form, colcon copies the modules and does not read them. So the grader builds
+the package once with empty modules, and then writes the modules of each submission into a copy of the install tree. The
+build with empty modules contains nothing that a student could have hidden in a module. Any other package gets a build
+of its own.
+"""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections import OrderedDict
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from grader.colcon import runner
+from grader.colcon.comparison import installs
+from grader.colcon.predicted import SITE, predict
+from grader.colcon.rebuild import renewed
+from grader.errors import UnreadableError
+from grader.submission.package import digest
+from grader.submission.reader import read
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from grader.colcon.predicted import Predicted
+    from grader.ros.installation import Ros
+    from grader.submission.package import Submission
+
+MOST_BUILDS = 50
+"""The number of builds that are kept. The build that has not been used for the longest time is removed first."""
+MOST_TREE = 1024 * 1024
+"""The maximum size of an install tree that is kept (bytes)."""
+_USUAL_FOLDER = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
+"""The names of folders in which colcon finds a package, as it does in a folder with the name of the package."""
+
+
+class SharedBuilds:
+    """A replacement for `runner.build` that reuses the builds of packages with the same files except their modules.
+
+    `runs` counts the builds with colcon.
+    """
+
+    def __init__(self, build: Callable[..., runner.Built] = runner.build) -> None:
+        self.runs = 0
+        self._build = build
+        self._kept: OrderedDict[object, tuple[Submission, runner.Built] | None] = OrderedDict()
+
+    def __call__(
+        self,
+        submission: Submission,
+        ros: Ros,
+        *,
+        in_cell: bool,
+        tell: Callable[[str], None],
+    ) -> runner.Built:
+        """Build the submission, with or without colcon. `tell` is called with a message that says whether colcon runs.
+
+        Raises:
+            MachineError: the sandbox or colcon itself does not work.
+        """
+
+        def build(package: Submission) -> runner.Built:
+            self.runs += 1
+            return self._build(package, ros, in_cell=in_cell, tell=tell)
+
+        try:
+            usual = read(without_modules, submission, ros)
+        except UnreadableError:
+            usual = None
+        if usual is None:
+            return build(submission)
+        key = (usual.empty.digest, usual.empty.executable, ros, in_cell)
+        if key not in self._kept:
+            self._keep(key, usual, build(usual.empty))
+        self._kept.move_to_end(key)
+        kept = self._kept[key]
+        built = read(renewed, submission, *kept) if kept is not None else None
+        if kept is None or built is None:
+            return build(submission)
+        tell("Using the build of a package that differs only in its modules")
+        # Testing causes may take a multiple of the time of a build.
+        return replace(built, build=replace(built.build, seconds=kept[1].build.seconds))
+
+    def _keep(self, key: object, usual: Usual, built: runner.Built) -> None:
+        """Keep the build if colcon installed exactly the predicted files, and otherwise keep that nothing is shared."""
+        confirmed = built.build.exit_code == 0 and len(built.tree) <= MOST_TREE and _installs(built, usual.predicted)
+        self._kept[key] = (usual.empty, built) if confirmed else None
+        if len(self._kept) > MOST_BUILDS:
+            self._kept.popitem(last=False)
+
+
+@dataclass(frozen=True)
+class Usual:
+    """A package of the usual form with empty modules, and the files that colcon is expected to install from it.
+
+    The folder of the package has the name of the package, since colcon installs the same files for each folder name.
+    """
+
+    empty: Submission
+    predicted: Predicted
+
+
+def without_modules(submission: Submission, ros: Ros) -> Usual | None:
+    """Return the package with empty modules, or None if the package is unusual or a module does not compile.
+
+    setuptools compiles the modules, and the log of a build contains the errors and warnings.
+
+    Call this through `grader.submission.reader.read`.
+    """
+    predicted = predict(submission, ros, ())
+    if predicted is None or not _USUAL_FOLDER.fullmatch(submission.package_dir.name):
+        return None
+    modules = {path for path in submission.files if f"{SITE}/{path}" in predicted.files}
+    if not all(_compiles(path, submission.files[path]) for path in modules):
+        return None
+    files = {path: b"" if path in modules else data for path, data in submission.files.items()}
+    folder = submission.package_dir.with_name(predicted.package)
+    empty = replace(submission, package_dir=folder, files=files, digest=digest(files))
+    predicted_of_empty = predict(empty, ros, ())
+    return None if predicted_of_empty is None else Usual(empty, predicted_of_empty)
+
+
+def _compiles(path: str, data: bytes) -> bool:
+    """Return whether Python compiles the module without a warning."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            compile(data, path, "exec", dont_inherit=True)
+    except (SyntaxError, ValueError, Warning, RecursionError, MemoryError):
+        return False
+    return True
+
+
+def _installs(built: runner.Built, predicted: Predicted) -> bool:
+    try:
+        return read(installs, built.tree, predicted)
+    except UnreadableError:
+        return False
