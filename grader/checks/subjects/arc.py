@@ -9,10 +9,11 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.waiting import waits_in_callback
 from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_path import radius_of_commands
 from grader.checks.kind import Kind, choice, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.parameters import set_calls, was_accepted
-from grader.checks.subjects.path import STRAIGHT_RADIUS_M, moved_otherwise
+from grader.checks.subjects.path import STRAIGHT_RADIUS_M, moved_otherwise, not_finite
 from grader.checks.tolerance import Band
 from grader.common.lazy import np
 from grader.evidence.circle_fit import fit_circle, turns_about
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 SHORT_M = 0.05
 """A piece of the trajectory that is shorter than this is not an arc."""
 FEW = 5
+SAME_ARC = 0.02
+"""Two frames are on the same arc if their turns per metre differ by at most this fraction."""
 MOST_ROOM_M = 2.5
 """The radius of a circle that is certain to fit on either side of a random start (m)."""
 
@@ -63,14 +66,14 @@ class Arc:
 def arc(evidence: Evidence, params: Arc) -> Finding:
     """The examined piece of the trajectory is an arc with the right radius, direction, angle and speed."""
     expected = _expected(params)
-    moved = moved_otherwise(evidence, expected)
+    moved = moved_otherwise(evidence, expected) or not_finite(evidence, expected)
     if moved is not None:
         return moved
     trajectory = evidence.trajectory
     chosen = _chosen(evidence, params)
     length = float(trajectory.steps[chosen].sum())
-    if not (trajectory.finite and length > SHORT_M and int(chosen.sum()) >= FEW):
-        return _nothing(evidence, params, expected)
+    if not (length > SHORT_M and int(chosen.sum()) >= FEW):
+        return _nothing(evidence, params, chosen, expected)
     return _measured(evidence, params, chosen, expected)
 
 
@@ -79,9 +82,8 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
     if params.color is not None and _pieces(evidence, chosen) > 1:
         color = ", ".join(map(str, params.color))
-        observed = (
-            f"The turtle drew with the colour {color}, then with another colour, and then with the first colour again."
-        )
+        other = "with another colour" if _always_draws(evidence) else "without this colour"
+        observed = f"The turtle drew with the colour {color}, then {other}, and then with the first colour again."
         text = "The node starts again after its last arc. In its last state, the node must send only zeros."
         return failed(observed, expected, Cause("drives-on", text, evidence.place("publish")))
     points = np.append(np.flatnonzero(chosen)[0], np.flatnonzero(chosen) + 1)
@@ -90,6 +92,10 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
     if fitted is None or fitted.radius > STRAIGHT_RADIUS_M:
         return failed("The turtle drove in a straight line.", expected, Cause("straight-line", where=where))
     round_, size = Band.at_most(params.residual_m), Band.around(params.radius_m, params.radius_tolerance_m)
+    touched = np.flatnonzero(chosen & trajectory.wall)
+    if not round_.holds(fitted.rms) and len(touched):
+        observed = f"The turtle ran into a wall after {trajectory.t_s[touched[0]]:.1f} s."
+        return failed(observed, expected, Cause("wall", radius_of_commands(evidence), where))
     if not round_.holds(fitted.rms):
         off = f"it deviates by {max(fitted.rms, 0.01):.2f} m (RMS) from the best circle"
         text = "The command or the pen changes during this part of the path."
@@ -129,7 +135,7 @@ def _other_angle(evidence: Evidence, params: Arc, chosen: Steps, angle: float) -
         observed = f"This arc has an angle of {angle:.0f} degrees, and the turtle was still driving it at the end."
         text = "The state does not change after the last timer call of this arc. At which value does the counter start?"
         return observed, Cause("drives-on", text, evidence.place("publish"))
-    if not too_long and params.color is not None and _goes_on(evidence, chosen):
+    if not too_long and params.color is not None and _always_draws(evidence) and _goes_on(evidence, chosen):
         text = "The pen must have this colour before the turtle moves: wait for the response before you drive."
         cause = Cause("not-in-colour", text, evidence.place("publish"))
         return "A part of this arc was drawn in another colour.", cause
@@ -145,7 +151,8 @@ def _not_followed(evidence: Evidence, params: Arc) -> Cause | None:
         return None
     before = [each for each in evidence.commands if each.t_s < accepted[-1] - FRAME_S]
     after = [each for each in evidence.commands if params.from_s <= each.t_s <= params.until_s]
-    if before and after and (before[-1].linear, before[-1].angular) != (after[0].linear, after[0].angular):
+    same = [(each.linear, each.angular) == (before[-1].linear, before[-1].angular) for each in after if before]
+    if not (same and all(same)):
         return None
     text = (
         "The parameter was set, but the commands did not change. Read the parameter with get_parameter before each "
@@ -181,15 +188,24 @@ def _pieces(evidence: Evidence, chosen: Steps) -> int:
 
 
 def _goes_on(evidence: Evidence, chosen: Steps) -> bool:
-    """Return whether the turtle also drove this arc in the frame before or after this piece."""
+    """Return whether the turtle also drove this arc in the frame before or after this piece.
+
+    The frame belongs to the same arc if the turtle turned equally far on the same distance.
+    """
     trajectory, ends = evidence.trajectory, np.flatnonzero(chosen)
-    side = np.sign(np.median(trajectory.turn[chosen]))
-    same = (trajectory.steps > RESTS_M) & (np.sign(trajectory.turn) == side)
+    turn_per_m = np.median(trajectory.turn[chosen] / trajectory.steps[chosen])
+    off = np.abs(trajectory.turn - turn_per_m * trajectory.steps)
+    same = (trajectory.steps > RESTS_M) & (off <= SAME_ARC * np.abs(turn_per_m) * trajectory.steps)
     before, after = int(ends[0]) - 1, int(ends[-1]) + 1
     return (before >= 0 and bool(same[before])) or (after < len(same) and bool(same[after]))
 
 
-def _nothing(evidence: Evidence, params: Arc, expected: str) -> Finding:
+def _always_draws(evidence: Evidence) -> bool:
+    """Return whether the pen of the turtle is down all the time."""
+    return all(span.pen.down for span in pen_spans(evidence.recording))
+
+
+def _nothing(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> Finding:
     where = evidence.place("publish")
     crash = crash_of(evidence)
     if crash is not None:
@@ -197,9 +213,11 @@ def _nothing(evidence: Evidence, params: Arc, expected: str) -> Finding:
     if params.color is not None and evidence.trajectory.length_m > SHORT_M:
         text = "The pen must have this colour before the turtle moves: wait for the response before you drive."
         color = ", ".join(map(str, params.color))
-        return failed(f"Nothing was drawn in the colour {color}.", expected, Cause("not-in-colour", text, where))
+        amount = "Almost nothing" if chosen.any() else "Nothing"
+        return failed(f"{amount} was drawn in the colour {color}.", expected, Cause("not-in-colour", text, where))
     cause = waits_in_callback(evidence) or Cause("not-moving", where=where)
-    return failed("The turtle did not drive in the time that this check judges.", expected, cause)
+    drove = "hardly drove" if chosen.any() else "did not drive"
+    return failed(f"The turtle {drove} in the time that this check judges.", expected, cause)
 
 
 def _speed(evidence: Evidence, chosen: Steps) -> float:

@@ -65,7 +65,8 @@ def cancels_goal(evidence: Evidence, params: CancelsGoal) -> Finding:
     took = Band.at_most(params.within_s)
     if goal.status == "aborted" and goal.ended_s is not None and took.holds(goal.ended_s - call.t_s):
         observed, cause = why_aborted(evidence, goals, goal)
-        return failed(f"{observed} The node did not cancel the goal.", expected, cause)
+        observed += " The node did not cancel the goal." if goal.cancel_asked_s is None else ""
+        return failed(observed, expected, cause)
     took_s = float("inf") if goal.cancel_asked_s is None or goal.ended_s is None else goal.ended_s - call.t_s
     if goal.status == "canceled" and took.holds(took_s):
         return passed("The goal was cancelled.", near_edge=took.near(took_s))
@@ -112,9 +113,12 @@ def says_whether_active(evidence: Evidence, params: SaysWhetherActive) -> Findin
     """In each response, `success` is true if the turtle followed a goal when the call arrived, and false if not."""
     expected = f"In the response of {params.service}, success is true if a goal was active, and false if not."
     goals = goals_of(evidence)
-    for call in calls_of(evidence):
-        if not call.by_trial or call.service != params.service or call.response is None:
-            continue
+    calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
+    if not calls:
+        return no_response(evidence, params.service, "", None, expected)
+    for call in calls:
+        if call.response is None:
+            return no_response(evidence, params.service, call.type, call, expected)
         active = _is_active(goals, call.t_s)
         said = call.response.get("success")
         if active is not None and said is not active:

@@ -11,7 +11,7 @@ from grader.checks.causes.waiting import waits_in_callback
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.goals import goals_of, no_goal
-from grader.checks.subjects.log import LogFormat, log_lines
+from grader.checks.subjects.log import LogFormat, lines_in
 from grader.checks.tolerance import Band
 from grader.common.lazy import np
 from grader.evidence import activity, student_log
@@ -46,9 +46,13 @@ def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
     """While the turtle follows a goal, log lines show the remaining angle."""
     example = student_log.Format(params.format).example(1.25)
     expected = f'While the turtle turns, a line such as "{example}" appears every {params.period_s:g} s.'
-    goals = [goal for goal in goals_of(evidence) if _ended_s(evidence, goal) - goal.t_s >= LONG * params.period_s]
-    if not goals:
+    sent = goals_of(evidence)
+    if not sent:
         return no_goal(evidence, expected)
+    goals = [goal for goal in sent if _ended_s(evidence, goal) - goal.t_s >= LONG * params.period_s]
+    if not goals:
+        observed = f"No goal lasted {LONG * params.period_s:g} s, so no line was due."
+        return failed(observed, expected, Cause("feedback-not-logged", "", evidence.place("send_goal_async")))
     lines = student_log.in_format(evidence.recording, params.format)
     told = [
         (line, goal)
@@ -91,15 +95,16 @@ def _none_in_format(evidence: Evidence, params: LogFeedback, goals: list[Goal], 
 
     Only lines logged during a goal count.
     """
-    cause = waits_in_callback(evidence) or _unheard(evidence)
-    if cause is not None:
-        return failed("The log has no line with the feedback.", expected, cause)
     recording = evidence.recording
     during = tuple(
         line for line in recording.log if any(goal.t_s < line.t_s < _ended_s(evidence, goal) for goal in goals)
     )
     seen = evidence.with_run(replace(evidence.run, recording=replace(recording, log=during)))
-    return log_lines(seen, LogFormat(format=params.format))
+    logged = student_log.students(seen.recording)
+    cause = _unheard(evidence) or (None if logged else waits_in_callback(evidence))
+    if cause is not None:
+        return failed("The log has no line with the feedback.", expected, cause)
+    return lines_in(seen, LogFormat(format=params.format), " during the goals")
 
 
 def _ended_s(evidence: Evidence, goal: Goal) -> float:
@@ -148,7 +153,7 @@ def _wrong(
         return failed(observed, expected, Cause("wrong-sign", text, where))
     if all(_holds(evidence, params, *pair, factor=math.degrees(1.0)) for pair in told):
         return failed(observed, expected, Cause("degrees", "The feedback and the line are both in radians.", where))
-    if len({line.numbers["remaining"] for line, _ in told}) == 1:
+    if len(told) > 1 and len({line.numbers["remaining"] for line, _ in told}) == 1:
         text = "The number never changes. Store the number in self each time feedback arrives."
         return failed(observed, expected, Cause("stale-feedback", text, where))
     text = "The message has a field feedback, which has the field remaining."

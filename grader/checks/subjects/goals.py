@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 ROTATE = "/turtle1/rotate_absolute"
 TYPE = "turtlesim/action/RotateAbsolute"
 SAME_RAD = 0.02
+HALF_TURN_S = 3.2
+"""The longest time that the turtle needs to reach a goal: it turns by at most pi rad, at 1 rad/s."""
 LARGE_RAD = 7.0
 """A larger angle than this is more than a full turn, so it may be in degrees."""
 
@@ -70,13 +72,7 @@ def sends_goals(evidence: Evidence, params: SendsGoals) -> Finding:
             turned = _other_turn(goals[first + index - 1], goal, params.turn_deg) if index else ""
             return _other_heading(evidence, goal, heading, turned, expected, near_edge=near.near(off))
         if not _reached(evidence, goal):
-            where = evidence.place(*SENDS)
-            crash = crash_of(evidence)
-            if crash is not None:
-                return crash_finding(evidence, crash, end_observed(evidence), expected)
-            observed = f"The goal sent at {goal.t_s:.1f} s was not reached by the end: its status is {goal.status}."
-            text = "The node itself cancelled the goal." if goal.status == "canceled" else "The node starts too late."
-            return failed(observed, expected, Cause("goal-not-reached", text, where))
+            return _not_reached(evidence, goal, expected)
     if len(goals) < first + amount:
         return _no_more(evidence, goals, expected)
     return passed(f"The turtle reached {count(amount, 'goal')}.", near_edge=edge)
@@ -97,6 +93,20 @@ def _reached(evidence: Evidence, goal: Goal) -> bool:
     """Return whether the turtle reached the goal, or the trial requested the cancellation of the goal."""
     by_trial = goal.cancel_asked_s is not None and goal.cancel_asked_s >= first_call_s(evidence)
     return goal.status == "succeeded" or (goal.status == "canceled" and by_trial)
+
+
+def _not_reached(evidence: Evidence, goal: Goal, expected: str) -> Finding:
+    crash, ended = crash_of(evidence), end_observed(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, ended, expected)
+    observed = f"The goal sent at {goal.t_s:.1f} s was not reached by the end: its status is {goal.status}."
+    text = ""
+    if goal.status == "canceled":
+        text = "The node itself cancelled the goal."
+    elif not ended and goal.t_s > activity.end_s(evidence.recording) - HALF_TURN_S:
+        text = "The node starts too late."
+    cause = Cause("goal-not-reached", text, evidence.place(*SENDS))
+    return failed(f"{ended} {observed}".strip(), expected, cause)
 
 
 def no_goal(evidence: Evidence, expected: str) -> Finding:
@@ -165,16 +175,17 @@ def _other_heading(
 
 
 def awaits_result(evidence: Evidence, _: NoParams) -> Finding:
-    """The node requested the result of each goal that was reached."""
+    """The node requested the result of each goal that was reached. If no goal was reached, each goal counts."""
     expected = "The node asks for the result of each goal."
-    reached = [goal for goal in goals_of(evidence) if goal.status == "succeeded"]
-    if not reached:
+    goals = goals_of(evidence)
+    if not goals:
         return no_goal(evidence, expected)
-    without = [goal for goal in reached if goal.result_asked_s is None]
+    judged = [goal for goal in goals if goal.status == "succeeded"] or goals
+    without = [goal for goal in judged if goal.result_asked_s is None]
     if without:
         observed = f"The node never asked for the result of the goal sent at {without[0].t_s:.1f} s."
         return failed(observed, expected, waits_in_callback(evidence) or _no_result(evidence))
-    return passed(f"The node asked for the result of {count(len(reached), 'goal')}.")
+    return passed(f"The node asked for the result of {count(len(judged), 'goal')}.")
 
 
 SENDS_GOALS = Kind(

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 LOG_LINE = Subject("log line", "info")
 FORMAT = "The format of a line with its numbers in braces, such as `Hello {counter}` or `x={x:.2f}`."
+UNRECEIVED = "No messages will be received from it"
+"""rclpy logs this if a subscription is not compatible with a publisher."""
 LEVELS = ("info", "warning", "warn", "error", "fatal")
 
 
@@ -41,6 +43,11 @@ class LogFormat:
 
 def log_lines(evidence: Evidence, params: LogFormat) -> Finding:
     """Log lines in the required format arrive on /rosout."""
+    return lines_in(evidence, params)
+
+
+def lines_in(evidence: Evidence, params: LogFormat, when: str = "") -> Finding:
+    """Return the finding about the log lines. `when` says in words which part of the log the evidence contains."""
     example = student_log.Format(params.format).example()
     expected = f'The log contains lines such as "{example}".'
     if student_log.in_format(evidence.recording, params.format):
@@ -50,11 +57,11 @@ def log_lines(evidence: Evidence, params: LogFormat) -> Finding:
         return crash_finding(evidence, crash, end_observed(evidence), expected)
     logged = [line.text for line in student_log.students(evidence.recording)]
     qos = why_qos(evidence)
-    if qos is not None:
-        observed = "No message reached the subscription, and nothing was logged."
-        return failed(observed, expected, qos)
+    if qos is not None and _received_nothing(evidence):
+        nothing = "no such line" if logged else "nothing"
+        return failed(f"No message reached the subscription, and {nothing} was logged.", expected, qos)
     if logged:
-        return _other_format(evidence, params, logged, expected)
+        return _other_format(evidence, params, logged, expected, when)
     pattern = student_log.Format(params.format).pattern()
     if any(pattern.search(line) for line in evidence.recording.stdout.text.splitlines()):
         observed = "The lines are printed, not logged."
@@ -63,11 +70,17 @@ def log_lines(evidence: Evidence, params: LogFormat) -> Finding:
             "with the time and the node name."
         )
         return failed(observed, expected, Cause("print-instead", cause, evidence.place("print")))
-    return _silent(evidence, expected)
+    return _silent(evidence, expected, when)
 
 
-def _silent(evidence: Evidence, expected: str) -> Finding:
-    observed = f"The node logged nothing. {end_observed(evidence)}".rstrip()
+def _received_nothing(evidence: Evidence) -> bool:
+    """Return whether rclpy logged that a subscription of the node receives nothing from a publisher."""
+    recording = evidence.recording
+    return any(UNRECEIVED in text for text in (recording.stderr.text, *(line.text for line in recording.log)))
+
+
+def _silent(evidence: Evidence, expected: str, when: str) -> Finding:
+    observed = f"The node logged nothing{when}. {end_observed(evidence)}".rstrip()
     code = evidence.code
     if not any(code.calls(level) for level in LEVELS):
         cause = "get_logger().info(...) is never called."
@@ -83,9 +96,9 @@ def _silent(evidence: Evidence, expected: str) -> Finding:
     return failed(observed, expected, Cause("never-logs", cause, evidence.place(*LEVELS)))
 
 
-def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expected: str) -> Finding:
+def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expected: str, when: str) -> Finding:
     line = logged[-1]
-    observed = f'The last log line is "{shorten(line, 90)}".'
+    observed = f'The last log line{when} is "{shorten(line, 90)}".'
     why = Cause("log-format", "Compare the line letter by letter: capital letters, spaces and dots matter.")
     pattern = student_log.Format(params.format).pattern()
     if re.search(r"\{[\w.:]+\}", line):

@@ -113,21 +113,25 @@ def moved_otherwise(evidence: Evidence, expected: str, *, from_start: bool = Fal
 
 def not_driven(evidence: Evidence, expected: str, where: Where | None) -> Finding | None:
     """Return a failed finding if the turtle did not drive, or if something other than commands moved it, else None."""
-    moved = moved_otherwise(evidence, expected, from_start=True)
-    if moved is not None or (evidence.trajectory.finite and evidence.trajectory.length_m > MOVED_M):
+    moved = moved_otherwise(evidence, expected, from_start=True) or not_finite(evidence, expected)
+    if moved is not None or evidence.trajectory.length_m > MOVED_M:
         return moved
     return failed("The turtle did not drive.", expected, Cause("not-moving", where=where))
 
 
+def not_finite(evidence: Evidence, expected: str) -> Finding | None:
+    """Return a failed finding if a command made the position of the turtle NaN, else None."""
+    if evidence.trajectory.finite:
+        return None
+    cause = Cause("not-a-number", "A command contained a number that is not finite.", line_of_values(evidence))
+    return failed("The turtle's position became NaN (not a number).", expected, cause)
+
+
 def _no_circle(evidence: Evidence, trajectory: Trajectory, expected: str) -> Finding | None:
     """Return a failed finding with the most helpful reason if the trajectory is nothing like a circle, else None."""
-    if not trajectory.finite:
-        observed = "The turtle's position became NaN (not a number)."
-        return failed(
-            observed,
-            expected,
-            Cause("not-a-number", "A command contained a number that is not finite.", line_of_values(evidence)),
-        )
+    nowhere = not_finite(evidence, expected)
+    if nowhere is not None:
+        return nowhere
     if trajectory.length_m <= MOVED_M:
         if trajectory.turned_rad > TURNED_RAD:
             cause = "linear.x is the forward speed. Without linear.x, the turtle turns on the spot."

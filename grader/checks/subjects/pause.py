@@ -48,11 +48,12 @@ def pause(evidence: Evidence, params: Pause) -> Finding:
     expected = f"At {params.from_s:g} s, the turtle has {params.within_s:g} s to stop."
     expected += f" At {params.until_s:g} s, the turtle continues." if params.goes_on else ""
     where = evidence.place("create_service")
+    crash = crash_of(evidence)
+    if crash is not None and evidence.recording.end.t_s < params.until_s + params.within_s:
+        return crash_finding(evidence, crash, end_observed(evidence), expected)
     if _moved(trajectory, params.from_s - BEFORE_S, params.from_s) is None:
-        crash = crash_of(evidence)
-        if crash is not None:
-            return crash_finding(evidence, crash, end_observed(evidence), expected)
-        return failed("The turtle did not move before the pause.", expected, Cause("not-moving", where=where))
+        observed = f"The turtle did not move in the last {BEFORE_S:g} s before the pause."
+        return failed(observed, expected, Cause("not-moving", where=where))
     last = _moved(trajectory, params.from_s, params.until_s)
     stop_s = 0.0 if last is None else last[1] - params.from_s
     near = within.near(stop_s)

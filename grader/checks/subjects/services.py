@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 AT_ONCE_S = 0.05
 """In wall time, a call and a response may be simultaneous if the call is recorded at most this much earlier (s)."""
+OF_TURTLES = "/turtle"
+"""The beginning of the names of services that each turtle has, such as /turtle1/set_pen."""
 CLOSE = 1e-3
 """The maximum error of a number in a request. Many fields are float32."""
 
@@ -74,8 +76,8 @@ def calls_service(evidence: Evidence, params: CallsService) -> Finding:
     observed = f"The node never called {params.service}."
     if others:
         observed = f"The node called {shorten(others[0].service)} instead of {params.service}."
-        cause = Cause("service-name", "Each turtle has its own services.", evidence.place("create_client"))
-        return failed(observed, expected, cause)
+        text = "Each turtle has its own services." if params.service.startswith(OF_TURTLES) else ""
+        return failed(observed, expected, Cause("service-name", text, evidence.place("create_client")))
     return failed(observed, expected, why_unasked(evidence, params.service))
 
 
@@ -88,7 +90,7 @@ def _before_the_answer(call: Call, asked: Call) -> bool:
 
 
 def _other_request(evidence: Evidence, params: CallsService, calls: list[Call], expected: str) -> Finding:
-    nearest_call = min(calls, key=lambda call: len(wrong_fields(call.request, params.fields)))
+    nearest_call = min(calls, key=lambda call: _difference(call.request, params.fields))
     wrong = wrong_fields(nearest_call.request, params.fields)
     seen = ", ".join(f"{name}={_value(nearest_call.request.get(name))}" for name in wrong)
     observed = f"The most similar call of {params.service} has {seen}."
@@ -141,6 +143,10 @@ def no_response(evidence: Evidence, service: str, type_: str, call: Call | None,
     where = evidence.place("create_service")
     if call is None:
         return failed("The node had ended before the call.", expected, Cause("no-response", where=where))
+    ended = end_observed(evidence)
+    if not call.missing and ended:
+        observed = f"The node did not answer the call of {service}. {ended}"
+        return failed(observed, expected, Cause("no-response", where=where))
     if not call.missing:
         cause = waits_in_callback(evidence) or Cause(
             "no-response", "Something in the node blocks its callbacks.", where
@@ -185,6 +191,13 @@ def calls_of(evidence: Evidence) -> list[Call]:
 def wrong_fields(given: Any, fields: Iterable[tuple[str, Any]]) -> list[str]:  # noqa: ANN401 - a request or response
     """Return the names of the fields whose values differ."""
     return [name for name, value in fields if not _same(given.get(name), value)]
+
+
+def _difference(given: Any, fields: Iterable[tuple[str, Any]]) -> tuple[int, float]:  # noqa: ANN401 - a request
+    """Return the number of fields with other values, and the sum of the differences between numbers."""
+    pairs = [(given.get(name), value) for name, value in fields]
+    numbers = [(has, value) for has, value in pairs if isinstance(has, int | float) and isinstance(value, int | float)]
+    return len(wrong_fields(given, fields)), sum(abs(has - value) for has, value in numbers)
 
 
 def _same(given: object, wanted: object) -> bool:

@@ -58,7 +58,9 @@ def star(evidence: Evidence, params: Star) -> Finding:
         cause = waits_in_callback(evidence) or Cause("not-moving", where=where)
         return failed("The turtle did not drive.", expected, cause)
     if trajectory.wall.any():
-        return failed("The turtle ran into a wall.", expected, Cause("wall", "A side is too long.", where))
+        return failed(
+            "The turtle ran into a wall.", expected, Cause("wall", "A side is too long, or a heading is wrong.", where)
+        )
     sides = sides_of(trajectory, amount)
     if sides.curved_share > CURVED_SHARE:
         observed = f"{100.0 * sides.curved_share:.0f} % of the trajectory is curved."

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -8,7 +9,11 @@ from grader.checks.outcome import Finding, Status
 from grader.checks.subjects.log import LOG_COUNTER, LOG_LINES, LOG_RATE
 from grader.tests.checks.made import DURATION_S, NODE, NODE_FILE, evidence, found, recording, submission
 from grader.tests.checks.shapes import TRACEBACK, crashed
+from grader.tests.checks.told import told
 from grader.trial.recording import LogLine, Output
+
+if TYPE_CHECKING:
+    from grader.trial.recording import Recording
 
 HELLO = "Hello {counter}"
 POINTS = "x={x:.2f}"
@@ -164,3 +169,55 @@ def test_the_rate_is_that_of_the_lines_in_the_format(every_s: float, status: str
 def test_a_submission_is_read_and_never_run() -> None:
     package = submission({NODE_FILE: "raise SystemExit\n"})
     assert found(LOG_LINES, evidence(recording([]), package), format=HELLO).status is Status.FAILED
+
+
+def about_lines(text: str, **changes: Any) -> str:  # noqa: ANN401
+    trial = recording([], log=lines(text), **changes)
+    return told(found(LOG_LINES, evidence(trial, submission({NODE_FILE: LOGS})), format=HELLO))
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("A placeholder such as {} or %d is still in the line", "Hello %d", "Hello 5 %"),
+        ("A placeholder such as {} or %d is still in the line", "Hello {}", "Hello {counter}"),
+        ("The line contains the braces themselves.", "Hello {counter}", "Hello {}"),
+        ("The words are right, but the numbers are missing or have the wrong format.", "Hello", "Hi"),
+        ("The line contains more than it should.", "Hello 0!", "hello 0"),
+        ("Upper and lower case matter.", "hello 0", "Hello 0!"),
+    ],
+)
+def test_a_sentence_about_a_line_is_true(words: str, true: str, near: str) -> None:
+    assert words in about_lines(true)
+    assert words not in about_lines(near)
+
+
+@pytest.mark.parametrize(("line", "found"), [("Hello 0", True), ("Hello", False)])
+def test_a_log_with_such_a_line_passes_and_another_is_told_what_is_expected(line: str, *, found: bool) -> None:
+    finding = in_format(lines(line))
+    words = 'The log contains lines such as "Hello 0".'
+    assert (finding.observed == words, finding.expected == words) == (found, not found)
+
+
+RECEIVES = "New publisher discovered, offering incompatible QoS. No messages will be received from it."
+SENDS = "New subscription discovered, requesting incompatible QoS. No messages will be sent to it."
+
+
+@pytest.mark.parametrize(("warning", "found"), [(RECEIVES, True), (SENDS, False)])
+def test_only_a_subscription_can_receive_nothing(warning: str, *, found: bool) -> None:
+    given = about_lines("I begin", stderr=Output(warning))
+    assert ("No message reached the subscription, and no such line was logged." in given) == found
+    assert ('The last log line is "I begin".' in given) != found
+    silent = recording([], stderr=Output(warning))
+    nothing = told(found_in(silent))
+    assert ("No message reached the subscription, and nothing was logged." in nothing) == found
+
+
+def found_in(trial: Recording) -> Finding:
+    return found(LOG_LINES, evidence(trial, submission({NODE_FILE: LOGS})), format=HELLO)
+
+
+@pytest.mark.parametrize(("numbers", "few"), [((0,), True), ((0, 1), False)])
+def test_one_line_is_too_few_to_compare(numbers: tuple[int, ...], *, few: bool) -> None:
+    finding = found(LOG_COUNTER, evidence(recording([], log=hello(*numbers))), format=HELLO, counts="counter")
+    assert (finding.observed == "There are fewer than two lines to compare.") == few

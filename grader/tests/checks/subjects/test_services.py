@@ -1,17 +1,17 @@
-"""Services: a node's requests and responses, a pause, and an arc in another colour."""
+"""Services: a node's requests and responses."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
-from grader.checks.outcome import Status
-from grader.checks.subjects.arc import ARC
-from grader.checks.subjects.pause import PAUSE
 from grader.checks.subjects.services import ANSWERS, CALLS
 from grader.tests.checks.made import every, evidence, found, recording
-from grader.trial.observed import Call, Offer, PenChange
+from grader.tests.checks.told import told
+from grader.trial.observed import Call, Offer
+from grader.trial.recording import ProcessEnd
 
 PEN, SPAWN, BOOL = "/turtle1/set_pen", "/spawn", "std_srvs/srv/SetBool"
 
@@ -59,41 +59,104 @@ def test_an_answer_counts_in_time_and_with_its_fields(
     assert finding.diagnosis == diagnosis
 
 
-@pytest.mark.parametrize(
-    ("rest", "diagnosis"),
-    [
-        ((3.0, 6.0), None),
-        ((3.0, 99.0), "pause-never-ends"),
-        ((4.0, 6.0), "pause-ignored"),
-        ((99.0, 99.0), "pause-ignored"),
-    ],
-)
-def test_a_turtle_stands_still_and_goes_on(rest: tuple[float, float], diagnosis: str | None) -> None:
-    commands = [(t_s, *((0.0, 0.0) if rest[0] <= t_s < rest[1] else (v, w))) for t_s, v, w in every(0.1, 1.0, 1.0)]
-    finding = found(PAUSE, evidence(recording(commands)), from_s=3.0, until_s=6.0)
-    assert finding.diagnosis == diagnosis
+def answered(t_s: float, service: str, answered_s: float) -> Call:
+    return replace(asked(t_s, service), answered_s=answered_s)
 
 
-def test_a_turtle_that_hears_nothing_rolls_on() -> None:
-    commands = [each for each in every(0.1, 1.0, 1.0) if not 3.0 <= each[0] < 6.0]
-    assert found(PAUSE, evidence(recording(commands)), from_s=3.0, until_s=6.0).diagnosis == "no-stop-command"
+def about_calls(*made: Call, **changes: Any) -> str:  # noqa: ANN401
+    """Return what is reported if the node makes these calls, and must call /spawn after the pen was set."""
+    given = evidence(recording(every(0.5, 2.0, 1.0), calls=made))
+    return told(found(CALLS, given, **{"service": SPAWN, "fields": (("x", 2.0),), "after": PEN, **changes}))
+
+
+TWO, ZERO = asked(2.0, SPAWN, x=2.0), asked(2.0, SPAWN, x=0.0)
+OTHERS = "/turtle2/set_pen"
 
 
 @pytest.mark.parametrize(
-    ("values", "diagnosis"),
+    ("words", "true", "near"),
     [
-        ({"radius_m": 2.0}, None),
-        ({"radius_m": 1.5}, "wrong-radius"),
-        ({"radius_m": 2.0, "speed_m_s": 2.0}, None),
-        ({"radius_m": 2.0, "speed_m_s": 1.5}, "wrong-speed"),
-        ({"radius_m": 2.0, "direction": "clockwise"}, "wrong-direction"),
-        ({"radius_m": 2.0, "red": 200.0, "green": 0.0, "blue": 0.0}, None),
-        ({"radius_m": 2.0, "red": 0.0, "green": 0.0, "blue": 0.0}, "not-in-colour"),
-        ({"radius_m": 2.0, "angle_deg": 165.0, "until_s": 3.0}, None),
-        ({"radius_m": 2.0, "angle_deg": 90.0, "until_s": 3.0}, "wrong-angle"),
+        ("The node called /spawn with x=2.0.", [asked(1.0, PEN), TWO], [asked(1.0, PEN), ZERO]),
+        ("The node called /spawn with x=2.0, but not after /turtle1/set_pen.", [TWO], [asked(1.0, PEN), TWO]),
+        (
+            "The node called /spawn with x=2.0 before /turtle1/set_pen had responded.",
+            [answered(1.0, PEN, 2.5), TWO],
+            [answered(1.0, PEN, 1.5), TWO],
+        ),
+        ("The most similar call of /spawn has x=3.0.", [asked(1.0, PEN), asked(2.0, SPAWN, x=3.0)], [TWO]),
+        ("The most similar call of /spawn has x=1.0.", [ZERO, asked(3.0, SPAWN, x=1.0)], [ZERO]),
+        ("All these fields have their default values: set them", [ZERO], [asked(2.0, SPAWN, x=3.0)]),
+        ("The node never called /spawn.", [asked(1.0, PEN)], [asked(1.0, PEN), ZERO]),
+        ("The node called /other/spawn instead of /spawn.", [asked(2.0, "/other/spawn")], [asked(1.0, PEN)]),
     ],
 )
-def test_an_arc_is_measured_in_its_colour_and_time(values: dict[str, Any], diagnosis: str | None) -> None:
-    pens = (PenChange(0.0, "turtle1", (200, 0, 0), 4, down=True),)
-    finding = found(ARC, evidence(recording(every(0.1, 2.0, 1.0), pens=pens)), **values)
-    assert (finding.diagnosis, finding.status is Status.PASSED) == (diagnosis, diagnosis is None)
+def test_a_sentence_about_a_call_is_true(words: str, true: list[Call], near: list[Call]) -> None:
+    assert words in about_calls(*true)
+    assert words not in about_calls(*near)
+
+
+def test_the_order_of_the_calls_is_only_told_if_it_is_required() -> None:
+    required = "Before this request, the node calls /turtle1/set_pen."
+    assert required in about_calls(ZERO)
+    assert required not in about_calls(ZERO, after=" ")
+
+
+def test_only_the_services_of_a_turtle_belong_to_a_turtle() -> None:
+    of_another = about_calls(asked(1.0, OTHERS), service=PEN)
+    assert "The node called /turtle2/set_pen instead of /turtle1/set_pen." in of_another
+    assert "Each turtle has its own services." in of_another
+    assert "Each turtle has its own services." not in about_calls(asked(1.0, "/other/spawn"))
+
+
+ENDED = ProcessEnd(by="itself", exit_code=0, t_s=3.2, stop_s=None)
+BLOCKED = "Something in the node blocks its callbacks."
+
+
+def about_answers(calls: list[Call], **changes: Any) -> str:  # noqa: ANN401
+    given = evidence(recording(every(0.5, 2.0, 1.0), calls=tuple(calls), **changes))
+    return told(found(ANSWERS, given, service="/pause", type=BOOL, fields=(("success", True),)))
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("The node answered the call of /pause.", [paused(success=True)], [paused(success=False)]),
+        (
+            "The node answers a call of /pause within 1 s, with success=True.",
+            [paused(success=False)],
+            [paused(success=True)],
+        ),
+        ("The response has success=False.", [paused(success=False)], [paused(success=True)]),
+        (
+            "The callback of a service fills in the fields of its second argument and returns it.",
+            [paused(success=False)],
+            [paused(5.5, success=False)],
+        ),
+        ("The response took 2.5 s.", [paused(5.5, success=True)], [paused(3.9, success=True)]),
+        ("A callback must not sleep or wait.", [paused(5.5, success=True)], [paused(success=False)]),
+        ("The node had ended before the call.", [], [paused(None, missing=True)]),
+        ("The node received the call of /pause and never answered.", [paused(None)], [paused(None, missing=True)]),
+        (BLOCKED, [paused(None)], [paused(None, missing=True)]),
+        ("The node offers no service.", [paused(None, missing=True)], [paused(None)]),
+    ],
+)
+def test_a_sentence_about_a_response_is_true(words: str, true: list[Call], near: list[Call]) -> None:
+    assert words in about_answers(true)
+    assert words not in about_answers(near)
+
+
+def test_a_node_that_ended_after_a_call_did_not_block_its_callbacks() -> None:
+    ended = about_answers([paused(None)], end=ENDED)
+    assert "The node did not answer the call of /pause. The node exited on its own after 3.2 s." in ended
+    assert BLOCKED not in ended
+
+
+def test_the_services_that_a_node_offers_are_named() -> None:
+    missing = [paused(None, missing=True)]
+    others = (Offer("/node", "/pausing", BOOL), Offer("/node", "/stop", BOOL))
+    assert "No service is named /pause. The node offers /pausing and /stop." in about_answers(missing, offers=others)
+    right_name = (Offer("/node", "/pause", "std_srvs/srv/Empty"),)
+    assert "No service is named /pause." not in about_answers(missing, offers=right_name)
+    below = about_answers(missing, offers=(Offer("/node", "/node/pause", BOOL),))
+    assert "A name without a slash at the beginning is in the namespace of the node" in below
+    assert "A name without a slash" not in about_answers(missing, offers=others)

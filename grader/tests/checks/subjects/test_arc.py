@@ -1,0 +1,161 @@
+"""An arc: a part of the trajectory, in its colour and time."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from grader.checks.outcome import Status
+from grader.checks.subjects.arc import ARC
+from grader.tests.checks.made import every, evidence, found, recording
+from grader.tests.checks.told import told
+from grader.trial.observed import Call, PenChange
+
+if TYPE_CHECKING:
+    from grader.checks.outcome import Finding
+    from grader.tests.checks.made import Timed
+
+
+@pytest.mark.parametrize(
+    ("values", "diagnosis"),
+    [
+        ({"radius_m": 2.0}, None),
+        ({"radius_m": 1.5}, "wrong-radius"),
+        ({"radius_m": 2.0, "speed_m_s": 2.0}, None),
+        ({"radius_m": 2.0, "speed_m_s": 1.5}, "wrong-speed"),
+        ({"radius_m": 2.0, "direction": "clockwise"}, "wrong-direction"),
+        ({"radius_m": 2.0, "red": 200.0, "green": 0.0, "blue": 0.0}, None),
+        ({"radius_m": 2.0, "red": 0.0, "green": 0.0, "blue": 0.0}, "not-in-colour"),
+        ({"radius_m": 2.0, "angle_deg": 165.0, "until_s": 3.0}, None),
+        ({"radius_m": 2.0, "angle_deg": 90.0, "until_s": 3.0}, "wrong-angle"),
+    ],
+)
+def test_an_arc_is_measured_in_its_colour_and_time(values: dict[str, Any], diagnosis: str | None) -> None:
+    pens = (PenChange(0.0, "turtle1", (200, 0, 0), 4, down=True),)
+    finding = found(ARC, evidence(recording(every(0.1, 2.0, 1.0), pens=pens)), **values)
+    assert (finding.diagnosis, finding.status is Status.PASSED) == (diagnosis, diagnosis is None)
+
+
+RED = {"radius_m": 1.0, "red": 200.0, "green": 0.0, "blue": 0.0}
+CIRCLE = every(0.1, 2.0, 1.0)
+WIDE = every(0.1, 2.0, 0.5)
+"""A circle with a radius of 4 m, which touches a wall."""
+WIDER = [*every(0.1, 1.0, 1.0, until_s=2.0), *every(0.1, 1.0, 0.5, first_s=2.1)]
+"""A circle with a radius of 1 m, and another one with a radius of 2 m to the same side from t = 2.1 s on."""
+
+
+def pen(t_s: float, red: int = 200, *, down: bool = True) -> PenChange:
+    return PenChange(t_s, "turtle1", (red, 0, 0), 4, down=down)
+
+
+def about(commands: list[Timed], pens: tuple[PenChange, ...] = (), **values: Any) -> str:  # noqa: ANN401
+    return told(found(ARC, evidence(recording(commands, pens=pens)), **{"radius_m": 2.0, **values}))
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("Nothing was drawn in the colour 200, 0, 0.", (), (pen(9.95),)),
+        ("Almost nothing was drawn in the colour 200, 0, 0.", (pen(9.95),), ()),
+        ("The pen must have this colour before the turtle moves", (), (pen(0.0), pen(5.0, 0), pen(6.0))),
+        (
+            "The turtle drew with the colour 200, 0, 0, then with another colour, and then with the first colour",
+            (pen(0.0), pen(5.0, 0), pen(6.0)),
+            (pen(0.0), pen(5.0, down=False), pen(6.0)),
+        ),
+        (
+            "The turtle drew with the colour 200, 0, 0, then without this colour, and then with the first colour",
+            (pen(0.0), pen(5.0, down=False), pen(6.0)),
+            (pen(0.0), pen(5.0, 0), pen(6.0)),
+        ),
+        (
+            "The node starts again after its last arc. In its last state, the node must send only zeros.",
+            (pen(0.0), pen(5.0, 0), pen(6.0)),
+            (pen(0.0), pen(5.0, 0)),
+        ),
+    ],
+)
+def test_a_sentence_about_the_colour_of_an_arc_is_true(
+    words: str, true: tuple[PenChange, ...], near: tuple[PenChange, ...]
+) -> None:
+    assert words in about(CIRCLE, true, **RED)
+    assert words not in about(CIRCLE, near, **RED)
+
+
+def test_the_colour_is_only_told_if_it_is_required() -> None:
+    wanted = "The turtle drives an arc with a radius of 1 m, counter-clockwise, drawn in the colour 200, 0, 0."
+    assert wanted in about(CIRCLE, (pen(0.0),), **RED)
+    assert "drawn in the colour" not in about(CIRCLE, (pen(0.0),), radius_m=1.0)
+
+
+PART = "A part of this arc was drawn in another colour."
+LATE_PEN = "The pen must have this colour before the turtle moves: wait for the response before you drive."
+
+
+@pytest.mark.parametrize(
+    ("commands", "pens", "radius_m", "found"),
+    [
+        (CIRCLE, (pen(0.0), pen(2.1, 0)), 2.0, True),
+        (WIDER, (pen(0.0), pen(2.1, 0)), 1.0, False),
+        (CIRCLE, (pen(0.0), pen(2.1, down=False)), 2.0, False),
+    ],
+)
+def test_an_arc_in_two_colours_is_told_from_two_arcs(
+    commands: list[Timed], pens: tuple[PenChange, ...], radius_m: float, *, found: bool
+) -> None:
+    given = about(commands, pens, angle_deg=300.0, **{**RED, "radius_m": radius_m})
+    assert (PART in given) == found
+    assert (LATE_PEN in given) == found
+    assert ("This arc has an angle of 1" in given) != found
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("This part of the path is not one arc: it deviates by", WIDER, CIRCLE),
+        ("The command or the pen changes during this part of the path.", WIDER, WIDE),
+        ("The turtle ran into a wall after ", WIDE, WIDER),
+        ("The radius of this arc is 1.00 m.", every(0.1, 1.0, 1.0), CIRCLE),
+        ("The turtle drove in a straight line.", every(0.1, 0.2, 0.0), CIRCLE),
+        ("The turtle's position became NaN", [*CIRCLE, (9.9, math.nan, 1.0)], CIRCLE),
+        ("The turtle did not drive in the time that this check judges.", [], every(0.1, 0.001, 0.0005)),
+        ("The turtle hardly drove in the time that this check judges.", every(0.1, 0.001, 0.0005), []),
+    ],
+)
+def test_a_sentence_about_the_path_of_an_arc_is_true(words: str, true: list[Timed], near: list[Timed]) -> None:
+    assert words in about(true)
+    assert words not in about(near)
+
+
+@pytest.mark.parametrize(("until_s", "found"), [(9.0, False), (600.0, True)])
+def test_an_arc_that_does_not_end_is_told(until_s: float, *, found: bool) -> None:
+    given = about(CIRCLE, angle_deg=90.0, until_s=until_s)
+    assert "This arc has an angle of 5" in given
+    assert ("degrees, and the turtle was still driving it at the end." in given) == found
+    assert ("The state does not change after the last timer call of this arc." in given) == found
+
+
+NOT_FOLLOWED = "The parameter was set, but the commands did not change."
+
+
+@pytest.mark.parametrize(
+    ("commands", "found"),
+    [
+        (CIRCLE, True),
+        ([*every(0.1, 2.0, 1.0, until_s=3.0), *every(0.1, 2.2, 1.0, first_s=3.3)], False),
+        (every(0.1, 2.0, 1.0, first_s=3.6), False),
+        ([each for each in CIRCLE if each[0] < 3.0], False),
+    ],
+)
+def test_commands_that_did_not_follow_a_parameter_are_told(commands: list[Timed], *, found: bool) -> None:
+    result = {"results": [{"successful": True, "reason": ""}]}
+    call = Call(3.0, "/node/set_parameters", "", {"parameters": []}, result, 3.0, by_trial=True)
+    given = told(found_arc(commands, call))
+    assert (NOT_FOLLOWED in given) == found
+    assert ("Read the parameter with get_parameter before each command." in given) == found
+
+
+def found_arc(commands: list[Timed], call: Call) -> Finding:
+    return found(ARC, evidence(recording(commands, calls=(call,))), radius_m=1.0, from_s=3.4)

@@ -1,0 +1,148 @@
+"""Cancellation of a goal: the call, the response, and the goals afterwards."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.checks.outcome import Status
+from grader.checks.subjects.cancel import CANCELS_GOAL, NO_GOAL_AFTER, SAYS_WHETHER_ACTIVE
+from grader.tests.checks.goals import given, goal, stop
+from grader.tests.checks.made import found
+from grader.tests.checks.told import told
+
+if TYPE_CHECKING:
+    from grader.trial.observed import Goal
+
+
+@pytest.mark.parametrize(
+    ("goals", "diagnosis"),
+    [
+        ([goal(1.0, 80.0, 3.1, "canceled", cancel_asked_s=3.0)], None),
+        ([goal(1.0, 80.0, 3.9, "canceled", cancel_asked_s=3.8)], "goal-goes-on"),
+        ([goal(1.0, 80.0, 5.0)], "goal-goes-on"),
+        ([goal(1.0, 80.0, None, "executing")], "goal-goes-on"),
+        ([goal(1.0, 80.0, 3.1, "aborted"), goal(3.1, 0.0, 4.0)], "goal-replaced"),
+        ([goal(1.0, 80.0, 2.0)], "goal-not-sent"),
+        ([goal(1.0, 80.0, 2.9), goal(3.2, -80.0, 3.6, "canceled", cancel_asked_s=3.5)], None),
+    ],
+)
+def test_a_goal_is_cancelled_in_time(goals: list[Goal], diagnosis: str | None) -> None:
+    trial = given(*goals, calls=(stop(3.0), stop(3.4)))
+    finding = found(CANCELS_GOAL, trial, service="/stop", type="std_srvs/srv/Trigger")
+    assert (finding.diagnosis, finding.status is Status.PASSED) == (diagnosis, diagnosis is None)
+
+
+def test_a_call_without_a_response_cancels_nothing() -> None:
+    trial = given(goal(1.0, 80.0, 5.0), calls=(stop(3.0, answered=False),))
+    finding = found(CANCELS_GOAL, trial, service="/stop", type="std_srvs/srv/Trigger")
+    assert finding.diagnosis == "no-response"
+
+
+def test_no_goal_follows_a_cancelled_one() -> None:
+    cancelled = goal(1.0, 80.0, 3.1, "canceled", cancel_asked_s=3.0)
+    calls = (stop(3.0),)
+    assert found(NO_GOAL_AFTER, given(cancelled, calls=calls), service="/stop").status is Status.PASSED
+    again = given(cancelled, goal(3.1, 0.0, 5.0), calls=calls)
+    assert found(NO_GOAL_AFTER, again, service="/stop").diagnosis == "goal-after-cancel"
+
+
+@pytest.mark.parametrize(
+    ("success", "diagnosis"),
+    [
+        ((True, False), None),
+        ((False, False), "wrong-response"),
+        ((True, True), "wrong-response"),
+    ],
+)
+def test_the_response_says_whether_there_was_a_goal(success: tuple[bool, bool], diagnosis: str | None) -> None:
+    cancelled = goal(1.0, 80.0, 3.02, "canceled", cancel_asked_s=3.0)
+    calls = tuple(replace(stop(t_s), response={"success": said}) for t_s, said in zip((3.0, 3.4), success, strict=True))
+    assert found(SAYS_WHETHER_ACTIVE, given(cancelled, calls=calls), service="/stop").diagnosis == diagnosis
+
+
+@pytest.mark.parametrize("ended_s", [2.95, 3.05])
+def test_a_goal_that_ends_at_the_time_of_the_call_may_count_or_not(ended_s: float) -> None:
+    for said in (True, False):
+        call = replace(stop(3.0), response={"success": said})
+        reached = given(goal(1.0, 80.0, ended_s), calls=(call,))
+        assert found(SAYS_WHETHER_ACTIVE, reached, service="/stop").status is Status.PASSED
+
+
+ACTIVE = goal(1.0, 80.0, 3.1, "canceled", cancel_asked_s=3.0)
+ABORTED = goal(1.0, 80.0, 3.1, "aborted")
+
+
+def about(*goals: Goal) -> str:
+    trial = given(*goals, calls=(stop(3.0),))
+    return told(found(CANCELS_GOAL, trial, service="/stop", type="std_srvs/srv/Trigger"))
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("The goal was cancelled.", ACTIVE, goal(1.0, 80.0, 3.9, "canceled", cancel_asked_s=3.8)),
+        (
+            "The goal was cancelled 0.9 s after the call.",
+            goal(1.0, 80.0, 3.9, "canceled", cancel_asked_s=3.8),
+            goal(1.0, 80.0, 3.9),
+        ),
+        ("After the call of /stop, the turtle continued to its goal.", goal(1.0, 80.0, 3.9), ACTIVE),
+        ("The turtle followed no goal when /stop was called.", goal(1.0, 80.0, 2.9), goal(1.0, 80.0, 3.9)),
+        ("Until the service is called, the node sends the next goal", goal(1.0, 80.0, 2.9), goal(1.0, 80.0, 3.9)),
+        ("The goal sent at 1.0 s was aborted. The node did not cancel the goal.", ABORTED, goal(1.0, 80.0, 3.1)),
+        ("The node did not cancel the goal.", ABORTED, replace(ABORTED, cancel_asked_s=3.05)),
+        ("The goal is cancelled within 0.5 s after a call of /stop.", goal(1.0, 80.0, 3.9), ACTIVE),
+    ],
+)
+def test_a_sentence_about_a_cancelled_goal_is_true(words: str, true: Goal, near: Goal) -> None:
+    assert words in about(true)
+    assert words not in about(near)
+
+
+def after(*goals: Goal) -> str:
+    return told(found(NO_GOAL_AFTER, given(*goals, calls=(stop(3.0),)), service="/stop"))
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("No goal arrived after the call.", [ACTIVE], [ACTIVE, goal(3.5, 0.0, 5.0)]),
+        ("The node sent another goal 0.5 s after the call.", [ACTIVE, goal(3.5, 0.0, 5.0)], [ACTIVE]),
+        ("A cancelled goal also has a result", [ACTIVE, goal(3.5, 0.0, 5.0)], [ACTIVE]),
+        ("After a call of /stop, the node sends no more goals.", [ACTIVE, goal(3.5, 0.0, 5.0)], [ACTIVE]),
+        ("Not judged, because no goal was stopped.", [goal(3.5, 0.0, 5.0)], [ACTIVE, goal(3.5, 0.0, 5.0)]),
+    ],
+)
+def test_a_sentence_about_the_goals_after_a_call_is_true(words: str, true: list[Goal], near: list[Goal]) -> None:
+    assert words in after(*true)
+    assert words not in after(*near)
+
+
+def about_success(success: bool | None, *goals: Goal) -> str:
+    call = stop(3.0, answered=success is not None)
+    response = None if success is None else {"success": success}
+    trial = given(*goals, calls=(replace(call, response=response),))
+    return told(found(SAYS_WHETHER_ACTIVE, trial, service="/stop"))
+
+
+@pytest.mark.parametrize("goals", [(ACTIVE,), ()])
+def test_a_sentence_about_success_is_true(goals: tuple[Goal, ...]) -> None:
+    right, wrong = about_success(bool(goals), *goals), about_success(not goals, *goals)
+    said, other = ("a goal", "false") if goals else ("no goal", "true")
+    for words in (
+        f"The turtle followed {said} at 3.0 s, but success was {other}.",
+        "Set success in the callback of the service, before the goal is cancelled",
+        "In the response of /stop, success is true if a goal was active, and false if not.",
+    ):
+        assert words in wrong
+        assert words not in right
+    assert "success says whether a goal was active." in right
+    assert "success says whether a goal was active." not in wrong
+
+
+def test_a_response_that_never_came_says_nothing_about_a_goal() -> None:
+    assert "The node received the call of /stop and never answered." in about_success(None, ACTIVE)
+    assert found(SAYS_WHETHER_ACTIVE, given(ACTIVE), service="/stop").diagnosis == "no-response"
