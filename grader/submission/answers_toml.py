@@ -27,7 +27,7 @@ Answer = str | float | tuple[str, ...]
 class Answers:
     """The table [answers], by id: strings, numbers and lists of strings.
 
-    Values of other types, empty answers and 0 are left out.
+    Values of other types, empty answers and 0 are left out. `unusable` contains the ids of the answers of other types.
 
     `lines` are the line numbers of the answers, counted from 1. `problem` is the reason why the file cannot be read.
     `line` is the line of this problem, if known.
@@ -35,6 +35,7 @@ class Answers:
 
     given: Mapping[str, Answer] = field(default_factory=dict)
     lines: Mapping[str, int] = field(default_factory=dict)
+    unusable: frozenset[str] = frozenset()
     problem: str | None = None
     line: int | None = None
 
@@ -56,7 +57,8 @@ def read_answers(data: bytes) -> Answers:
         return Answers(problem="it has no table [answers]")
     given = {key: answer for key, value in table.items() if (answer := _answer(value)) is not None}
     lines = {line.split("=")[0].strip(): number for number, line in enumerate(text.splitlines(), 1) if "=" in line}
-    return Answers(given, lines)
+    unusable = frozenset(key for key, value in table.items() if key not in given and not _is_empty(value))
+    return Answers(given, lines, unusable)
 
 
 def _answer(value: object) -> Answer | None:
@@ -69,3 +71,9 @@ def _answer(value: object) -> Answer | None:
     if isinstance(value, list) and value and all(isinstance(item, str) for item in value):
         return tuple(item.strip() for item in value)
     return None
+
+
+def _is_empty(value: object) -> bool:
+    """Return whether a value stands for an answer that is still missing, as in the handout."""
+    blank = isinstance(value, str) and not value.strip()
+    return (value in ("", 0, []) and not isinstance(value, bool)) or blank

@@ -46,14 +46,17 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
             Cause("answers-unreadable", cause, Where(FILE, found.line)),
         )
     questions = {str(check.params["answer"]) for check in evidence.exercise.checks if "answer" in check.params}
-    other = sorted(set(found.given) - questions)
+    named = set(found.given) | found.unusable
+    other = sorted(named - questions)
     if other:
         observed = f"{FILE} answers {a_list([shorten(name) for name in other])}, but no question has that name."
-        names = sorted(questions - set(found.given)) or sorted(questions)
-        cause = f"The names of the questions are {a_list(names, most=len(names))}."
+        left = sorted(questions - named)
+        names = a_list(left or sorted(questions), most=len(questions))
+        intro = "These questions are not answered yet:" if left else "The names of the questions are"
+        cause = f"{intro} {names}."
         where = Where(FILE, found.lines.get(other[0]))
         return failed(observed, expected, Cause("unknown-answer", cause, where))
-    if not found.given:
+    if not named:
         return failed(f"{FILE} has no answers yet.", expected, Cause("answers-empty", where=Where(FILE)))
     return passed(f"{FILE} can be read.")
 
@@ -219,10 +222,11 @@ def _given(evidence: Evidence, name: str, form: str, kind: type) -> Answer | Fin
     found = evidence.answers
     where = Where(FILE, found.lines.get(name) if found is not None else None)
     answer = found.given.get(name) if found is not None else None
-    if answer is None:
+    unusable = found is not None and name in found.unusable
+    if answer is None and not unusable:
         return failed(f"{name} is not answered yet.", f"{name} is {form}.", Cause("no-answer", where=where))
-    if not isinstance(answer, kind):
-        observed = f"{name} is {_shown(answer)}."
+    if answer is None or not isinstance(answer, kind):
+        observed = f"{name} is not {form}." if answer is None else f"{name} is {_shown(answer)}."
         cause = f"Write the answer in this form: `{name} = {EXAMPLES[form]}`."
         return failed(observed, f"{name} is {form}.", Cause("answer-form", cause, where))
     return answer

@@ -54,6 +54,8 @@ def bag_answer(evidence: Evidence, params: BagAnswer) -> Finding:
     expected = (
         f"{params.answer} is a number{f' and its unit, {unit}' if unit else ''}, as in {EXAMPLE[params.quantity]}."
     )
+    if given is None and found is not None and params.answer in found.unusable:
+        return failed(f"{params.answer} is neither a string nor a number.", expected, Cause("answer-form", where=where))
     if given is None:
         return failed(f"{params.answer} is not answered yet.", expected, Cause("no-answer", where=where))
     match = NUMBER.fullmatch(f"{given:.0f}" if isinstance(given, float) and not unit else str(given).strip())
@@ -99,9 +101,8 @@ def _why(quantity: str, value: float, band: Band) -> Cause:
         return Cause("period-for-rate", cause)
     if quantity == "radius" and band.holds(value / 2.0):
         return Cause("diameter", "This is the diameter, twice the radius.")
-    return Cause(
-        "wrong-answer", "`ros2 bag info` and your own program show the right value. Is the answer about an earlier bag?"
-    )
+    source = "`ros2 bag info`" if quantity == "duration" else "Your own program"
+    return Cause("wrong-answer", f"{source} shows the right value. Is the answer about an earlier bag?")
 
 
 ANSWER = Kind(

@@ -85,7 +85,7 @@ def eight(evidence: Evidence, params: Eight) -> Finding:
     if still is not None:
         return still
     if trajectory.wall.any():
-        return failed("The turtle ran into a wall.", expected, Cause("wall", "The lobes are too large.", where))
+        return failed("The turtle ran into a wall.", expected, Cause("wall", _why_wall(evidence, params), where))
     lobes = lobes_of(trajectory)
     if len(lobes) < 2:
         what = f"only one lobe, to the {lobes[0].side}" if lobes else "no lobe"
@@ -108,6 +108,18 @@ def eight(evidence: Evidence, params: Eight) -> Finding:
     if further is not None:
         return further
     return passed(f"The turtle drove a figure eight with radius {params.radius_m:.1f} m.", near_edge=near)
+
+
+def _why_wall(evidence: Evidence, params: Eight) -> str:
+    """Return a sentence about the part of the trajectory that led to the wall, or an empty string."""
+    at = int(evidence.trajectory.wall.argmax())
+    linear, angular = (
+        float(speed[at]) for speed in (evidence.recording.frames.linear, evidence.recording.frames.angular)
+    )
+    if abs(angular) <= STRAIGHT_RAD:
+        return "The turtle drove straight to the wall. angular.z is the turning speed."
+    too_large = abs(linear / angular) > params.radius_m + params.radius_tolerance_m
+    return "The lobes are too large." if too_large else ""
 
 
 def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: bool) -> tuple[Finding | None, bool]:

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from grader.exercise.call_inputs import Arc
     from grader.trial.called import Called
 
+IN_MODULE = ", in <module>"
+"""The end of a traceback entry for code outside of functions."""
 SIGMAS = 6.0
 """The maximum error of a right answer, in standard deviations of the best fit."""
 
@@ -91,7 +93,7 @@ def stopped(evidence: Evidence, called: Called, expected: str, name: str) -> Fin
         return late
     crash = read_traceback(called.stderr, evidence.submission.files)
     if crash is not None:
-        observed = f"{name} raised {crash.observed}."
+        observed = f"{_raiser(evidence, called, name)} raised {crash.observed}."
         known = _why_raised(evidence, crash, called.id)
         if known is not None:
             return failed(observed, expected, known.at(crash.where or where))
@@ -99,6 +101,12 @@ def stopped(evidence: Evidence, called: Called, expected: str, name: str) -> Fin
     last = called.stderr.strip().splitlines()[-1:]
     how = f"{called.ended or 'no result'}{f': {shorten(last[0], 80)}' if last else ''}"
     return failed(f"{name} ended the program ({how}).", expected, Cause("call-ended", "", where))
+
+
+def _raiser(evidence: Evidence, called: Called, name: str) -> str:
+    """Return what raised the exception: the function or program, or the import of the function's module."""
+    imports = evidence.trial.calls.function and IN_MODULE in called.stderr and f", in {name}" not in called.stderr
+    return f"The import of {name}" if imports else name
 
 
 def _missing(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
@@ -123,7 +131,7 @@ def _late(evidence: Evidence, called: Called, expected: str, name: str) -> Findi
     late = any(each.ended == TOO_LATE for each in evidence.run.called or ())
     if not late or called.ended not in (TOO_LATE, ""):
         return None
-    observed = f"{name} did not end in time (5 s of CPU time)."
+    observed = f"{name} did not end in time (5 s of CPU time, or 20 s in all)."
     if not called.ended:
         observed = f"{name} was not called with this input, because an earlier call did not end."
     cause = "A loop may never end, or the function may wait for something that never happens."
@@ -154,7 +162,8 @@ def refuses(evidence: Evidence, params: OneCall) -> Finding:
     given = f"x = {list(x)} and y = {list(y)}"
     expected = f"{name} raises ValueError for {given}, with a message that explains why."
     crash = read_traceback(called.stderr, evidence.submission.files)
-    if "ValueError" in called.kind.split() and crash is not None:
+    raiser = _raiser(evidence, called, name)
+    if "ValueError" in called.kind.split() and crash is not None and raiser == name:
         return passed(f"{name} raises {crash.observed}.")
     broken = _missing(evidence, called, expected, name) or _late(evidence, called, expected, name)
     if broken is not None:
@@ -164,9 +173,12 @@ def refuses(evidence: Evidence, params: OneCall) -> Finding:
         return failed(f"{name} returned {_form(called)}.", expected, why_no_error(evidence))
     if crash is not None and called.kind:
         cause = "The caller expects ValueError, and cannot know what another exception means."
-        return failed(f"{name} raised {crash.observed}.", expected, Cause("other-error", cause, crash.where or where))
-    cause = "sys.exit ends the whole program. After an exception, the caller can decide what to do."
-    return failed(f"{name} ended the program.", expected, Cause("other-error", cause, where))
+        cause = "" if raiser != name else cause
+        return failed(f"{raiser} raised {crash.observed}.", expected, Cause("other-error", cause, crash.where or where))
+    exits = called.ended.startswith("exit")
+    cause = "sys.exit ends the whole program. After an exception, the caller can decide what to do." if exits else ""
+    observed = f"{name} ended the program ({called.ended or 'no result'})."
+    return failed(observed, expected, Cause("other-error", cause, where))
 
 
 def _form(called: Called) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import math
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
     from grader.exercise.call_inputs import BagInput
 
+POWERS = ("10 ** 9", "10 ** -9")
+"""The number of nanoseconds in a second, and its inverse, as powers."""
 HUNDREDTH = 0.0101
 """A printed value has two decimal places, and may be truncated instead of rounded."""
 
@@ -60,7 +63,7 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
     pattern = Format(params.format).pattern()
     found = next((match for match in map(pattern.fullmatch, lines) if match is not None), None)
     where = evidence.place("print")
-    if found is None and "nan" in lines[-1]:
+    if found is None and re.search(r"\bnan\b", lines[-1]):
         cause = "NaN is the result of an undefined computation. Which computation returns NaN?"
         return failed(f'{name} printed "{shorten(lines[-1], 80)}".', expected, Cause("not-a-number", cause, where))
     if found is None:
@@ -89,11 +92,15 @@ def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
         cause = "A script that calls the program sees only the exit code. sys.exit with a string ends with 1."
         observed = f"For a bag without poses, {name} ended with exit code 0."
         return failed(observed, expected, Cause("exit-code", cause, evidence.place("exit", "print")))
-    if not called.ended.startswith("exit") or not called.stderr.strip():
-        observed = f"For a bag without poses, {name} printed no message ({called.ended or 'no result'})."
+    if not called.ended.startswith("exit"):
+        observed = f"For a bag without poses, {name} did not exit by itself ({called.ended or 'no result'})."
+        return failed(observed, expected, Cause("exit-code", "", evidence.place("exit")))
+    printed = (called.stderr.strip() or called.stdout.strip()).splitlines()
+    if not printed:
+        observed = f"For a bag without poses, {name} printed no message ({called.ended})."
         cause = "sys.exit with a string prints the string."
         return failed(observed, expected, Cause("exit-code", cause, evidence.place("exit")))
-    return passed(f'{name} says "{shorten(called.stderr.strip().splitlines()[-1], 80)}"')
+    return passed(f'{name} says "{shorten(printed[-1], 80)}"')
 
 
 def _why(evidence: Evidence, key: str, given: dict[str, float], bag: BagInput) -> Cause:
@@ -103,7 +110,7 @@ def _why(evidence: Evidence, key: str, given: dict[str, float], bag: BagInput) -
         return Cause("all-messages", "All messages of the bag were counted, not only the poses.")
     if key == "rate":
         value = given[key]
-        if value == 0.0 or abs(value * 1e9 - rate) <= rate:
+        if abs(value * 1e9 - rate) <= rate and not _has_a_billion(evidence):
             return Cause(
                 "nanoseconds", "Time stamps in a bag are in nanoseconds. A second has 1,000,000,000 nanoseconds."
             )
@@ -128,6 +135,13 @@ def _why(evidence: Evidence, key: str, given: dict[str, float], bag: BagInput) -
         values = (given["x"], given["y"], given["radius"])
         return why_fit(Fit(bag.arc, values, (within["x"], within["y"], within["radius"])))
     return Cause("wrong-count", "Each message on the topic counts once.")
+
+
+def _has_a_billion(evidence: Evidence) -> bool:
+    """Return whether the program contains the number of nanoseconds in a second, or its inverse."""
+    nodes = [node for module in evidence.code.modules for node in module.nodes]
+    constants = any(isinstance(node, ast.Constant) and node.value in (1e9, 1e-9) for node in nodes)
+    return constants or any(isinstance(node, ast.BinOp) and ast.unparse(node) in POWERS for node in nodes)
 
 
 def _rounded_down(evidence: Evidence, value: float, bag: BagInput) -> Cause | None:
@@ -188,6 +202,6 @@ ENDS = Kind(
     "The program reports what is missing",
     OneCall,
     ends_with_message,
-    about="The executable, started with the name of a `[[trial.bag]]` without poses, prints a sentence on standard "
-    "error and ends with an exit code other than 0, without a traceback.",
+    about="The executable, started with the name of a `[[trial.bag]]` without poses, prints a sentence and "
+    "ends with an exit code other than 0, without a traceback.",
 )

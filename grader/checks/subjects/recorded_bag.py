@@ -110,7 +110,9 @@ def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:
     poses, where = evidence.bag(params.bag).poses.get(params.topic, Poses()), Where(params.bag)
     expected = f"The poses show at least {params.turns:g} turn on a circle with a radius of {params.radius_m:g} m."
     x, y = np.array(poses.x), np.array(poses.y)
-    if len(x) < 2 or max(np.ptp(x), np.ptp(y)) < STILL_M:
+    if len(x) < 2:
+        return failed(f"The bag has no path on {params.topic}.", expected, Cause("bag-topic", where=where))
+    if max(np.ptp(x), np.ptp(y)) < STILL_M:
         cause = "Start the recording, then the turtle, and end the recording after a whole turn."
         return failed("The turtle stands still in the whole bag.", expected, Cause("bag-still", cause, where))
     circle = fit_circle(x, y)
@@ -123,7 +125,10 @@ def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:
         observed = f"The circle in the bag has a radius of {circle.radius:.2f} m."
         return failed(observed, expected, Cause("wrong-radius", cause, where))
     if not driven >= params.turns - 0.01:
-        cause = "The recording began too late, or ended too early."
+        steps = np.hypot(np.diff(x), np.diff(y))
+        cause = "The turtle stopped before the turn was complete."
+        if max(steps[0], steps[-1]) > MOVES_M:
+            cause = "The recording began too late, or ended too early."
         return failed(f"The bag shows {driven:.2f} turns.", expected, Cause("too-short", cause, where))
     speed = _speed(poses)
     if params.speed_m_s and not Band.around(

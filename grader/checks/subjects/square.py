@@ -99,7 +99,8 @@ def square(evidence: Evidence, params: Square) -> Finding:
     if still is not None:
         return still
     if trajectory.wall.any():
-        return failed("The turtle ran into a wall.", expected, Cause("wall", "A side is too long.", where))
+        text = "A side is too long, or a corner has the wrong angle."
+        return failed("The turtle ran into a wall.", expected, Cause("wall", text, where))
     sides = sides_of(trajectory)
     if sides.curved_share > CURVED_SHARE:
         observed = f"{100.0 * sides.curved_share:.0f} % of the trajectory is curved."

@@ -10,6 +10,7 @@ from grader.checks.subjects.answers import ANSWERS, GRAPH, LIST, RATE, TEXT
 from grader.errors import MachineError
 from grader.evidence.evidence import Run
 from grader.tests.checks.made import evidence, found, recording, submission
+from grader.tests.checks.told import told
 from grader.trial.recording import Endpoint, Graph, Message
 
 if TYPE_CHECKING:
@@ -175,3 +176,59 @@ def test_without_messages_there_is_no_rate_to_compare_with() -> None:
 def test_an_answer_of_any_length_makes_a_short_message() -> None:
     finding = judged(TEXT, f'"{"x" * 5000}"', accepts=("left",))
     assert len(finding.observed) < 200
+
+
+LISTED = {"items": ("x", "y")}
+WORD = {"accepts": ("left",)}
+PLAIN = {"find": "type", "node": "/kitchen/cook"}
+
+
+@pytest.mark.parametrize(
+    ("words", "kind", "values", "true", "near"),
+    [
+        ("name is not answered yet.", TEXT, WORD, '""', "true"),
+        ("name is not a string in quotation marks.", TEXT, WORD, "true", '""'),
+        ('Write the answer in this form: `name = "answer"`.', TEXT, WORD, "1.5", '"right"'),
+        ("name is a string in quotation marks.", TEXT, WORD, "1.5", '"right"'),
+        ("name is the right answer to this question.", TEXT, WORD, '"right"', '"left"'),
+        ("name is a list of strings in quotation marks.", LIST, LISTED, '"x"', '["x"]'),
+        ("The list contains all right items, and no other items.", LIST, LISTED, '["x"]', '["x", "y"]'),
+        ("name is a number, without quotation marks.", RATE, {"type_ends": "/String"}, '"4"', "5"),
+        ("name is the rate that `ros2 topic hz` measures.", RATE, {"type_ends": "/String"}, "5", "4"),
+        ("`ros2 topic hz` shows the number of messages per second.", RATE, {"type_ends": "/String"}, "5", "0.25"),
+        (
+            "name is the topic that the question asks for, spelled as `ros2` prints it.",
+            GRAPH,
+            TOPIC,
+            '"cups"',
+            '"/cups"',
+        ),
+        ("In ROS 2 a type has three parts: the package, the word msg,", GRAPH, PLAIN, '"std_msgs/String"', '"String"'),
+        ("The full name of a type starts with its package", GRAPH, PLAIN, '"String"', '"std_msgs/String"'),
+        ("The full name of a topic starts with a slash.", GRAPH, TOPIC, '"cups"', '"Cups"'),
+        ("This topic exists, but it is not the one", GRAPH, TOPIC, '"/bills"', '"/nowhere"'),
+    ],
+)
+def test_a_sentence_about_an_answer_is_true(
+    words: str, kind: Kind[Any], values: dict[str, Any], true: str, near: str
+) -> None:
+    assert words in told(judged(kind, true, **values))
+    assert words not in told(judged(kind, near, **values))
+
+
+def about_file(answers: str | None, *questions: str) -> str:
+    check = evidence().exercise.checks[0]
+    checks = tuple(replace(check, params={"answer": name}) for name in questions)
+    return told(found(ANSWERS, given(answers, exercise=replace(evidence().exercise, checks=checks))))
+
+
+def test_a_sentence_about_the_file_with_the_answers_is_true() -> None:
+    form = "answers.toml is a TOML file with a table [answers] and one line per question."
+    assert form in about_file(None, "node")
+    assert form not in about_file("node = 1", "node")
+    assert "answers.toml has no answers yet." in about_file('node = ""', "node")
+    assert "answers.toml has no answers yet." not in about_file("node = true", "node")
+    assert "These questions are not answered yet: topic." in about_file("node = 1\nnade = 2", "node", "topic")
+    other = about_file("node = 1\nnade = 2", "node")
+    assert "These questions are not answered yet" not in other
+    assert "The names of the questions are node." in other

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -8,7 +9,11 @@ from grader.checks.outcome import Finding, Status
 from grader.checks.subjects.eight import EIGHT
 from grader.tests.checks.made import NODE_FILE, TICK_S, every, evidence, found, legs, recording
 from grader.tests.checks.shapes import teleported
+from grader.tests.checks.told import told
 from grader.trial.recording import Pose
+
+if TYPE_CHECKING:
+    from grader.tests.checks.made import Timed
 
 TICKS = 40
 TURN = 2.0 * math.pi / (TICKS * TICK_S)  # in rad/s; a circle takes this many ticks
@@ -144,3 +149,63 @@ def test_what_stalls_of_the_machine_may_have_done_is_not_judged(
 @pytest.mark.parametrize(("ticks", "diagnosis"), [(1, None), (3, "wrong-side-first")])
 def test_a_small_bend_is_no_lobe(ticks: int, diagnosis: str | None) -> None:
     assert eight((ticks, TURN, -TURN), lobe(1), lobe(-1), first="left").diagnosis == diagnosis
+
+
+Part = tuple[int, float, float]
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("The lobes are too large.", (lobe(1, radius_m=3.0), lobe(-1)), ((60, 2.0, 0.0), lobe(1))),
+        ("The turtle drove straight to the wall.", ((60, 2.0, 0.0), lobe(1)), (lobe(1, radius_m=3.0), lobe(-1))),
+        ("The turtle ran into a wall.", ((20, 3.0, 0.0), lobe(-1), lobe(1)), ((5, 3.0, 0.0), lobe(-1), lobe(1))),
+        ("A full circle takes 2 pi / angular.z seconds.", (lobe(1, degrees=315.0), lobe(-1)), (lobe(1, 1.3), lobe(-1))),
+        ("The radius is linear.x divided by angular.z.", (lobe(1, 1.3), lobe(-1)), (lobe(1, degrees=315.0), lobe(-1))),
+        (
+            "After the second lobe, the turtle stands still. Publish a",
+            (lobe(1), lobe(-1, degrees=470.0)),
+            (lobe(1), lobe(-1)),
+        ),
+        (
+            "After the second lobe, the turtle drives a third one, to the left.",
+            (lobe(1), lobe(-1), lobe(1, degrees=90.0)),
+            (lobe(1), lobe(-1)),
+        ),
+        (
+            "After two lobes, the turtle stands still. Publish a",
+            (lobe(1), lobe(-1), lobe(1, degrees=90.0)),
+            (lobe(1), lobe(-1, degrees=470.0)),
+        ),
+        ("When the first lobe is closed, the sign of angular.z must change", (lobe(1),), (lobe(1), lobe(-1))),
+    ],
+)
+def test_a_sentence_about_an_eight_is_true(words: str, true: tuple[Part, ...], near: tuple[Part, ...]) -> None:
+    assert words in told(eight(*true))
+    assert words not in told(eight(*near))
+
+
+def test_a_wall_beside_a_lobe_of_the_right_size_says_nothing_about_its_size() -> None:
+    beside = eight(lobe(1), lobe(-1), start=Pose(10.6, 5.5, 0.0))
+    assert (beside.diagnosis, beside.cause) == ("wall", "")
+
+
+@pytest.mark.parametrize(("speed", "found"), [(0.05, True), (0.5, False)])
+def test_a_small_speed_at_the_end_is_told(speed: float, *, found: bool) -> None:
+    commands = [*legs(lobe(1), lobe(-1), rest_s=8.2), *every(0.1, speed, 0.0, first_s=8.3)]
+    given = told(found_eight(commands))
+    assert f"The turtle still drives at {speed:.2f} m/s at the end." in given
+    assert ("Small speeds are not 0. Publish a command with all values 0" in given) == found
+
+
+def found_eight(commands: list[Timed]) -> Finding:
+    return found(EIGHT, evidence(recording(commands)), radius_m=1.0)
+
+
+def test_a_last_command_that_is_not_zero_is_told() -> None:
+    words = "The last command is not 0. The turtle stopped only because no more commands arrived."
+    driving = [each for each in legs(lobe(1), lobe(-1)) if each[1]]
+    last_s = driving[-1][0]
+    nearly = [*driving[:-1], (last_s, 1e-2, 0.0)]
+    assert words in told(found_eight(nearly))
+    assert words not in told(found_eight([*nearly, (last_s + TICK_S, 0.0, 0.0)]))

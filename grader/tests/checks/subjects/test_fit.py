@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 
 from grader.checks.causes.why_fit import Fit
 from grader.checks.exercises import find_exercise
-from grader.checks.subjects.fit import tolerances
+from grader.checks.subjects.fit import FITS, tolerances
 from grader.common.lazy import np
 from grader.evidence.circle_fit import fit_circle
+from grader.evidence.evidence import Evidence, Run
+from grader.tests.checks.bag_step import RADIUS, X, Y, judged, raised, returned, solution
+from grader.tests.checks.made import found
+from grader.tests.checks.told import told
+from grader.trial.called import TOO_LATE, Called
 
 if TYPE_CHECKING:
     from grader.exercise.call_inputs import Arc
@@ -23,6 +30,7 @@ ARCS: dict[str, Arc] = {
 }
 SEEDS = range(40)
 ROUNDING_M = 1e-3
+C = RADIUS**2 - X**2 - Y**2
 
 
 def kasa(arc: Arc, seed: int) -> tuple[float, float, float]:
@@ -57,3 +65,168 @@ def test_the_noise_is_the_same_for_the_same_seed_alone() -> None:
     assert (arc.points("a", 1)[0] == arc.points("a", 1)[0]).all()
     assert not (arc.points("a", 1)[0] == arc.points("a", 2)[0]).all()
     assert not (arc.points("a", 1)[0] == arc.points("b", 1)[0]).all()
+
+
+@pytest.mark.parametrize(
+    ("called", "diagnosis"),
+    [
+        (returned(X, Y, RADIUS), None),
+        (returned(Y, X, RADIUS), "x-y-swapped"),
+        (returned(RADIUS, X, Y), "result-order"),
+        (returned(X, Y, RADIUS**2), "radius-squared"),
+        (returned(X, Y, 2 * RADIUS), "diameter"),
+        (returned(X, Y, C), "radius-without-centre"),
+        (returned(X, Y, math.sqrt(-C)), "radius-without-centre"),
+        (returned(X, Y, math.nan), "radius-without-centre"),
+        (returned(math.nan, Y, RADIUS), "not-a-number"),
+        (returned(2 * X, 2 * Y, 9.0), "centre-doubled"),
+        (returned(-X, -Y, RADIUS), "centre-sign"),
+        (returned(0.0, 0.0, 0.0), "wrong-fit"),
+        (returned(X, Y, RADIUS + 0.01), "wrong-fit"),
+        (returned(X, Y), "result-form"),
+        (Called("whole", "exit 0", kind="NoneType"), "result-form"),
+        (Called("whole", TOO_LATE), "call-too-long"),
+        (Called("whole", "exit 1", stderr="the end\n"), "call-ended"),
+        (Called("whole"), "call-ended"),
+        (raised("whole", "ValueError: too many values to unpack (expected 3)"), "lstsq-result"),
+        (raised("whole", "ZeroDivisionError: division by zero"), "crash"),
+    ],
+)
+def test_what_a_fit_returned_has_a_cause(called: Called, diagnosis: str | None) -> None:
+    assert judged("whole", called).diagnosis == diagnosis
+
+
+@pytest.mark.parametrize(
+    ("values", "diagnosis"),
+    [
+        ((6.430, 6.440, 1.538), "mean-for-centre"),
+        ((6.263, 6.017, 2.555), "extremes-for-centre"),
+        ((6.001, 4.002, 2.998), None),
+    ],
+)
+def test_an_arc_shows_what_is_taken_for_its_centre(values: tuple[float, ...], diagnosis: str | None) -> None:
+    assert judged("arc", replace(returned(*values), id="arc")).diagnosis == diagnosis
+
+
+@pytest.mark.parametrize(
+    ("called", "diagnosis"),
+    [
+        (raised("too-few", "ValueError: too few", "ValueError Exception"), None),
+        (raised("too-few", "numpy.linalg.LinAlgError: singular", "LinAlgError ValueError Exception"), None),
+        (raised("too-few", "RuntimeError: too few", "RuntimeError Exception"), "other-error"),
+        (Called("too-few", "exit 1"), "other-error"),
+        (Called("too-few", "exit 0", kind="NoneType"), "no-error"),
+        (Called("too-few", TOO_LATE), "call-too-long"),
+    ],
+)
+def test_two_points_are_refused(called: Called, diagnosis: str | None) -> None:
+    assert judged("too-few", called).diagnosis == diagnosis
+
+
+RIGHT = returned(X, Y, RADIUS)
+IMPORT = 'Traceback (most recent call last):\n  File "my_robot_controller/circle_fit.py", line 3, in <module>\n'
+TOO_MANY = raised("whole", "ValueError: too many values to unpack (expected 3)")
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("fit_circle returned x=5.500, y=7.250 and radius=1.750.", RIGHT, returned(X, Y)),
+        (
+            "fit_circle returns x=5.5, y=7.25 and radius=1.75 (m) for 100 points from 0° to 356.4°.",
+            returned(X, Y),
+            RIGHT,
+        ),
+        ("fit_circle returned 2 numbers (5.5 and 7.25).", returned(X, Y), RIGHT),
+        ("fit_circle must return three numbers: `return x, y, radius`.", returned(X, Y), returned(Y, X, RADIUS)),
+        ("In numpy, the root of a negative number", returned(math.nan, Y, RADIUS), returned(X, Y, math.nan)),
+        ("fit_circle did not end in time", Called("whole", TOO_LATE), Called("whole", "signal 9")),
+        ("A loop may never end, or the function may wait", Called("whole", TOO_LATE), Called("whole", "signal 9")),
+        ("fit_circle ended the program (exit 1: the end).", Called("whole", "exit 1", stderr="the end\n"), TOO_MANY),
+        ("fit_circle ended the program (no result).", Called("whole"), Called("whole", "exit 1")),
+        (
+            "fit_circle raised ZeroDivisionError: division by zero.",
+            raised("whole", "ZeroDivisionError: division by zero"),
+            raised("whole", "ZeroDivisionError: float division by zero"),
+        ),
+        (
+            "The import of fit_circle raised ZeroDivisionError: division by zero.",
+            Called("whole", "exit 1", stderr=f"{IMPORT}ZeroDivisionError: division by zero"),
+            raised("whole", "ZeroDivisionError: division by zero"),
+        ),
+        (
+            "lstsq takes the matrix first and the right side second. lstsq returns four values",
+            TOO_MANY,
+            raised("whole", "ZeroDivisionError: division by zero"),
+        ),
+    ],
+)
+def test_a_sentence_about_a_fit_is_true(words: str, true: Called, near: Called) -> None:
+    assert words in told(judged("whole", true))
+    assert words not in told(judged("whole", near))
+
+
+NO_LISTS = "The function works with numpy arrays, but not with lists. `np.asarray` accepts arrays and lists."
+
+
+@pytest.mark.parametrize(
+    ("others", "check", "is_told"),
+    [((RIGHT,), "lists", True), ((), "lists", False), ((RIGHT,), "elsewhere", False)],
+)
+def test_lists_are_refused_only_if_arrays_are_not(others: tuple[Called, ...], check: str, *, is_told: bool) -> None:
+    error = raised(check, "TypeError: can't multiply sequence by non-int of type 'float'")
+    given = told(judged(check, error, others=others))
+    assert (NO_LISTS in given) == is_told
+
+
+@pytest.mark.parametrize(("ended", "is_told"), [(TOO_LATE, True), ("signal 9", False)])
+def test_a_call_after_one_that_did_not_end_was_not_made(ended: str, *, is_told: bool) -> None:
+    given = told(judged("noise", Called("noise"), others=(Called("whole", ended),)))
+    words = "fit_circle was not called with this input, because an earlier call did not end."
+    assert (words in given) == is_told
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        (
+            "fit_circle raises ValueError: too few.",
+            raised("too-few", "ValueError: too few", "ValueError Exception"),
+            raised("too-few", "RuntimeError: too few", "RuntimeError Exception"),
+        ),
+        (
+            "fit_circle raises ValueError for x = [1.0, 2.0] and y = [1.0, 3.0], with a message that explains why.",
+            Called("too-few", "exit 0", kind="NoneType"),
+            raised("too-few", "ValueError: too few", "ValueError Exception"),
+        ),
+        (
+            "The caller expects ValueError, and cannot know what another exception means.",
+            raised("too-few", "RuntimeError: too few", "RuntimeError Exception"),
+            Called("too-few", "exit 1"),
+        ),
+        ("fit_circle ended the program (exit 1).", Called("too-few", "exit 1"), Called("too-few", "exit 0")),
+        ("sys.exit ends the whole program.", Called("too-few", "exit 1"), Called("too-few", "signal 11")),
+        (
+            "fit_circle returned None.",
+            Called("too-few", "exit 0", kind="NoneType"),
+            Called("too-few", "exit 0", kind="str"),
+        ),
+    ],
+)
+def test_a_sentence_about_refused_points_is_true(words: str, true: Called, near: Called) -> None:
+    assert words in told(judged("too-few", true))
+    assert words not in told(judged("too-few", near))
+
+
+def test_an_import_that_raises_a_value_error_refuses_nothing() -> None:
+    error = Called("too-few", "exit 1", stderr=f"{IMPORT}ValueError: no", kind="ValueError Exception")
+    assert "The import of fit_circle raised ValueError: no." in told(judged("too-few", error))
+    assert "The caller expects ValueError" not in told(judged("too-few", error))
+
+
+def test_only_the_points_of_an_arc_have_a_circle() -> None:
+    run = Run(called=(Called("too-few", "exit 0"), RIGHT))
+    given = Evidence(EXERCISE, solution(), runs={"fit": run}).from_trial("fit")
+    with pytest.raises(ValueError, match="the points too-few are not those of an arc"):
+        found(FITS, given, call="too-few")
+    assert found(FITS, given, call="whole").diagnosis is None

@@ -8,6 +8,7 @@ from grader.checks.outcome import Finding, Status
 from grader.checks.subjects.square import SQUARE
 from grader.tests.checks.made import NODE_FILE, TICK_S, evidence, found, legs, recording, submission
 from grader.tests.checks.shapes import teleported
+from grader.tests.checks.told import told
 from grader.trial.recording import Pose
 
 TICKS = 10
@@ -148,3 +149,44 @@ def test_curves_are_a_share_of_the_whole_path() -> None:
     curve = (2, 2.0, 0.4)
     few = [leg for _ in range(4) for leg in (side(1.9), curve, corner(90.0 - math.degrees(0.8 * TICK_S)))]
     assert square(few, Pose(4.0, 4.0, 0.0)).diagnosis == "curves"
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("A side is too long, or a corner has the wrong angle.", round_((7.5, 2.0, 2.0, 2.0)), round_((2.5,) * 4)),
+        ("Drive with angular.z at 0, then turn with linear.x at 0.", [(5, 2.0, 2.0)] * 4, round_()[:5]),
+        ("Four sides and the turns between them must fit into", round_()[:5], [(5, 2.0, 2.0)] * 4),
+        ("The second side is 1.50 m long: 0.50 m too short.", round_((2.0, 1.5, 2.0, 2.0)), round_()),
+        ("The second side is 2.50 m long: 0.50 m too long.", round_((2.0, 2.5, 2.0, 2.0)), round_()),
+        ("A quarter turn is pi / 2 rad, which is turning speed", round_(corners=(105.0,) * 4), round_((2.5,) * 4)),
+        ("After four sides, the turtle stands still.", [*round_(), side(1.0)], round_((2.5,) * 4)),
+        ("After the fourth side, the turtle drives 1.0 m further.", [*round_(), side(1.0)], round_()),
+        ("After the fourth side, the turtle turns by 40 degrees.", [*round_()[:-1], corner(40.0)], round_()),
+        ("The turtle drives the square counter-clockwise.", round_(corners=(-90.0,) * 4), round_((2.5,) * 4)),
+    ],
+)
+def test_a_sentence_about_a_square_is_true(words: str, true: list[Leg], near: list[Leg]) -> None:
+    start = Pose(4.0, 4.0, 0.0)
+    assert words in told(square(true, start))
+    assert words not in told(square(near, start))
+
+
+LAST = [(t_s, v, w) for t_s, v, w in legs(*round_()[:-1], corner(40.0)) if v or w]
+"""The commands of a square without the zeros at its end. The last command turns the turtle."""
+
+
+@pytest.mark.parametrize(("rest_s", "found"), [(0.1, True), (3.0, False)])
+def test_a_square_that_the_end_of_the_trial_cuts_short_took_too_long(rest_s: float, *, found: bool) -> None:
+    end_s = LAST[-1][0] + rest_s
+    assert ("the turtle was still turning: the square took too long." in cut(end_s)) == found
+
+
+@pytest.mark.parametrize(("rest_s", "found"), [(3.0, True), (0.1, False)])
+def test_a_turtle_without_a_command_with_zeros_continues(rest_s: float, *, found: bool) -> None:
+    given = cut(LAST[-1][0] + rest_s)
+    assert ("The last command is not 0, so the turtle continues for one second." in given) == found
+
+
+def cut(end_s: float) -> str:
+    return told(found(SQUARE, evidence(recording(LAST, Pose(4.0, 4.0, 0.0), sigint_t_s=end_s)), side_m=2.0))
