@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -16,13 +17,22 @@ from grader.common.words import shorten
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
+    from grader.submission.where import Where
     from grader.trial.observed import Call
 
 CLOSE = 1e-6
 SET = ("/set_parameters", "/set_parameters_atomically")
 """The services of a node that set parameters one after the other, or all together."""
-DOUBLE = 3
-"""The number that stands for a double in rcl_interfaces/msg/ParameterType."""
+INTEGER, DOUBLE = 2, 3
+"""The numbers that stand for an integer and for a double in rcl_interfaces/msg/ParameterType."""
+
+
+UNDECLARED = "undeclared parameter"
+NOT_RETURNED = "Callback returned an invalid type"
+OTHER_TYPE = "Wrong parameter type"
+READ_ONLY = "Trying to set a read-only parameter"
+OUT_OF_RANGE = re.compile(r"Parameter .* out of range|The parameter value for .* valid step")
+"""The reasons of rclpy itself for refusing a value. Every other reason comes from the student's callback."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,11 +52,15 @@ def declares(evidence: Evidence, params: Declares) -> Finding:
     where = evidence.place("declare_parameter", "declare_parameters")
     service = f"/{evidence.trial.node}/describe_parameters"
     call = next((each for each in calls_of(evidence) if each.by_trial and each.service == service), None)
+    if call is None or call.response is None:
+        return _unanswered(evidence, f"The node did not answer when the trial asked for {name}.", expected, where)
     found = _described(call, name)
     if found is None:
         return _undeclared(evidence, name, expected)
     if found["type"] != DOUBLE:
-        text = "A number without a decimal point is an integer, so the parameter is an integer. Write 2.0 instead of 2."
+        text = ""
+        if found["type"] == INTEGER:
+            text = "A number without a decimal point is an integer, so the parameter is an integer. Write 2.0 for 2."
         observed = f"The parameter {name} is not a float."
         return failed(observed, expected, Cause("parameter-type", text, where))
     if not found["description"].strip():
@@ -84,15 +98,7 @@ def sets_parameter(evidence: Evidence, params: SetsParameter) -> Finding:
     call = next((each for each in set_calls(evidence) if _sets(each, params)), None)
     result = _result(call)
     if result is None:
-        crash = crash_of(evidence)
-        if crash is not None:
-            return crash_finding(evidence, crash, end_observed(evidence), expected)
-        observed = f"The node did not answer when {name} was set."
-        text = (
-            "A node answers while rclpy.spin runs. Something blocks the node's callbacks, or the node's parameter "
-            "services are turned off."
-        )
-        return failed(observed, expected, Cause("no-response", text, where))
+        return _unanswered(evidence, f"The node did not answer when {name} was set.", expected, where)
     successful, reason = result["successful"], result["reason"].strip()
     if params.answer == "accepted" and not successful:
         return _refused(
@@ -110,6 +116,17 @@ def sets_parameter(evidence: Evidence, params: SetsParameter) -> Finding:
         observed = f"The node refused {name} = {value} without a reason."
         return failed(observed, expected, Cause("no-reason", text, where))
     return passed(f"The node {params.answer} {name} = {value}" + (f": {shorten(reason)}." if reason else "."))
+
+
+def _unanswered(evidence: Evidence, observed: str, expected: str, where: Where | None) -> Finding:
+    crash, ended = crash_of(evidence), end_observed(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, ended, expected)
+    text = (
+        "A node answers while rclpy.spin runs. Something blocks the node's callbacks, or the node's parameter "
+        "services are turned off."
+    )
+    return failed(f"{observed} {ended}".strip(), expected, Cause("no-response", "" if ended else text, where))
 
 
 def set_calls(evidence: Evidence) -> list[Call]:
@@ -137,8 +154,8 @@ def _result(call: Call | None) -> Any | None:  # noqa: ANN401 - a SetParametersR
     return next(iter(response.get("results", [])), response.get("result"))
 
 
-def _described(call: Call | None, name: str) -> Any | None:  # noqa: ANN401 - a ParameterDescriptor as plain data
-    found = (call.response or {}).get("descriptors", []) if call is not None else []
+def _described(call: Call, name: str) -> Any | None:  # noqa: ANN401 - a ParameterDescriptor as plain data
+    found = (call.response or {}).get("descriptors", [])
     # An undeclared parameter is described with the type 0 (not set).
     return next((each for each in found if each["name"] == name and each["type"] != 0), None)
 
@@ -154,19 +171,22 @@ def _undeclared(evidence: Evidence, name: str, expected: str) -> Finding:
 
 def _refused(evidence: Evidence, observed: str, expected: str, reason: str) -> Finding:
     where = evidence.place("add_on_set_parameters_callback", "declare_parameter")
-    if "not been declared" in reason or "not declared" in reason:
+    if UNDECLARED in reason:
         text = "Only a declared parameter can be set."
         return failed(observed, expected, Cause("parameter-undeclared", text, evidence.place("declare_parameter")))
-    if "Callback returned" in reason:
+    if reason == NOT_RETURNED:
         text = (
             "The callback must return a SetParametersResult in every case. Without return, the callback returns None."
         )
         return failed(observed, expected, Cause("result-not-returned", text, where))
-    if "type" in reason:
+    if reason.startswith(OTHER_TYPE):
         text = "The type of the default value is the type of the parameter. Write 2.0 for 2."
         return failed(observed, expected, Cause("parameter-type", text, evidence.place("declare_parameter")))
-    if "read-only" in reason:
+    if reason.startswith(READ_ONLY):
         return failed(observed, expected, Cause("parameter-range", "", evidence.place("declare_parameter")))
+    if OUT_OF_RANGE.match(reason):
+        text = "The range in the ParameterDescriptor does not contain this value."
+        return failed(observed, expected, Cause("parameter-range", text, evidence.place("declare_parameter")))
     text = "The callback must accept every value that is possible: SetParametersResult(successful=True)."
     return failed(observed, expected, Cause("parameter-refused", text, where))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -9,7 +10,9 @@ import pytest
 from grader.checks.subjects.arc import ARC
 from grader.checks.subjects.parameters import DECLARES, SETS
 from grader.tests.checks.made import every, evidence, exercise, found, recording
+from grader.tests.checks.told import told
 from grader.trial.observed import Call
+from grader.trial.recording import ProcessEnd
 
 NODE = exercise().trials[0].node
 
@@ -76,3 +79,123 @@ def test_several_values_are_accepted_or_refused_at_once() -> None:
 def test_a_path_that_does_not_follow_a_parameter_is_named(successful: bool, diagnosis: str) -> None:
     given = evidence(recording(every(0.1, 2.0, 1.0), calls=(was_set(1.0, successful=successful, reason="no"),)))
     assert found(ARC, given, radius_m=1.0, from_s=3.4).diagnosis == diagnosis
+
+
+def about_described(call: Call | None, **changes: Any) -> str:  # noqa: ANN401
+    made = recording(every(0.5, 2.0, 1.0), calls=() if call is None else (call,), **changes)
+    return told(found(DECLARES, evidence(made), parameter="radius", at_least=0.2, at_most=3.0))
+
+
+SILENT = replace(described(), response=None, answered_s=None)
+ENDED = ProcessEnd(by="itself", exit_code=0, t_s=3.2, stop_s=None)
+BLOCKED = "Something blocks the node's callbacks, or the node's parameter services are turned off."
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("The parameter radius has a description and the range 0.2 to 3.0.", described(), described(description="")),
+        ("The parameter radius is a float with a description and the range", described(description=""), described()),
+        ("The node has no parameter radius.", described(type=0), SILENT),
+        ("declare_parameter declares a parameter, with its default value", described(type=0), described(type=2)),
+        ("The node did not answer when the trial asked for radius.", SILENT, described(type=0)),
+        ("The node did not answer when the trial asked for radius.", None, described(type=0)),
+        ("The parameter radius is not a float.", described(type=2), described(description="")),
+        ("A number without a decimal point is an integer", described(type=2), described(type=4)),
+        ("The parameter radius has no description.", described(description=" "), described(floating_point_range=[])),
+        ("A ParameterDescriptor has the fields description and", described(description=""), described(type=2)),
+        ("The parameter radius has no range.", described(floating_point_range=[]), described(description="")),
+        (
+            "The range of radius is 0.0 to 3.0.",
+            described(floating_point_range=[{"from_value": 0.0, "to_value": 3.0}]),
+            described(floating_point_range=[]),
+        ),
+    ],
+)
+def test_a_sentence_about_a_description_is_true(words: str, true: Call | None, near: Call) -> None:
+    assert words in about_described(true)
+    assert words not in about_described(near)
+
+
+def about_set(call: Call, answer: str = "accepted", **changes: Any) -> str:  # noqa: ANN401
+    made = recording(every(0.5, 2.0, 1.0), calls=(call,), **changes)
+    return told(found(SETS, evidence(made), parameter="radius", value=1.0, answer=answer))
+
+
+def refused(reason: str) -> Call:
+    return was_set(1.0, successful=False, reason=reason)
+
+
+UNSET = was_set(2.0, successful=True)
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("The node accepted radius = 1.0.", was_set(1.0, successful=True), UNSET),
+        ("The node did not answer when radius was set.", UNSET, was_set(1.0, successful=True)),
+        ("A node answers while rclpy.spin runs. Something blocks the node's callbacks, or", UNSET, refused("no")),
+        ("The node refused radius = 1.0: no reason.", refused(""), refused("no")),
+        ("Setting radius to 1.0 is accepted.", refused("no"), was_set(1.0, successful=True)),
+        (
+            "Only a declared parameter can be set.",
+            refused("Invalid access to undeclared parameter(s): ['radius']"),
+            refused("declare it"),
+        ),
+        (
+            "The callback must return a SetParametersResult in every case. Without return, the callback",
+            refused("Callback returned an invalid type"),
+            refused("Callback says no"),
+        ),
+        (
+            "The type of the default value is the type of the parameter. Write 2.0 for 2.",
+            refused("Wrong parameter type, expected 'Type.INTEGER' got 'Type.DOUBLE'"),
+            refused("no turtle of this type"),
+        ),
+        (
+            "The range in the ParameterDescriptor does not contain this value.",
+            refused("Parameter radius out of range. Min: 2.0, Max: 3.0, value: 1.0"),
+            refused("Parameter radius is too small"),
+        ),
+        (
+            "The callback must accept every value that is possible: SetParametersResult(successful=True).",
+            refused("no turtle of this type"),
+            refused("Parameter radius out of range. Min: 2.0, Max: 3.0, value: 1.0"),
+        ),
+    ],
+)
+def test_a_sentence_about_an_accepted_value_is_true(words: str, true: Call, near: Call) -> None:
+    assert words in about_set(true)
+    assert words not in about_set(near)
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("The node refused radius = 1.0: no.", refused("no"), refused("")),
+        ("The node refused radius = 1.0 without a reason.", refused(""), refused("no")),
+        ("Set the field reason of the SetParametersResult to a sentence for the user.", refused(""), refused("no")),
+        ("must return SetParametersResult(successful=False, ...)", was_set(1.0, successful=True), refused("")),
+        ("Setting radius to 1.0 is refused with a reason.", refused(""), refused("no")),
+    ],
+)
+def test_a_sentence_about_a_refused_value_is_true(words: str, true: Call, near: Call) -> None:
+    assert words in about_set(true, "refused")
+    assert words not in about_set(near, "refused")
+
+
+@pytest.mark.parametrize(
+    ("reason", "diagnosis"),
+    [("Trying to set a read-only parameter: radius.", "parameter-range"), ("It is read-only.", "parameter-refused")],
+)
+def test_a_read_only_parameter_refuses_every_value(reason: str, diagnosis: str) -> None:
+    made = recording(every(0.5, 2.0, 1.0), calls=(refused(reason),))
+    finding = found(SETS, evidence(made), parameter="radius", value=1.0, answer="accepted")
+    assert finding.diagnosis == diagnosis
+    assert (finding.cause == "") == (diagnosis == "parameter-range")
+
+
+def test_a_node_that_ended_blocks_nothing() -> None:
+    for given in (about_set(UNSET, end=ENDED), about_described(None, end=ENDED)):
+        assert "The node exited on its own after 3.2 s." in given
+        assert BLOCKED not in given
