@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -27,6 +28,7 @@ LATE_S = 1.05
 """The maximum delay of an announcement (s): two periods of the topic."""
 AT_ONCE_S = 0.1
 """The maximum time between the last announcement of a turtle and its removal (s)."""
+NOT_IN_NAMES = re.compile(r"\W")
 OFTEN = 3
 """The maximum number of messages, as a multiple of the timer's messages. A node may also publish after each change."""
 
@@ -94,7 +96,7 @@ def _wrong_names(evidence: Evidence, message: Announcement, expected: str) -> Fi
     at = f"The message at {message.t_s:.1f} s"
     strange = [name for name in message.names if name not in around]
     known = {track.turtle for track in tracks}
-    if strange and any(part in name for name in strange for part in known | {"target"} if name not in known):
+    if any(name not in known and _is_of_parts(name, known) for name in strange):
         text = 'The text consists of the names, separated by single spaces: " ".join(names).'
         return failed(f'{at} is "{shorten(message.text)}".', expected, Cause("target-format", text, where))
     if strange:
@@ -108,6 +110,11 @@ def _wrong_names(evidence: Evidence, message: Announcement, expected: str) -> Fi
         text = "Add the name of a turtle to the list in the callback that receives the response of /spawn."
         return failed(observed, expected, stuck or Cause("target-unannounced", text, where))
     return None
+
+
+def _is_of_parts(name: str, known: set[str]) -> bool:
+    """Return whether a word of an announcement has punctuation, or consists of several names."""
+    return NOT_IN_NAMES.search(name) is not None or sum(each in name for each in known) > 1
 
 
 ANNOUNCES = Kind(

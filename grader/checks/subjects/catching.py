@@ -73,7 +73,10 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
     if evidence.trial.scenario.targets and "kill" in recording.interventions:
         text = "Only the spawner may remove a target. Call its service /catch."
         cause = Cause("not-driven", text, evidence.place("create_client"))
-        return failed("The node removed a target itself, with /kill.", expected, cause)
+        killed = {call.request.get("name") for call in calls_of(evidence) if call.service == "/kill"}
+        target = any(track.turtle in killed for track in tracks)
+        observed = "The node removed a target itself, with /kill." if target else "The node called /kill."
+        return failed(observed, expected, cause)
     uncaught = _uncaught(recording, gone, params.service)
     if uncaught is not None:
         observed = f"{shorten(uncaught.turtle)} was removed at {uncaught.gone_s:.1f} s, although nobody caught it."
@@ -124,7 +127,7 @@ def nearest_first(evidence: Evidence, _: NoParams) -> Finding:
     for track in gone:
         others = [each for each in recording.tracks if is_there(each, from_s + 1e-6, from_s) and each is not track]
         found = min(others, key=lambda each: distance_m(recording, each, from_s), default=None)
-        if found is not None:
+        if found is not None and is_there(track, from_s + 1e-6, from_s):
             chosen_m, nearest_m = (distance_m(recording, each, from_s) for each in (track, found))
             if nearest_m < chosen_m - NEARER_M:
                 return _other_order(evidence, track, chosen_m, found, nearest_m, from_s, gone, expected)
@@ -151,9 +154,9 @@ def _other_order(
     recording = evidence.recording
     by_start = sorted(gone, key=lambda each: distance_m(recording, each, 0.0))
     farthest = max(recording.tracks, key=lambda each: distance_m(recording, each, 0.0))
-    if names == sorted(names):
+    if len(names) > 1 and names == sorted(names):
         text = "The targets were caught in the order of their names."
-    elif [each.turtle for each in by_start] == names:
+    elif len(names) > 1 and [each.turtle for each in by_start] == names:
         text = (
             "The targets were caught in the order of their distances from the start. After each catch, turtle1 is "
             "in a different place."
@@ -178,6 +181,8 @@ def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
             observed = f'The node called {params.service} with the name "{shorten(str(call.request["name"]))}".'
             text = f"The targets were {a_list(sorted(tracks))}. The name is a field of the request."
             return failed(observed, expected, Cause("target-name", text, where))
+        if track.gone_s is not None and track.gone_s < call.t_s:
+            continue
         away_m = distance_m(recording, track, call.t_s)
         if not away_m <= params.reach_m + SLACK_M:
             observed = f"When the node called {params.service} for {track.turtle}, this turtle was {away_m:.2f} m away."
@@ -188,7 +193,7 @@ def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
         return failed(observed, f"{expected} One call is enough.", Cause("catch-again", text, where))
     if not calls:
         return failed(f"The node never called {params.service}.", expected, why_unasked(evidence, params.service))
-    return passed("The node called the service for each target when the target was near.")
+    return passed(f"Each time the node called {params.service}, the target was near.")
 
 
 def _near(away_m: float, params: WithinReach) -> bool:

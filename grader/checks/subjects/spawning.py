@@ -14,7 +14,7 @@ from grader.checks.causes.why_rate import callbacks_of
 from grader.checks.causes.why_silent import methods_of
 from grader.checks.causes.why_unasked import why_unasked
 from grader.checks.kind import Kind, number, string
-from grader.checks.outcome import Finding, failed, passed
+from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.subjects.announcing import LATE_S
 from grader.checks.subjects.services import calls_of, no_response
 from grader.common.words import a_list, count, shorten
@@ -23,7 +23,7 @@ from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
-    from grader.trial.observed import Call
+    from grader.trial.observed import Call, Track
 
 ALIKE_M = 0.01
 """Places that differ by less than this are the same (m)."""
@@ -71,7 +71,7 @@ def spawns(evidence: Evidence, params: Spawns) -> Finding:
         f"The node spawns {count(len(wanted), 'turtle')}, {wanted[0]} to {wanted[-1]}, in random places. "
         f"x and y are from {params.low_m:g} to {params.high_m:g}."
     )
-    calls = [call for call in calls_of(evidence) if not call.by_trial and call.service == "/spawn"]
+    calls = _spawns(evidence)
     crash = crash_of(evidence)
     if not calls:
         if crash is not None:
@@ -87,14 +87,16 @@ def spawns(evidence: Evidence, params: Spawns) -> Finding:
     if len(there) != len(wanted) or strange:
         if crash is not None and len(there) < len(wanted):
             return crash_finding(evidence, crash, end_observed(evidence), expected)
-        observed = f"The node spawned {count(len(there), 'turtle')}: {a_list([shorten(name) for name in there])}."
+        listed = f": {a_list([shorten(name) for name in there])}" if there else ""
+        observed = f"The node spawned {count(len(there), 'turtle')}{listed}."
         text = ""
-        if len(there) < len(calls):
+        if any(call.response is not None and not name for call, name in zip(calls, names, strict=True)):
             text = "turtlesim refused a name because another turtle already has it."
         elif len(there) > len(wanted):
             text = "Count the requests when you send them, because the responses arrive later."
         return failed(observed, expected, Cause("target-count", text, where))
-    return _places(evidence, params, calls, expected) or passed(f"The node spawned {count(len(there), 'turtle')}.")
+    placed = [call for call, name in zip(calls, names, strict=True) if name]
+    return _places(evidence, params, placed, expected) or passed(f"The node spawned {count(len(there), 'turtle')}.")
 
 
 def _places(evidence: Evidence, params: Spawns, calls: list[Call], expected: str) -> Finding | None:
@@ -118,19 +120,22 @@ def _places(evidence: Evidence, params: Spawns, calls: list[Call], expected: str
 def places_differ(evidence: Evidence, params: PlacesDiffer) -> Finding:
     """The places of the turtles differ from their places in another trial of the same node."""
     expected = "Each time the node starts, the turtles are in different places."
-    now, before = (_spawned(each) for each in (evidence, evidence.from_trial(params.other)))
-    if now and now[: len(before)] == before[: len(now)]:
-        observed = f"The node was started twice, and {params.name}1 was at {_at(now[0])} both times."
+    calls = [_spawns(each) for each in (evidence, evidence.from_trial(params.other))]
+    if not all(calls):
+        return Finding(Status.SKIPPED, "Not judged, because the node did not spawn turtles in both trials.")
+    now, before = ([(float(call.request["x"]), float(call.request["y"])) for call in made] for made in calls)
+    if now[: len(before)] == before[: len(now)]:
+        name = shorten(str(calls[0][0].request["name"]))
+        observed = f"The node was started twice, and {name} was at {_at(now[0])} both times."
         text = "Draw the places with random, but without random.seed, which makes the numbers the same each time."
         where = evidence.place("seed") if evidence.code.calls("seed") else evidence.place("Request")
         return failed(observed, expected, Cause("target-place", text, where))
     return passed(expected)
 
 
-def _spawned(evidence: Evidence) -> list[tuple[float, float]]:
-    """Return the places in the requests to /spawn (m)."""
-    made = [call for call in calls_of(evidence) if not call.by_trial and call.service == "/spawn"]
-    return [(float(call.request["x"]), float(call.request["y"])) for call in made]
+def _spawns(evidence: Evidence) -> list[Call]:
+    """Return the requests to /spawn."""
+    return [call for call in calls_of(evidence) if not call.by_trial and call.service == "/spawn"]
 
 
 def _at(place: tuple[float, float]) -> str:
@@ -145,6 +150,8 @@ def removes(evidence: Evidence, params: Removes) -> Finding:
     )
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     recording = evidence.recording
+    if not calls:
+        return no_response(evidence, params.service, params.type, None, expected)
     for call in calls:
         name = str(call.request["name"])
         if call.response is None:
@@ -154,7 +161,7 @@ def removes(evidence: Evidence, params: Removes) -> Finding:
         kills = [each for each in own if each.service == "/kill"]
         gone_s = track.gone_s if track is not None else None
         if track is not None and (gone_s is None or gone_s - call.t_s > LATE_S):
-            return _not_killed(evidence, name, params.topic, kills, expected)
+            return _not_killed(evidence, track, call.t_s, params.topic, kills, expected)
         others = [each for each in recording.tracks if each.gone_s is not None and each.turtle != name]
         wrong = [each for each in others if each.turtle not in {str(other.request["name"]) for other in calls}]
         if wrong:
@@ -163,13 +170,20 @@ def removes(evidence: Evidence, params: Removes) -> Finding:
     return passed(f"A call of {params.service} removes the turtle.")
 
 
-def _not_killed(evidence: Evidence, name: str, topic: str, kills: list[Call], expected: str) -> Finding:
+def _not_killed(
+    evidence: Evidence, track: Track, caught_s: float, topic: str, kills: list[Call], expected: str
+) -> Finding:
+    name = track.turtle
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_observed(evidence), expected)
     where = _callback(evidence) or evidence.place("create_service")
-    if kills:
-        other = shorten(str(kills[0].request["name"]))
+    if track.gone_s is not None:
+        observed = f"{name} was removed only {track.gone_s - caught_s:.1f} s after it was caught."
+        return failed(observed, expected, waits_in_callback(evidence) or Cause("not-killed", "", where))
+    others = [str(kill.request["name"]) for kill in kills if kill.request["name"] != name]
+    if others:
+        other = shorten(others[0])
         observed = f"{name} was caught, and the node asked /kill to remove {other or 'a turtle without a name'}."
         text = "The name to remove is request.name, the field of the request that the callback receives."
         return failed(observed, expected, Cause("not-killed", text, where))

@@ -10,12 +10,14 @@ import pytest
 from grader.checks.outcome import Status
 from grader.checks.subjects.catching import CATCHES, NEAREST_FIRST, WITHIN_REACH
 from grader.tests.checks.made import DURATION_S, NODE, NODE_FILE, evidence, found, recording, submission
+from grader.tests.checks.told import told
 from grader.trial.observed import Call, Track
 from grader.trial.recording import Beside, Output, ProcessEnd
 
 if TYPE_CHECKING:
     from grader.checks.outcome import Finding
     from grader.evidence.evidence import Evidence
+    from grader.trial.recording import Recording
 
 CATCHER = NODE.replace("import rclpy\n", "import rclpy\nfrom turtlesim.srv import Kill\n").replace(
     "        self.timer",
@@ -130,3 +132,132 @@ def test_wrong_calls_are_named(calls: tuple[Call, ...], expected: str) -> None:
 def test_the_targets_count_that_were_caught_before_the_end() -> None:
     late = at("late", 9.0, DURATION_S + 1.0)
     assert found(CATCHES, given(NEAR, late)).status is Status.FAILED
+
+
+WESTERN = at("far", 2.0, None)
+
+
+def about(*tracks: Track, turtles: float = 2, **changes: Any) -> str:  # noqa: ANN401
+    return told(found(CATCHES, given(*tracks, **changes), turtles=turtles))
+
+
+def kill(name: str) -> Call:
+    return Call(3.3, "/kill", "turtlesim/srv/Kill", {"name": name}, {}, 3.3)
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("All 2 targets were caught, the last one at 3 s.", (NEAR, FAR), (NEAR, WESTERN)),
+        ("All targets are caught within 10 s, and turtle1 only drives.", (NEAR, WESTERN), (NEAR, FAR)),
+        ("1 of 2 targets were caught.", (NEAR, WESTERN), (NEAR, FAR)),
+        ("Only 1 target of 2 appeared.", (NEAR,), (NEAR, WESTERN)),
+    ],
+)
+def test_a_sentence_about_the_caught_targets_is_true(
+    words: str, true: tuple[Track, ...], near: tuple[Track, ...]
+) -> None:
+    assert words in about(*true)
+    assert words not in about(*near)
+
+
+@pytest.mark.parametrize(
+    ("name", "targets", "killed", "called"),
+    [("far", 2, True, False), ("mouse", 2, False, True), ("far", 0, False, False)],
+)
+def test_a_catcher_must_not_kill(name: str, targets: int, *, killed: bool, called: bool) -> None:
+    made = given(calls=(*CALLS, kill(name)), interventions=("kill",))
+    trials = tuple(replace(each, scenario=replace(each.scenario, targets=targets)) for each in made.exercise.trials)
+    made = replace(made, exercise=replace(made.exercise, trials=trials))
+    reported = told(found(CATCHES, made))
+    assert ("The node removed a target itself, with /kill." in reported) == killed
+    assert ("The node called /kill." in reported) == called
+    assert ("Only the spawner may remove a target. Call its service /catch." in reported) == (killed or called)
+
+
+@pytest.mark.parametrize(("calls", "found"), [(CALLS[:1], True), (CALLS, False)])
+def test_a_target_that_nobody_caught_is_told(calls: tuple[Call, ...], *, found: bool) -> None:
+    assert ("far was removed at 3.4 s, although nobody caught it." in about_service(calls)) == found
+
+
+def about_service(calls: tuple[Call, ...]) -> str:
+    return told(found(CATCHES, given(calls=calls), service="/catch"))
+
+
+@pytest.mark.parametrize(("moved", "found"), [(True, True), (False, False)])
+def test_a_turtle_that_did_not_drive_is_told(moved: bool, *, found: bool) -> None:
+    made = recording(AHEAD, tracks=(NEAR, FAR), calls=CALLS, interventions=("teleport_absolute",))
+    frames = replace(made.frames, x=made.frames.x + 1.0 * (made.frames.t_s > 2.0)) if moved else made.frames
+    reported = told(found_in(replace(made, frames=frames)))
+    assert ("The node moved the turtle with teleport_absolute." in reported) == found
+    assert ("The turtle must drive to each target: publish on /turtle1/cmd_vel." in reported) == found
+
+
+def found_in(trial: Recording) -> Finding:
+    return found(CATCHES, evidence(trial, submission({NODE_FILE: CATCHER})))
+
+
+def about_order(*tracks: Track) -> str:
+    return told(found(NEAREST_FIRST, given(*tracks)))
+
+
+B_FIRST = (at("a", 6.5, 9.0), at("b", 9.0, 3.4))
+LATER = Track("b", ((3.0, 9.0, 5.544445, 0.0),), 3.4)
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("2 targets were caught, the nearest first.", (NEAR, FAR), B_FIRST),
+        ("No target was caught.", (at("a", 6.5, None),), (NEAR,)),
+        ("The next target is always the one that is nearest to turtle1.", B_FIRST, (NEAR, FAR)),
+        ("At 0.0 s, a was 1.0 m away and b 3.5 m, but b was caught first.", B_FIRST, (B_FIRST[0], LATER)),
+        ("The first target was the farthest one.", B_FIRST, (*B_FIRST, at("c", 1.0, None))),
+        ("After each catch, compute the distance from turtle1", (*B_FIRST, at("c", 1.0, None)), B_FIRST),
+        (
+            "The targets were caught in the order of their names.",
+            (at("a", 9.0, 3.4), at("b", 6.5, 9.0)),
+            (at("a", 9.0, 3.4), at("b", 6.5, None), at("c", 1.0, None)),
+        ),
+        (
+            "The targets were caught in the order of their distances from the start.",
+            (at("b", 6.5, 1.4), at("a", 3.0, 2.4), at("c", 8.5, None)),
+            B_FIRST,
+        ),
+    ],
+)
+def test_a_sentence_about_the_order_is_true(words: str, true: tuple[Track, ...], near: tuple[Track, ...]) -> None:
+    assert words in about_order(*true)
+    assert words not in about_order(*near)
+
+
+def about_reach(*calls: Call, tracks: tuple[Track, ...] = ()) -> str:
+    return told(found(WITHIN_REACH, given(*tracks, calls=calls), service="/catch", reach_m=0.5))
+
+
+OFTEN = tuple(catch(1.3 + 0.01 * number, "near") for number in range(5))
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("Each time the node called /catch, the target was near.", CALLS, ()),
+        ("The node never called /catch.", (), CALLS[:1]),
+        ("When the node called /catch for near, this turtle was 0.65 m away.", (catch(0.1, "near"),), CALLS[:1]),
+        ("The node calls /catch when the target is at most 0.5 m away.", (catch(0.1, "near"),), CALLS[:1]),
+        ('The node called /catch with the name "mouse".', (catch(1.4, "mouse"),), CALLS[:1]),
+        ("The targets were far and near. The name is a field of the request.", (catch(1.4, "mouse"),), OFTEN),
+        ("The node called /catch for near repeatedly.", OFTEN, OFTEN[:3]),
+        ("One call is enough.", OFTEN, OFTEN[:3]),
+        ("Until the response arrives, store in an attribute that the node has called the service.", OFTEN, OFTEN[:3]),
+    ],
+)
+def test_a_sentence_about_the_reach_is_true(words: str, true: tuple[Call, ...], near: tuple[Call, ...]) -> None:
+    assert words in about_reach(*true)
+    assert words not in about_reach(*near)
+
+
+def test_a_turtle_that_is_gone_is_not_far_away() -> None:
+    late = (*CALLS, catch(9.0, "near"))
+    assert "this turtle was" not in about_reach(*late)
+    assert "this turtle was 3.8" in about_reach(*late, tracks=(at("near", 6.2, None), FAR))

@@ -1,74 +1,26 @@
-"""A node that spawns turtles, announces the remaining turtles, and removes the turtles that were caught."""
+"""A node that spawns turtles, and removes the turtles that were caught."""
 
 from __future__ import annotations
 
-import struct
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import pytest
 
 from grader.checks.outcome import Status
-from grader.checks.subjects.announcing import ANNOUNCES
 from grader.checks.subjects.spawning import PLACES_DIFFER, REMOVES, SPAWNS
-from grader.tests.checks.made import DURATION_S, NODE, NODE_FILE, evidence, found, recording, submission
-from grader.trial.observed import Call, Track
-from grader.trial.recording import Message
+from grader.tests.checks.made import found
+from grader.tests.checks.spawner import CAUGHT_S, PLACES, catch, given, kill, said, spawn
+from grader.tests.checks.told import told
 
 if TYPE_CHECKING:
     from grader.checks.outcome import Finding
     from grader.evidence.evidence import Evidence
-
-SPAWNER = NODE.replace("import rclpy\n", "import rclpy\nfrom turtlesim.srv import Kill\n").replace(
-    "        self.timer",
-    '        self.create_service(Kill, "/catch", self.send)\n'
-    '        self.killer = self.create_client(Kill, "/kill")\n'
-    "        self.killer.call_async(Kill.Request())\n        self.timer",
-)
-PLACES = {"target1": (2.0, 3.0), "target2": (7.5, 4.0), "target3": (5.0, 9.0)}
-CAUGHT_S = 5.0
-
-
-def spawn(t_s: float, name: str, x: float, y: float, **changes: Any) -> Call:  # noqa: ANN401
-    request = {"x": x, "y": y, "theta": 0.0, "name": name}
-    return Call(t_s, "/spawn", "turtlesim/srv/Spawn", request, changes.get("response", {"name": name}), t_s)
-
-
-def catch(name: str = "target2") -> Call:
-    return Call(CAUGHT_S, "/catch", "turtlesim/srv/Kill", {"name": name}, {}, CAUGHT_S, by_trial=True)
-
-
-def kill(name: str = "target2") -> Call:
-    return Call(CAUGHT_S, "/kill", "turtlesim/srv/Kill", {"name": name}, {}, CAUGHT_S)
-
-
-def said(t_s: float, text: str) -> Message:
-    data = b"\0\1\0\0" + struct.pack("<I", len(text.encode()) + 1) + text.encode() + b"\0"
-    return Message("/targets", "std_msgs/msg/String", data, t_s, t_s)
-
-
-def names_at(t_s: float) -> str:
-    return " ".join(name for name in PLACES if t_s < CAUGHT_S or name != "target2")
-
-
-def given(**changes: Any) -> Evidence:  # noqa: ANN401
-    """Return the evidence of a correct spawner, with these changes."""
-    calls = changes.pop("calls", [spawn(0.5, name, *place) for name, place in PLACES.items()] + [catch(), kill()])
-    gone = changes.pop("gone", {"target2": CAUGHT_S})
-    tracks = tuple(Track(name, ((0.5, *place, 0.0),), gone.get(name)) for name, place in PLACES.items())
-    times = [1.0 + 0.5 * number for number in range(int(2 * DURATION_S) - 2)]
-    messages = tuple(said(t_s, changes.pop("text", None) or names_at(t_s)) for t_s in times[:1])
-    messages += tuple(said(t_s, names_at(t_s)) for t_s in times[1:])
-    messages = changes.pop("messages", messages)
-    made = recording([], calls=tuple(calls), tracks=tracks, messages=messages, **changes)
-    return evidence(made, submission({NODE_FILE: SPAWNER}))
+    from grader.trial.observed import Call
 
 
 def of_spawns(given: Evidence) -> Finding:
     return found(SPAWNS, given, turtles=3)
-
-
-def of_announces(given: Evidence) -> Finding:
-    return found(ANNOUNCES, given, topic="/targets")
 
 
 def of_removes(given: Evidence) -> Finding:
@@ -80,7 +32,7 @@ def diagnosis(finding: Finding) -> str | None:
 
 
 def test_a_right_spawner_passes() -> None:
-    for finding in (of_spawns(given()), of_announces(given()), of_removes(given())):
+    for finding in (of_spawns(given()), of_removes(given())):
         assert finding.status is Status.PASSED, finding
 
 
@@ -97,38 +49,6 @@ def test_a_right_spawner_passes() -> None:
 )
 def test_wrong_numbers_names_and_places_are_named(calls: list[Call], expected: str) -> None:
     assert diagnosis(of_spawns(given(calls=calls))) == expected
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("target1, target2, target3", "target-format"),
-        ("target1 target2 target3 mouse", "still-announced"),
-        ("target1", "target-unannounced"),
-    ],
-)
-def test_wrong_announcements_are_named(text: str, expected: str) -> None:
-    messages = (*(said(2.0 + 0.5 * number, names_at(2.0 + 0.5 * number)) for number in range(16)), said(2.1, text))
-    assert diagnosis(of_announces(given(messages=messages))) == expected
-
-
-def test_a_turtle_that_was_caught_is_no_longer_announced() -> None:
-    every = tuple(said(1.0 + 0.5 * number, " ".join(PLACES)) for number in range(18))
-    assert diagnosis(of_announces(given(messages=every))) == "still-announced"
-
-
-def test_a_turtle_that_the_node_has_asked_to_remove_need_not_be_announced() -> None:
-    late_s = CAUGHT_S + 0.4
-    early = tuple(said(t_s, "target1" if t_s > CAUGHT_S else " ".join(PLACES)) for t_s in (1.0, 1.5, late_s - 0.2))
-    gone = {"target2": late_s, "target3": late_s}
-    asked = of_announces(given(calls=[catch(), kill("target3")], gone=gone, messages=early))
-    assert diagnosis(asked) != "target-unannounced"
-    assert diagnosis(of_announces(given(calls=[catch()], gone=gone, messages=early))) == "target-unannounced"
-
-
-def test_a_turtle_is_announced_again_and_again() -> None:
-    once = (said(1.0, names_at(1.0)), said(CAUGHT_S, names_at(CAUGHT_S)))
-    assert diagnosis(of_announces(given(messages=once))) == "timer-period"
 
 
 @pytest.mark.parametrize(
@@ -152,4 +72,116 @@ def test_places_that_are_the_same_each_time_are_not_random() -> None:
     finding = found(PLACES_DIFFER, twice, other=twice.trial.id)
     assert diagnosis(finding) == "target-place"
     assert "x=2.00, y=3.00 both times" in finding.observed
-    assert found(PLACES_DIFFER, given(calls=[]), other=twice.trial.id).status is Status.PASSED
+    assert found(PLACES_DIFFER, given(calls=[]), other=twice.trial.id).status is Status.SKIPPED
+
+
+ALL = [spawn(0.5, name, *place) for name, place in PLACES.items()]
+REFUSED = spawn(0.6, "target1", 5.0, 5.0, response={"name": ""})
+UNANSWERED = spawn(9.9, "target3", 5.0, 5.0, response=None)
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("The node spawned 3 turtles.", ALL, ALL[:2]),
+        ("The node spawns 3 turtles, target1 to target3, in random places. x and y are from 1 to 10.", ALL[:2], ALL),
+        ("The node never called /spawn.", [], ALL[:1]),
+        (
+            "The node spawned a turtle named mouse.",
+            [spawn(0.5, "mouse", 2.0, 3.0)],
+            [spawn(0.5, "target9", 2.0, 3.0)],
+        ),
+        ("The name is a field of the request.", [spawn(0.5, "mouse", 2.0, 3.0)], ALL[:2]),
+        ("The node spawned 2 turtles: target1 and target2.", ALL[:2], ALL),
+        ("The node spawned 0 turtles.", [REFUSED], ALL),
+        (
+            "turtlesim refused a name because another turtle already has it.",
+            [*ALL[:2], REFUSED],
+            [*ALL[:2], UNANSWERED],
+        ),
+        ("Count the requests when you send them", [*ALL, spawn(0.7, "target4", 5.0, 5.0)], ALL[:2]),
+        ("target2 is at x=7.50, y=10.50.", [ALL[0], spawn(0.5, "target2", 7.5, 10.5), ALL[2]], ALL),
+        (
+            "The field is about 11 m wide, and a turtle at the edge is hard to reach.",
+            [ALL[0], spawn(0.5, "target2", 7.5, 10.5), ALL[2]],
+            [ALL[0], spawn(0.5, "target2", 0.0, 0.0), ALL[2]],
+        ),
+        (
+            "The fields x and y of a request are 0 until the node sets them.",
+            [ALL[0], spawn(0.5, "target2", 0.0, 0.0), ALL[2]],
+            [*ALL, spawn(0.6, "target1", 0.0, 0.0, response={"name": ""})],
+        ),
+        (
+            "All turtles are at x=3.00, y=4.00.",
+            [spawn(0.5, name, 3.0, 4.0) for name in PLACES],
+            [*(spawn(0.5, name, 3.0, 4.0) for name in list(PLACES)[:2]), ALL[2]],
+        ),
+        (
+            "Draw new numbers for each turtle, for example with random.uniform.",
+            [spawn(0.5, name, 3.0, 4.0) for name in PLACES],
+            [spawn(0.5, name, 0.0, 0.0) for name in PLACES],
+        ),
+    ],
+)
+def test_a_sentence_about_spawned_turtles_is_true(words: str, true: list[Call], near: list[Call]) -> None:
+    assert words in told(of_spawns(given(calls=true)))
+    assert words not in told(of_spawns(given(calls=near)))
+
+
+CAUGHT, LATE = {"target2": CAUGHT_S}, {"target2": CAUGHT_S + 2.0}
+Gone = dict[str, float]
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("A call of /catch removes the turtle.", ([catch(), kill()], CAUGHT), ([], {})),
+        ("The node had ended before the call.", ([], {}), ([catch()], {})),
+        (
+            "When /catch is called, the node removes the turtle that the request names, and no other turtle",
+            ([catch()], {}),
+            ([catch(), kill()], CAUGHT),
+        ),
+        (
+            "target3 was removed, although nobody caught it.",
+            ([catch(), kill(), kill("target3")], {**CAUGHT, "target3": CAUGHT_S}),
+            ([catch(), catch("target3"), kill(), kill("target3")], {**CAUGHT, "target3": CAUGHT_S}),
+        ),
+        ("target2 was caught, but it still exists.", ([catch()], {}), ([catch(), kill()], LATE)),
+        ("The callback of the service must send a request to /kill.", ([catch()], {}), ([catch(), kill("")], {})),
+        ("target2 was removed only 2.0 s after it was caught.", ([catch(), kill()], LATE), ([catch()], {})),
+        (
+            "target2 was caught, and the node asked /kill to remove a turtle without a name.",
+            ([catch(), kill("")], {}),
+            ([catch(), kill()], LATE),
+        ),
+        ("The name to remove is request.name", ([catch(), kill("target1")], {}), ([catch(), kill()], LATE)),
+    ],
+)
+def test_a_sentence_about_removed_turtles_is_true(
+    words: str, true: tuple[list[Call], Gone], near: tuple[list[Call], Gone]
+) -> None:
+    assert words in told(of_removes(given(calls=true[0], gone=true[1])))
+    assert words not in told(of_removes(given(calls=near[0], gone=near[1])))
+
+
+@pytest.mark.parametrize(("names", "found"), [("target1 target3", True), ("target1 target2", False)])
+def test_a_turtle_that_was_never_announced_is_told(names: str, *, found: bool) -> None:
+    reported = told(of_removes(given(calls=[catch()], gone={}, messages=(said(1.0, names),))))
+    assert "target2 was caught, but it still exists." in reported
+    assert ("target2 was never announced. Perhaps target2 is not in the list" in reported) == found
+
+
+def test_places_are_compared_with_those_of_another_trial() -> None:
+    words = "Draw the places with random, but without random.seed, which makes the numbers the same each time."
+    same, other = given(), given(calls=[spawn(0.5, "target1", 4.0, 4.0)])
+    spec = replace(same.trial, id="other")
+    both = replace(same, exercise=replace(same.exercise, trials=(same.trial, spec)))
+    for run, is_same in ((same.run, True), (other.run, False)):
+        trials = replace(both, runs={same.trial.id: same.run, "other": run})
+        reported = told(found(PLACES_DIFFER, trials, other="other"))
+        assert (words in reported) == is_same
+        assert ("The node was started twice, and target1 was at x=2.00, y=3.00 both times." in reported) == is_same
+        assert (reported.strip() == "Each time the node starts, the turtles are in different places.") != is_same
+    none = replace(both, runs={same.trial.id: same.run, "other": given(calls=[]).run})
+    assert "the node did not spawn turtles in both trials." in told(found(PLACES_DIFFER, none, other="other"))

@@ -1,0 +1,123 @@
+"""A node that announces the remaining turtles."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.checks.outcome import Status
+from grader.checks.subjects.announcing import ANNOUNCES
+from grader.tests.checks.made import found
+from grader.tests.checks.spawner import CAUGHT_S, PLACES, catch, given, kill, names_at, said
+from grader.tests.checks.told import told
+
+if TYPE_CHECKING:
+    from grader.checks.outcome import Finding
+    from grader.evidence.evidence import Evidence
+    from grader.trial.recording import Message
+
+
+def of_announces(given: Evidence) -> Finding:
+    return found(ANNOUNCES, given, topic="/targets")
+
+
+def diagnosis(finding: Finding) -> str | None:
+    return finding.diagnosis
+
+
+def test_right_announcements_pass() -> None:
+    assert of_announces(given()).status is Status.PASSED
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("target1, target2, target3", "target-format"),
+        ("target1 target2 target3 mouse", "still-announced"),
+        ("target1", "target-unannounced"),
+    ],
+)
+def test_wrong_announcements_are_named(text: str, expected: str) -> None:
+    messages = (*(said(2.0 + 0.5 * number, names_at(2.0 + 0.5 * number)) for number in range(16)), said(2.1, text))
+    assert diagnosis(of_announces(given(messages=messages))) == expected
+
+
+def test_a_turtle_that_was_caught_is_no_longer_announced() -> None:
+    every = tuple(said(1.0 + 0.5 * number, " ".join(PLACES)) for number in range(18))
+    assert diagnosis(of_announces(given(messages=every))) == "still-announced"
+
+
+def test_a_turtle_that_the_node_has_asked_to_remove_need_not_be_announced() -> None:
+    late_s = CAUGHT_S + 0.4
+    early = tuple(said(t_s, "target1" if t_s > CAUGHT_S else " ".join(PLACES)) for t_s in (1.0, 1.5, late_s - 0.2))
+    gone = {"target2": late_s, "target3": late_s}
+    asked = of_announces(given(calls=[catch(), kill("target3")], gone=gone, messages=early))
+    assert diagnosis(asked) != "target-unannounced"
+    assert diagnosis(of_announces(given(calls=[catch()], gone=gone, messages=early))) == "target-unannounced"
+
+
+def test_a_turtle_is_announced_again_and_again() -> None:
+    once = (said(1.0, names_at(1.0)), said(CAUGHT_S, names_at(CAUGHT_S)))
+    assert diagnosis(of_announces(given(messages=once))) == "timer-period"
+
+
+TIMES = [1.0 + 0.5 * number for number in range(18)]
+RIGHT = tuple(said(t_s, names_at(t_s)) for t_s in TIMES)
+
+
+def with_one(text: str, t_s: float = 2.1) -> tuple[Message, ...]:
+    return (*(each for each in RIGHT if each.t_s < t_s), said(t_s, text), *(each for each in RIGHT if each.t_s > t_s))
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("The node announces the remaining targets.", RIGHT, RIGHT[:1]),
+        ("Every 0.5 s, the node publishes the names of all remaining targets", RIGHT[:1], RIGHT),
+        ("No String arrived on /targets.", (), RIGHT[:1]),
+        (
+            'The text consists of the names, separated by single spaces: " ".join(names).',
+            with_one("target1,target2,target3"),
+            with_one("target1 target2 target3 target9"),
+        ),
+        (
+            'The text consists of the names, separated by single spaces: " ".join(names).',
+            with_one("target1target2 target3"),
+            with_one("mouse"),
+        ),
+        (
+            "The message at 2.1 s names target9, which does not exist.",
+            with_one("target1 target2 target3 target9"),
+            with_one("target1 target2 target3"),
+        ),
+        (
+            "Remove a name when its turtle is caught, and add a name when the response of /spawn arrives.",
+            with_one("target1 target2 target3 target9"),
+            with_one("target1 target2"),
+        ),
+        (
+            "The message at 2.1 s does not name target3.",
+            with_one("target1 target2"),
+            with_one("target1 target2 target3"),
+        ),
+        ("Add the name of a turtle to the list in the callback", with_one("target1 target2"), with_one("mouse")),
+        ("After the message at 1.0 s, no message arrived for 9.0 s.", RIGHT[:1], RIGHT),
+        ("Publish in each call of the timer.", RIGHT[:1], ()),
+        (
+            "Publish in the callback of one timer.",
+            tuple(said(0.01 * number, names_at(0.01 * number)) for number in range(60, 990)),
+            RIGHT[:1],
+        ),
+        (
+            "930 messages arrived in 9.4 s.",
+            tuple(said(0.01 * number, names_at(0.01 * number)) for number in range(60, 990)),
+            RIGHT,
+        ),
+    ],
+)
+def test_a_sentence_about_announcements_is_true(
+    words: str, true: tuple[Message, ...], near: tuple[Message, ...]
+) -> None:
+    assert words in told(of_announces(given(messages=true)))
+    assert words not in told(of_announces(given(messages=near)))
