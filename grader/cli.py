@@ -111,6 +111,9 @@ def check(
     verbose: Verbose = False,
 ) -> None:
     """Build and run one submission, and print what is right and what is wrong."""
+    from grader.colcon import runner
+    from grader.colcon.build_store import build_store
+    from grader.colcon.shared_builds import SharedBuilds
     from grader.evidence import recording_format
     from grader.grading.grade import grade
     from grader.grading.options import Options
@@ -126,8 +129,10 @@ def check(
     requested, opened = _opened(submission, exercise)
     in_cell = bubblewrap.require() if confined else bubblewrap.usable()
     options = Options(in_cell, clock.value, seed, explain)
+    # A build for marks never depends on an earlier build.
+    build = runner.build if confined else SharedBuilds(store=build_store())
     with progress() as tell:
-        graded = grade(requested, opened, options, tell, early=lambda failed: tell.keep_all(early(failed)))
+        graded = grade(requested, opened, options, tell, early=lambda failed: tell.keep_all(early(failed)), build=build)
         if recording:
             recording_format.save(recording, graded.evidence, graded.report.ros, graded.prefixes)
     from grader.learner import steps

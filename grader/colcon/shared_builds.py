@@ -1,4 +1,6 @@
-"""Shared builds: in a class, colcon runs once for all submissions that differ only in the text of their modules.
+"""Shared builds: colcon runs once for all packages that differ only in the text of their modules.
+
+In a class, submissions share builds in this way. For a learner, the next `grader check` reuses the last build.
 
 If setup.py and setup.cfg have the usual form, colcon copies the modules and does not read them. So the grader builds
 the package once with empty modules, and then writes the modules of each submission into a copy of the install tree. The
@@ -15,6 +17,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from grader.colcon import runner
+from grader.colcon.build_store import key_of
 from grader.colcon.comparison import installs
 from grader.colcon.predicted import SITE, predict
 from grader.colcon.rebuild import renewed
@@ -25,6 +28,7 @@ from grader.submission.reader import read
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from grader.colcon.build_store import BuildStore
     from grader.colcon.predicted import Predicted
     from grader.ros.installation import Ros
     from grader.submission.package import Submission
@@ -40,12 +44,13 @@ _USUAL_FOLDER = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
 class SharedBuilds:
     """A replacement for `runner.build` that reuses the builds of packages with the same files except their modules.
 
-    `runs` counts the builds with colcon.
+    `runs` counts the builds with colcon. With a `store`, builds in cells are also reused by later commands.
     """
 
-    def __init__(self, build: Callable[..., runner.Built] = runner.build) -> None:
+    def __init__(self, build: Callable[..., runner.Built] = runner.build, store: BuildStore | None = None) -> None:
         self.runs = 0
         self._build = build
+        self._store = store
         self._kept: OrderedDict[object, tuple[Submission, runner.Built] | None] = OrderedDict()
 
     def __call__(
@@ -74,13 +79,17 @@ class SharedBuilds:
             return build(submission)
         key = (usual.empty.digest, usual.empty.executable, ros, in_cell)
         if key not in self._kept:
-            self._keep(key, usual, build(usual.empty))
+            store, stored_as = (self._store, key_of(usual.empty, ros)) if self._store and in_cell else (None, "")
+            stored = store.get(stored_as) if store else None
+            self._keep(key, usual, stored or build(usual.empty))
+            if store and not stored and (confirmed := self._kept[key]):
+                store.put(stored_as, confirmed[1])
         self._kept.move_to_end(key)
         kept = self._kept[key]
         built = read(renewed, submission, *kept) if kept is not None else None
         if kept is None or built is None:
             return build(submission)
-        tell("Using the build of a package that differs only in its modules")
+        tell("Using an earlier build: only the modules differ")
         # Testing causes may take a multiple of the time of a build.
         return replace(built, build=replace(built.build, seconds=kept[1].build.seconds))
 
