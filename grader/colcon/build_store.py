@@ -115,5 +115,6 @@ def _unpacked(packed: bytes) -> runner.Built:
         raise ValueError(message)
     described, _, tree = content.partition(b"\n")
     data: dict[str, Any] = json.loads(described)
-    values = {field.name: data[field.name] for field in fields(Build)}
-    return runner.Built(Build(**{name: tuple(v) if isinstance(v, list) else v for name, v in values.items()}), tree)
+    values: dict[str, Any] = {field.name: data[field.name] for field in fields(Build)}
+    values |= {name: tuple(value) for name, value in values.items() if isinstance(value, list)}
+    return runner.Built(Build(**values), tree)
