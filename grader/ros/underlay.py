@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import fcntl
 import hashlib
 import os
@@ -169,7 +170,7 @@ def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> 
     for leftover in prefix.parent.glob(f"{_TEMPORARY}*"):
         shutil.rmtree(leftover, ignore_errors=True)
     tell("Building the turtlesim interfaces, once; this takes about ten seconds.")
-    with tempfile.TemporaryDirectory(prefix=_TEMPORARY, dir=prefix.parent) as name:
+    with tempfile.TemporaryDirectory(prefix=_TEMPORARY, dir=_place_to_build(prefix.parent)) as name:
         folder = Path(name)
         env = installation.environment(ros, home=folder)
         staged = Path(f"{folder}/staged{prefix}")
@@ -195,7 +196,24 @@ def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> 
         )
         _run(compiling.argv, compiling.env, tell)
         _make_readable(staged)
+        _move(staged, prefix)
+
+
+def _place_to_build(cache: Path) -> Path:
+    """Return the folder in which to build. CMake cuts the paths of the interfaces at a character that is not ASCII."""
+    return cache if str(cache).isascii() else Path(tempfile.gettempdir())
+
+
+def _move(staged: Path, prefix: Path) -> None:
+    """Move the finished build to its place, completely or not at all."""
+    try:
         staged.rename(prefix)
+    except OSError as error:
+        if error.errno != errno.EXDEV:
+            raise
+        beside = prefix.with_name(f"{_TEMPORARY}{prefix.name}")
+        shutil.copytree(staged, beside, symlinks=True)
+        beside.rename(prefix)
 
 
 def _run(command: list[str], env: dict[str, str], tell: Callable[[str], None]) -> None:

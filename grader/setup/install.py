@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import site
 import subprocess
 import sys
 import time
@@ -90,8 +91,22 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
     if _uv(*project) is None:
         message = f"The course's own package could not be installed from {ROOT}; the installer's messages are above."
         raise MachineError(message)
+    for path in Path(site.getsitepackages()[0]).glob("_editable_impl_*.pth"):
+        path.write_text(ascii_only(path.read_text("utf-8")), "ascii")
     total = time.monotonic() - begin
     return {"download": downloading or 0.0, "install": total - (downloading or 0.0)}
+
+
+def ascii_only(lines: str) -> str:
+    """Return the lines of a .pth file in ASCII, without a change of their meaning.
+
+    With LC_ALL=C, or with a locale that the machine does not have, Python 3.10 to 3.12 reads .pth files as ASCII. If
+    the path of the course has other characters, no interpreter of .venv would start.
+    """
+    return "".join(
+        line if line.isascii() else f"import sys; sys.path.append({line.rstrip()!a})\n"
+        for line in lines.splitlines(keepends=True)
+    )
 
 
 def numpy_is_missing() -> bool:

@@ -5,6 +5,7 @@ Finding the built interfaces starts no process.
 
 from __future__ import annotations
 
+import errno
 import shutil
 import stat
 import subprocess
@@ -60,6 +61,35 @@ def without(monkeypatch: pytest.MonkeyPatch, *programs: str) -> None:
     monkeypatch.setattr(shutil, "which", lambda name, path=None: None if name in programs else found(name, path=path))
 
 
+def test_cmake_gets_no_path_that_it_would_cut(
+    ros: installation.Ros, builds: list[Sequence[str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home of Zoë"))
+    prefix = underlay.ensure(ros)
+    assert prefix is not None
+    assert (prefix / "lib/made").is_file()
+    folders = [command[command.index("-B") + 1] for command in builds if "-B" in command]
+    assert [folder for folder in folders if not folder.isascii()] == []
+    assert len(folders) == 1
+
+
+def test_a_build_on_another_disk_is_copied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    staged, prefix = tmp_path / "staged", tmp_path / "turtlesim-1"
+    (staged / "lib").mkdir(parents=True)
+    (staged / "lib/made").touch()
+    rename = Path.rename
+
+    def on_one_disk(self: Path, to: Path) -> Path:
+        if self == staged:
+            raise OSError(errno.EXDEV, "Invalid cross-device link")
+        return rename(self, to)
+
+    monkeypatch.setattr(Path, "rename", on_one_disk)
+    underlay._move(staged, prefix)
+    assert (prefix / "lib/made").is_file()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["staged", "turtlesim-1"]
+
+
 @of_a_sourced_ros
 def test_it_is_found_whatever_name_this_python_was_started_with() -> None:
     code = "from grader.ros.installation import find_ros; print(find_ros().python)"
@@ -73,7 +103,7 @@ def test_two_at_once_build_it_once_and_both_get_it(ros: installation.Ros, tmp_pa
     """The current folder contains false modules and programs with familiar names, which the build must not use."""
     traps = Traps(tmp_path / "current", tmp_path / "touched")
     code = "from grader.ros import installation, underlay; print(underlay.ensure(installation.find_ros(), print))"
-    env = {**careless(), "XDG_CACHE_HOME": str(tmp_path / "home of Ada")}
+    env = {**careless(), "XDG_CACHE_HOME": str(tmp_path / "home of Zoë")}
     command = [sys.executable, "-I", "-c", code]
     both = [subprocess.Popen(command, cwd=traps.folder, env=env, stdout=subprocess.PIPE, text=True) for _ in range(2)]
     lines = [process.communicate()[0].splitlines() for process in both]

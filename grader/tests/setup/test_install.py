@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import signal
+import subprocess
 import sys
 from importlib import metadata
 from pathlib import Path
@@ -149,3 +150,14 @@ def test_progress_is_shown_and_the_rest_is_kept(capfd: pytest.CaptureFixture[str
 )
 def test_reads_uvs_durations(line: str, seconds: float) -> None:
     assert install.seconds_of(line) == pytest.approx(seconds)
+
+
+@pytest.mark.parametrize("name", ["plain", "O'Brien in Köln"])
+def test_a_course_in_any_folder_is_found_in_every_locale(tmp_path: Path, name: str) -> None:
+    packages = tmp_path / name
+    packages.mkdir()
+    (packages / "course.pth").write_text(install.ascii_only(str(packages)), "ascii")
+    code = f"import site, sys; site.addpackage({str(packages)!a}, 'course.pth', set()); print(ascii(sys.path[-1]))"
+    env = {"LC_ALL": "C"}
+    said = subprocess.run([sys.executable, "-I", "-c", code], env=env, capture_output=True, text=True, check=False)
+    assert said.stdout == f"{str(packages)!a}\n", said.stderr
