@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.benchmarks import notebooks
-from grader.benchmarks.bare import bare_costs
+from grader.benchmarks.bare import bare_costs, new_package
 from grader.benchmarks.grade import class_cost
 from grader.benchmarks.html import page_cost
 from grader.benchmarks.measure import Cost, cost
@@ -115,9 +115,12 @@ def _rows(bench: Bench, students: int, notebook_students: int) -> Iterator[Row]:
     recording = bench.new_folder() / "recording"
     cost([_GRADER, "check", str(_SUBMISSION), "--clock", "simulated", "--recording", str(recording)])
     for step, most_wall, most_cpu in ((_STEP, 1.15, 1.2), ("07-challenges", 2.0, None)):
-        checked = bench.in_f(partial(cost, [_GRADER, "check", str(_ROOT / "solutions" / step), "--clock", "simulated"]))
-        yield Row(f"grader check {step[:2]}, wall time", checked.wall, "F", most_wall)
-        yield Row(f"grader check {step[:2]}, CPU time", checked.cpu, "F of CPU", most_cpu)
+        first = bench.in_f(partial(_first_check, bench, step))
+        again = _check(bench, step)
+        cost(again)
+        for name, checked in ((step[:2], first), (f"{step[:2]} again", bench.in_f(partial(cost, again)))):
+            yield Row(f"grader check {name}, wall time", checked.wall, "F", most_wall)
+            yield Row(f"grader check {name}, CPU time", checked.cpu, "F of CPU", most_cpu)
     saved = bench.in_f(lambda: Cost(_save_s(bench.new_folder()), 0.0, 0.0))
     yield Row("grader watch, from save to verdict", saved.wall, "F", 0.35)
     sizes: list[float] = []
@@ -135,6 +138,16 @@ def _rows(bench: Bench, students: int, notebook_students: int) -> Iterator[Row]:
         synced_s = notebooks.sync_s(bench.new_folder(), notebook_students) / notebook_students
         in_f = 2 * synced_s / (ended.wall_s + bench.f().wall_s)
         yield Row(f"gradebook sync of {notebook_students}, wall time each", in_f, "F", 0.55)
+
+
+def _check(bench: Bench, step: str) -> list[str]:
+    """Return the command that checks a package that has not been built yet."""
+    package = new_package(_ROOT / "solutions" / step, bench.new_folder() / "new")
+    return [_GRADER, "check", str(package), "--exercise", step, "--clock", "simulated"]
+
+
+def _first_check(bench: Bench, step: str) -> Cost:
+    return cost(_check(bench, step))
 
 
 def _page_cost(recording: Path, page: Path, sizes: list[float]) -> Cost:

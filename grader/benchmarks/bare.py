@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import uuid
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from grader.benchmarks.measure import Cost, cost
@@ -13,8 +15,17 @@ from grader.submission.package import open_submission, write_copy
 if TYPE_CHECKING:
     from pathlib import Path
 
+_MANIFEST = "package.xml"
 _NODE = "import rclpy; rclpy.init(); node = rclpy.create_node('bare'); node.destroy_node(); rclpy.shutdown()"
 _COLCON = "import sys; from colcon_core.command import main; sys.exit(main())"
+
+
+def new_package(submission: Path, folder: Path) -> Path:
+    """Write a copy of the submission whose package no earlier build fits to the new folder, and return the folder."""
+    opened = open_submission(submission)
+    manifest = opened.files[_MANIFEST] + f"<!-- {uuid.uuid4()} -->\n".encode()
+    write_copy(replace(opened, files={**opened.files, _MANIFEST: manifest}), folder)
+    return folder
 
 
 def bare_costs(submission: Path, folder: Path) -> dict[str, Cost]:

@@ -28,12 +28,16 @@ def test_each_figure_stands_beside_its_aim() -> None:
     assert done.returncode == 0, done.stderr
     lines = done.stdout.splitlines()
     assert "load" in lines[0]
-    assert lines[1] == "F = 2.00 s wall, 2.00 s CPU (medians of 11)"
+    assert lines[1] == "F = 2.00 s wall, 2.00 s CPU (medians of 15)"
     assert {line[:44].strip(): line[44:].split() for line in lines[4:]} == {
         "grader check 03, wall time": ["1.50", "1.15", "F"],
         "grader check 03, CPU time": ["2.50", "1.20", "F", "of", "CPU"],
+        "grader check 03 again, wall time": ["1.50", "1.15", "F"],
+        "grader check 03 again, CPU time": ["2.50", "1.20", "F", "of", "CPU"],
         "grader check 07, wall time": ["1.50", "2.00", "F"],
         "grader check 07, CPU time": ["2.50", "F", "of", "CPU"],
+        "grader check 07 again, wall time": ["1.50", "2.00", "F"],
+        "grader check 07 again, CPU time": ["2.50", "F", "of", "CPU"],
         "grader watch, from save to verdict": ["0.40", "0.35", "F"],
         "the page of a report": ["0.10", "0.15", "F"],
         "the page of a report, size": ["70.00", "250.00", "KB"],
