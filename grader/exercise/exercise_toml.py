@@ -51,6 +51,8 @@ OLDER = {
 }
 """Instructions for updating a file in an older version of the format."""
 PART = re.compile(r"[a-z]")
+OF_NUMBERS = "own_"
+"""The beginning of the names of all kinds that read the table [numbers]."""
 FIELD = Allowed(
     "a number, a string, true or false", lambda value: value if isinstance(value, str | int | float) else None, ""
 )
@@ -159,6 +161,8 @@ def _checks(
     for table, spec in zip(tables, specs, strict=True):
         if spec.id and ids.count(spec.id) > 1:
             table.problem(f'the id "{spec.id}" is used {ids.count(spec.id)} times; each check needs its own id.')
+        if spec.kind.startswith(OF_NUMBERS) and numbers is None:
+            table.problem(f'the kind "{spec.kind}" needs the table [numbers], from which each student gets values.')
         for need in spec.needs:
             _must_be_check(table, "needs", need, ids)
     circle = _circle(specs)

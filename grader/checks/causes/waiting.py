@@ -29,6 +29,8 @@ LOOP = "while"
 """The name of a wait that is a loop on done()."""
 THREADS = frozenset({"MultiThreadedExecutor", "Thread", "ThreadPoolExecutor", "Timer", "start_new_thread"})
 """With one of these, another thread can receive the response while a callback waits."""
+STARTS = frozenset({"Thread", "Timer", "start_new_thread", "submit", "to_thread", "run_in_executor"})
+"""Functions that call the function that is passed to them in another thread."""
 STRAIGHT = frozenset({"__init__", "main"})
 """Functions that run before rclpy.spin, even if their names are mentioned without a call."""
 OTHER_CALLS = frozenset({"subprocess", "self", "super", "cls"})
@@ -94,8 +96,8 @@ def waits_in_callbacks(evidence: Evidence) -> list[Wait]:
     own = {node.name for module in modules for node in module.nodes if isinstance(node, ast.FunctionDef)}
     found: list[Wait] = []
     for module, function in _in_callbacks(modules):
-        looped = {id(each) for node in _inside(function) if isinstance(node, ast.While) for each in ast.walk(node.test)}
-        for node in _inside(function):
+        looped = {id(each) for node in inside(function) if isinstance(node, ast.While) for each in ast.walk(node.test)}
+        for node in inside(function):
             where = Where(module.file, getattr(node, "lineno", None))
             if isinstance(node, ast.While) and "done" in (_last(each) for each in _calls_in(node.test)):
                 found.append(Wait(LOOP, LOOP, where))
@@ -174,9 +176,12 @@ def _in_callbacks(modules: Iterable[Module]) -> Iterator[tuple[Module, Function]
     passed: set[str] = set()
     for module in modules:
         called = {id(node.func) for node in module.nodes if isinstance(node, ast.Call)}
+        in_threads = {id(node) for node in _in_threads(module)}
         for node in module.nodes:
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
                 functions.setdefault(node.name, []).append((module, node))
+            elif id(node) in in_threads:
+                continue
             elif isinstance(node, ast.Lambda):
                 waiting.append((module, node))
             elif (
@@ -188,13 +193,20 @@ def _in_callbacks(modules: Iterable[Module]) -> Iterator[tuple[Module, Function]
     while waiting:
         module, function = waiting.pop()
         yield module, function
-        called_here = {_last(node) for node in _inside(function) if isinstance(node, ast.Call)}
+        called_here = {_last(node) for node in inside(function) if isinstance(node, ast.Call)}
         new = (called_here & functions.keys()) - known - STRAIGHT
         known |= new
         waiting += [each for name in sorted(new) for each in functions[name]]
 
 
-def _inside(function: Function) -> Iterator[ast.AST]:
+def _in_threads(module: Module) -> Iterator[ast.expr]:
+    """Yield the functions that run in a thread of their own, where a wait holds nothing up."""
+    for node in module.nodes:
+        if isinstance(node, ast.Call) and _last(node) in STARTS:
+            yield from (*node.args, *(keyword.value for keyword in node.keywords))
+
+
+def inside(function: Function) -> Iterator[ast.AST]:
     """Yield the syntax nodes of a function, except the nodes of functions that are defined inside this function."""
     waiting: list[ast.AST] = list(function.body) if isinstance(function.body, list) else [function.body]
     while waiting:

@@ -227,9 +227,7 @@ def _too_many(scene: CrashScene, many: re.Match[str]) -> Cause | None:
     # Python counts `self` as an argument of a method, too.
     most = int(many["most"]) - (int(many["given"]) - passed)
     takes = f"at most {count(most, 'positional argument')}" if most else "no positional arguments"
-    text = (
-        f"{function} takes {takes}, but {passed} {'is' if passed == 1 else 'are'} passed here.{MORE.get(function, '')}"
-    )
+    text = f"{function} takes {takes}. The call here passes {passed}.{MORE.get(function, '')}"
     return Cause("too-many-arguments", text)
 
 

@@ -47,7 +47,7 @@ def why_field(scene: CrashScene) -> Cause | None:
     if wanted not in FLOAT:
         point = isinstance(resolved, ast.Constant) and isinstance(resolved.value, float)
         more = ": write it without a decimal point" if point else ""
-        return Cause("field-type", f"The field {field} must be {KINDS.get(wanted, wanted)}{more}.")
+        return Cause("field-type", f"The value of the field {field} must be {KINDS.get(wanted, wanted)}{more}.")
     cause = why_no_float(field, resolved) or Cause(
         "field-type", f"The field {field} is a float, but the value has another type. Convert it with float(...)."
     )

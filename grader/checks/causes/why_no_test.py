@@ -24,6 +24,9 @@ def why_no_test(code: TestCode) -> Cause:
             if isinstance(node, ast.ClassDef) and node.name.startswith("Test") and has_init(node):
                 text = "pytest ignores a test class that has an __init__. Use a fixture, or setup_method."
                 return Cause("test-class-init", text, Where(module.file, node.lineno))
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("Test") and _has_test(node):
+                text = f"pytest ignores the class {shorten(node.name, 60)}, because its name does not begin with Test."
+                return Cause("test-function-name", text, Where(module.file, node.lineno))
         misnamed = _misnamed(module.nodes)
         if misnamed is not None:
             text = (
@@ -32,6 +35,10 @@ def why_no_test(code: TestCode) -> Cause:
             )
             return Cause("test-function-name", text, Where(module.file, misnamed.lineno))
     return Cause("no-test-function", "A test is a function whose name begins with test_.", Where(code.files[0].file))
+
+
+def _has_test(node: ast.ClassDef) -> bool:
+    return any(isinstance(each, Function) and each.name.startswith("test") for each in node.body)
 
 
 def _misnamed(nodes: tuple[ast.AST, ...]) -> Function | None:

@@ -53,10 +53,10 @@ def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
         return _never_drives(evidence, left)
     if _moved_m(evidence, activity.end_s(recording) - STILL_S) <= STILL_M:
         return _stands_still(evidence, left)
-    text = "The turtle was still driving at the end of the trial."
+    text = f"The turtle still moved in the last {STILL_S:.0f} s of the trial."
     if left:
         near_m, name = min((_nearest_m(evidence, track), track.turtle) for track in left)
-        text += f" The turtle came as near as {near_m:.1f} m to {shorten(name)}."
+        text += f" The turtle came as near as {near_m:.1f} m to {shorten(name)}." if np.isfinite(near_m) else ""
     return Cause("too-slow", text, evidence.place("publish"))
 
 
@@ -77,7 +77,12 @@ def _never_drives(evidence: Evidence, left: list[Track]) -> Cause:
     poses = sorted({each.topic for each in subscriptions if each.topic.endswith("/pose")} - {OWN_POSE})
     wanted = [f"/{track.turtle}/pose" for track in left]
     if set(poses) & set(wanted):
-        return Cause("never-drives", "All commands that arrived contained only zeros.", evidence.place("publish"))
+        text = "linear.x is 0 in every command, so the turtle only turns."
+        if not any(any(command.linear) or any(command.angular) for command in evidence.commands):
+            text = "All commands that arrived contained only zeros."
+        if any(command.linear[0] for command in evidence.commands):
+            text = "Commands arrived, but the turtle stayed where it was."
+        return Cause("never-drives", text, evidence.place("publish"))
     text = "The node does not subscribe to the pose of any target."
     if poses:
         text = f"The node subscribes to {shorten(poses[0])}, but not to the pose of a target: {a_list(wanted)}."
@@ -85,10 +90,11 @@ def _never_drives(evidence: Evidence, left: list[Track]) -> Cause:
 
 
 def _nearest_m(evidence: Evidence, track: Track) -> float:
-    """Return the smallest distance between turtle1 and a target that was never caught (m)."""
+    """Return the smallest distance between turtle1 and a target that was never caught (m), while the target existed."""
     x, y = track.rows[-1][1:3]
     frames = evidence.recording.frames
-    return float(np.min(np.hypot(frames.x - x, frames.y - y)))
+    rows = frames.t_s >= track.rows[0][0]
+    return float(np.min(np.hypot(frames.x[rows] - x, frames.y[rows] - y), initial=np.inf))
 
 
 def _stands_still(evidence: Evidence, left: list[Track]) -> Cause:

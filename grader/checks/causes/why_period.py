@@ -6,7 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.why_rate import sends_each_time, why_several_calls, why_sleep_in_callback
+from grader.checks.causes.why_rate import is_repeated, sends_each_time, why_several_calls, why_sleep_in_callback
 from grader.checks.edit import at
 from grader.submission.constants import number as constant
 from grader.submission.constants import written
@@ -58,7 +58,7 @@ def _why_mean(evidence: Evidence, noun: str, call: str, mean: float, rate_hz: fl
         return asleep
     for sleep in code.calls("sleep"):
         length = constant(sleep.argument(0, "secs"), sleep.module.names)
-        if length is not None and abs(length - mean) <= SAME * mean:
+        if length is not None and abs(length - mean) <= SAME * mean and is_repeated(sleep):
             return Cause("sleep-period", f"The node sleeps for {length:g} s between two {noun}s.", sleep.where)
     several = why_several_calls(evidence, call, mean, 1.0 / rate_hz)
     if several is not None:

@@ -21,9 +21,13 @@ if TYPE_CHECKING:
 
 OFTEN = 0.5
 """In a loop without a pause, the mean interval is less than this fraction of the expected period."""
+NO_PAUSE_S = 0.05
+"""If the mean interval (s) is longer, something in the loop takes time, for example another loop that waits."""
 SEVERAL = 0.1
 """If the number of successive calls differs from the number of messages per period by at most this share, the calls
 explain a wrong rate."""
+PAUSES = ("sleep", "sleep_for", "sleep_until", "spin_once", "wait", "get", "join", "input")
+"""Functions and methods that take time on purpose."""
 FRAME_S = 0.016
 """The duration of a turtlesim frame (s). turtlesim publishes the pose once per frame."""
 
@@ -33,13 +37,13 @@ def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> 
     for module in evidence.code.modules:
         for node in module.nodes:
             where = Where(module.file, getattr(node, "lineno", None))
-            busy = isinstance(node, ast.While) and _calls(node, call) and not _calls(node, "sleep", "spin_once")
-            if busy and mean_s < OFTEN * period_s:
+            busy = isinstance(node, ast.While) and _calls(node, call) and not _pauses(node, call)
+            if busy and mean_s < min(OFTEN * period_s, NO_PAUSE_S):
                 return Cause("loop-without-pause", f"This loop calls {call} without a pause.", where)
-    for timer in evidence.code.calls("create_timer"):
-        if number(timer.argument(0, "timer_period_sec"), timer.module.names) == 0.0:
-            text = "The period of this timer is 0 s, so it calls its method without a pause."
-            return Cause("timer-period", text, timer.where)
+    never_waits = _period_of_zero(evidence, call)
+    if never_waits is not None:
+        text = "The period of this timer is 0 s, so it calls its method without a pause."
+        return Cause("timer-period", text, never_waits.where)
     if abs(mean_s - FRAME_S) > 0.1 * FRAME_S:
         return None
     for module, name in callbacks_of(evidence):
@@ -47,6 +51,24 @@ def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> 
             if isinstance(node, ast.FunctionDef) and node.name == name and _reaches(module, node, call):
                 text = f"{name} is called for every message, 62.5 times per second, and each time it calls {call}."
                 return Cause("every-message", text, Where(module.file, node.lineno))
+    return None
+
+
+def _pauses(loop: ast.While, call: str) -> bool:
+    """Return whether a loop waits in some way, or calls `call` only if a condition is true."""
+    inner = [each for statement in loop.body for each in ast.walk(statement)]
+    waits = _calls(loop, *PAUSES) or any(isinstance(each, ast.While) and not _calls(each, call) for each in inner)
+    return waits or not any(_calls(each, call) for each in loop.body if not isinstance(each, ast.If))
+
+
+def _period_of_zero(evidence: Evidence, call: str) -> Call | None:
+    """Return the call that creates a timer with the period 0, unless its callback is known and never calls `call`."""
+    for timer in evidence.code.calls("create_timer"):
+        if number(timer.argument(0, "timer_period_sec"), timer.module.names) == 0.0:
+            name = (dotted(timer.argument(1, "callback") or ast.Constant(0)) or "").rpartition(".")[2]
+            own = [each for each in timer.module.nodes if isinstance(each, ast.FunctionDef) and each.name == name]
+            if not own or any(_reaches(timer.module, each, call) for each in own):
+                return timer
     return None
 
 
@@ -111,10 +133,40 @@ def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: fl
                     for each in ast.walk(node)
                     if isinstance(each, ast.Call) and getattr(each.func, "attr", "") == call
                 )
-                if len(lines) > 1 and abs(period_s / mean_s - len(lines)) <= SEVERAL * len(lines):
-                    text = f"{node.name} calls {call} {len(lines)} times, in lines {a_list(list(map(str, lines)))}."
+                every = len(lines) == _most(node.body, call)
+                if len(lines) > 1 and every and abs(period_s / mean_s - len(lines)) <= SEVERAL * len(lines):
+                    named = a_list(list(map(str, lines)))
+                    text = f"{node.name} calls {call} {len(lines)} times each time it runs, in lines {named}."
                     return Cause("wrong-rate", text, Where(module.file, lines[-1]))
     return None
+
+
+def _most(body: list[ast.stmt], call: str) -> int:
+    """Return how often statements call `call` at most, if each loop has one iteration. An if runs one of its branches.
+
+    What follows an if that may leave the function is not counted together with that branch.
+    """
+    amount = 0
+    for statement in body:
+        if isinstance(statement, ast.If):
+            amount += max(_most(statement.body, call), _most(statement.orelse, call))
+            if any(isinstance(each, ast.Return | ast.Continue | ast.Break) for each in ast.walk(statement)):
+                return amount
+        elif isinstance(statement, ast.For | ast.While | ast.With | ast.Try):
+            amount += sum(_most(getattr(statement, part, []), call) for part in ("body", "orelse", "finalbody"))
+        else:
+            calls = (each for each in ast.walk(statement) if isinstance(each, ast.Call))
+            amount += sum(getattr(each.func, "attr", "") == call for each in calls)
+    return amount
+
+
+def is_repeated(call: Call) -> bool:
+    """Return whether a call is in a loop, or in a function that may be called again and again."""
+    outer = (each for each in call.module.nodes if isinstance(each, ast.While | ast.For | ast.FunctionDef))
+    around = [each for each in outer if call.node in ast.walk(each)]
+    if any(isinstance(each, ast.While | ast.For) for each in around):
+        return True
+    return any(isinstance(each, ast.FunctionDef) and each.name not in ("__init__", "main") for each in around)
 
 
 def late_cause(evidence: Evidence) -> str:

@@ -25,7 +25,7 @@ OUTSIDE = re.compile(
     r"no display|cannot connect to X|DISPLAY|tkinter|TclError|Network is unreachable|Name or service not known|"
     r"Temporary failure in name resolution|gaierror|Connection refused"
 )
-OF_THE_NODE = re.compile(r"cannot import name '(?P<name>[A-Z][A-Z0-9_]*)'")
+OF_THE_NODE = re.compile(r"cannot import name '(?P<name>[A-Z][A-Z0-9_]*)' from '[\w.]*\bwall_guard'")
 """A constant of the node's module."""
 ERROR = re.compile(r"^E\s+(?P<text>\w*(?:Error|Exception|Interrupt)\b.*)$", re.MULTILINE)
 
@@ -84,12 +84,18 @@ def _known(message: str, where: Where | None) -> Cause | None:
 
 def _of_ros(message: str, where: Where | None) -> Cause | None:
     if TWICE.search(message):
-        text = "The previous test did not call rclpy.shutdown. A fixture calls rclpy.shutdown after the yield."
+        text = (
+            "rclpy.init was called twice without rclpy.shutdown in between. A fixture calls rclpy.init before the "
+            "yield and rclpy.shutdown after it, and the tests call neither."
+        )
         return Cause("not-shut-down", text, where)
     if NOT_YET.search(message):
-        text = "Call rclpy.init before you create a node. A fixture calls rclpy.init before the yield."
+        text = (
+            "A node exists between rclpy.init and rclpy.shutdown. A fixture calls rclpy.init before the yield and "
+            "rclpy.shutdown after it."
+        )
         return Cause("no-init", text, where)
-    if OUTSIDE.search(message):
+    if OUTSIDE.search(last_error(message)):
         text = "A test must also run without a display and without a network."
         return Cause("needs-the-outside", text, where)
     constant = OF_THE_NODE.search(message)

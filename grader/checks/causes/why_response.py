@@ -28,11 +28,14 @@ def why_response(scene: CrashScene) -> Cause | None:
         if OF_A_RESPONSE.search(scene.crash.message) and first.startswith("res"):
             text = f"{method.name} gets the request first, and the response second."
             return Cause("arguments-swapped", text, where)
+        # rclpy raises a TypeError without a message if a callback returns anything but a response.
+        if scene.crash.error != "TypeError" or scene.crash.message:
+            continue
         returns = any(isinstance(node, ast.Return) and node.value is not None for node in ast.walk(method))
-        if scene.crash.error == "TypeError" and not scene.crash.message and not returns:
+        if not returns:
             text = f"{method.name} returns nothing. The callback of a service must return its response."
             return Cause("response-not-returned", text, where)
-        if scene.crash.error == "TypeError" and (wrong := _returned_instead(method)):
+        if wrong := _returned_instead(method):
             text = f"{method.name} returns {wrong}. The callback of a service must return its response."
             return Cause("response-not-returned", text, where)
     return None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.timers import timer_fault
-from grader.checks.causes.waiting import waits_in_callback
+from grader.checks.causes.waiting import inside, waits_in_callback
 from grader.checks.causes.why_ended import SPINS, named_only
 from grader.checks.causes.why_inactive import never_activated
 from grader.common.words import nearest, shorten
@@ -25,6 +25,8 @@ INCOMPATIBLE = "incompatible QoS"
 """rclpy logs this if a publisher and a subscription cannot communicate."""
 WAKES = ("create_timer", "create_subscription", "create_service", "create_client", "ActionServer", "ActionClient")
 """Functions that give a node something to do in spin_once."""
+ANSWERS = ("wait_for_service", "service_is_ready", "wait_for_server", "server_is_ready")
+"""Methods of clients that become true as soon as the server exists."""
 ALWAYS = ("True", "1", "rclpy.ok()")
 
 
@@ -80,21 +82,21 @@ def _nothing_to_spin(evidence: Evidence) -> Cause | None:
 def _stuck(evidence: Evidence) -> Cause | None:
     """Return the cause if a loop or wait in __init__, or a wait in a callback, never returns. Otherwise return None."""
     for module, method in methods_of(evidence):
-        for node in ast.walk(method):
+        for node in inside(method):
             where = Where(module.file, getattr(node, "lineno", None))
             waiting = _waits(node, module)
             if waiting is not None:
                 return waiting.at(where)
-            if method.name == "__init__" and isinstance(node, ast.While) and ast.unparse(node.test) in ALWAYS:
+            endless = isinstance(node, ast.While) and ast.unparse(node.test) in ALWAYS and not _ends(node)
+            if method.name == "__init__" and endless:
                 text = "__init__ loops forever, so rclpy.spin is never reached. A timer repeats without a loop."
                 return Cause("blocks-in-init", text, where)
             if method.name == "__init__" and isinstance(node, ast.Call) and dotted(node.func) == "rclpy.spin":
                 text = "rclpy.spin returns only after Ctrl-C, so the lines after it in __init__ do not run before that."
                 return Cause("blocks-in-init", text, where)
             if method.name == "__init__" and isinstance(node, ast.While) and _only_waits(node):
-                return Cause(
-                    "blocks-in-init", "This loop in __init__ may never end, so rclpy.spin is never reached.", where
-                )
+                text = "If this loop in __init__ does not end, rclpy.spin is never reached."
+                return Cause("blocks-in-init", text, where)
     return waits_in_callback(evidence)
 
 
@@ -139,8 +141,15 @@ def _calls(node: ast.AST, name: str) -> bool:
     return any(isinstance(each, ast.Call) and getattr(each.func, "attr", "") == name for each in ast.walk(node))
 
 
+def _ends(loop: ast.While) -> bool:
+    """Return whether a statement in the loop may end it."""
+    return any(isinstance(each, ast.Break | ast.Return | ast.Raise) for each in ast.walk(loop))
+
+
 def _only_waits(loop: ast.While) -> bool:
-    """Return whether the body of a loop does nothing but wait."""
+    """Return whether a loop does nothing but wait, and not for a service of turtlesim."""
+    if any(isinstance(each, ast.Attribute) and each.attr in ANSWERS for each in ast.walk(loop.test)):
+        return False
     calls = [each.value for each in loop.body if isinstance(each, ast.Expr)]
     return all(isinstance(each, ast.Pass | ast.Expr) for each in loop.body) and all(
         isinstance(call, ast.Call) and getattr(call.func, "attr", "") == "sleep" for call in calls
@@ -158,10 +167,23 @@ def _never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
             for each in evidence.code.modules
             for node in each.nodes
         )
-        if called and not named and method.name != "__init__":
+        if called and not named and not _is_called_by_others(evidence, module, method):
             text = f"Nothing calls {shorten(method.name)}. The method is not the callback of a timer or a subscription."
             return Cause("method-never-called", text, Where(module.file, method.lineno))
     return None
+
+
+def _is_called_by_others(evidence: Evidence, module: Module, method: ast.FunctionDef) -> bool:
+    """Return whether Python, a library or getattr may call the method, such as __call__ or the run of a thread."""
+    classes = [node for each in evidence.code.modules for node in each.nodes if isinstance(node, ast.ClassDef)]
+    own = next(each for each in classes if method in each.body)
+    bases = {(dotted(base) or "").rpartition(".")[2] for base in own.bases} - {each.name for each in classes}
+    special = method.name.startswith("__") or method.name == "destroy_node" or bool(method.decorator_list)
+    return special or bool(bases - {"Node", "object"}) or any(map(_looks_up, module.nodes))
+
+
+def _looks_up(node: ast.AST) -> bool:
+    return isinstance(node, ast.Name) and node.id == "getattr"
 
 
 def methods_of(evidence: Evidence) -> Iterator[tuple[Module, ast.FunctionDef]]:

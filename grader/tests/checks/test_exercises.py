@@ -36,6 +36,9 @@ def test_several_exercises_that_begin_alike_are_named(tmp_path: Path) -> None:
         (tmp_path / name / "exercise.toml").touch()
     with pytest.raises(UsageError, match=r"several exercises start with '03'.*03-a and 03-b"):
         find_exercise("03", tmp_path)
+    with pytest.raises(UsageError, match="there is no exercise '04'") as raised:
+        find_exercise("04", tmp_path)
+    assert "several exercises start with" not in str(raised.value)
 
 
 def test_the_exercise_follows_from_a_folder_below_solutions_and_exercises() -> None:

@@ -117,6 +117,13 @@ def test_what_breaks_a_check_could_not_be_read_and_the_others_are_judged(monkeyp
     assert outcomes["values"].status is Status.FAILED
     assert outcomes["values"].finding.diagnosis == "unreadable"
     assert "could not be read: ZeroDivisionError" in outcomes["values"].finding.observed
+    expected = "The grader can read the submitted files and the data that the node sends."
+    words = (
+        "Very large, deeply nested or damaged content can cause this. If your submission contains nothing of this kind,"
+    )
+    assert {id_ for id_, each in outcomes.items() if each.finding.expected == expected} == {"values"}
+    assert {id_ for id_, each in outcomes.items() if each.finding.cause.startswith(words)} == {"values"}
+    assert words not in by_id(evidence(None))["values"].finding.cause
     assert [outcome.id for outcome in outcomes.values() if outcome.status is not Status.PASSED] == ["values"]
 
 
@@ -189,3 +196,8 @@ def test_a_node_that_brings_the_simulator_down_has_failed_and_is_no_error() -> N
     assert (made.points, made.max, made.exit_code) == (0.0, 100.0, 1)
     (start,) = [outcome for outcome in made.outcomes if outcome.id == "start"]
     assert (start.finding.diagnosis, "MemoryError" in start.finding.observed) == ("overwhelmed", True)
+    words = (
+        "The node sends without a pause, or sends invalid data. If your node pauses and sends valid data, please report"
+    )
+    assert start.finding.cause.startswith(words)
+    assert words not in by_id(evidence(good()))["start"].finding.cause

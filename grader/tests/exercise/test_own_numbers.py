@@ -118,3 +118,17 @@ def test_a_parameter_of_a_check_may_be_the_students_own_value() -> None:
 def test_every_own_value_must_fit_the_parameter(numbers: dict[str, object], own: str) -> None:
     with pytest.raises(UsageError, match="radius_m"):
         parsed(numbers, radius_m={"own": own})
+
+
+@pytest.mark.parametrize("kind", ["own_numbers", "own_rate", "own_circle"])
+def test_a_check_of_the_students_numbers_needs_the_table_of_the_numbers(kind: str) -> None:
+    course = tomllib.loads((course_folder() / "03-circle-publisher" / "exercise.toml").read_text("utf-8"))
+    tables = {**course, "hint": [], "check": [{"id": "own", "kind": kind, "points": 0}]}
+    del tables["exercise"]["starting_point_fails"]
+    words = rf'the kind "{kind}" needs the table \[numbers\], from which each student gets values.'
+    with pytest.raises(UsageError, match=words):
+        parse_tables(tables, "exercise.toml", Path(), "", KINDS)
+    exercise = parse_tables(
+        {**tables, "numbers": {"file": "mine.toml", "a": [1, 2]}}, "exercise.toml", Path(), "", KINDS
+    )
+    assert exercise.numbers is not None

@@ -98,6 +98,9 @@ def test_a_callback_may_be_passed_in_any_form(callback: str) -> None:
         {"step": "call(words)"},
         {"step": "self.call(words)"},
         {"step": "if self.future.done(): pass"},
+        {"init": "Thread(target=self.ask, args=(1,)).start()", "ask": "self.pen.call(request); time.sleep(1.0)"},
+        {"init": "Thread(target=lambda: rclpy.spin(self)).start()"},
+        {"init": "self.pool.submit(self.ask, 1)", "ask": "time.sleep(1.0)"},
     ],
 )
 def test_a_near_miss_is_not_blamed(other: dict[str, str]) -> None:

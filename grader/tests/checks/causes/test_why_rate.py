@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.checks.causes.why_rate import FRAME_S, why_often, why_publishers_grow, why_timers_grow
+from grader.checks.causes.why_rate import FRAME_S, why_often, why_publishers_grow, why_several_calls, why_timers_grow
 from grader.tests.checks.crashes import LOOK, line_with
 from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
 
@@ -31,8 +31,12 @@ def often(source: str, mean_s: float) -> tuple[str, int | None] | None:
     ("loop", "mean_s", "found"),
     [
         ("while True: self.publisher.publish(msg)", 0.001, True),
-        ("while True: publish(msg)", 0.24, True),
-        ("while True: publish(msg)", 0.25, False),
+        ("while True: publish(msg)", 0.04, True),
+        ("while True: publish(msg)", 0.06, False),
+        ("while True:  # look\n            if near: turn()\n            publish(msg)", 0.001, True),
+        ("while True:\n            if due(): publish(msg)", 0.001, False),
+        ("while True:\n            publish(msg)\n            while early(): pass", 0.001, False),
+        ("while True: publish(msg); stop.wait(0.5)", 0.001, False),
         ("while True: publish(msg); time.sleep(0.5)", 0.001, False),
         ("while True: publish(msg); rclpy.spin_once(self)", 0.001, False),
         ("while True: print(msg)", 0.001, False),
@@ -40,7 +44,7 @@ def often(source: str, mean_s: float) -> tuple[str, int | None] | None:
     ],
 )
 def test_a_loop_that_waits_for_nothing_is_found(loop: str, mean_s: float, *, found: bool) -> None:
-    source = NODE.format(made="count = 3", at_send="", sent=f"{loop}  # look")
+    source = NODE.format(made="count = 3", at_send="", sent=loop if LOOK in loop else f"{loop}  # look")
     assert often(source, mean_s) == (("loop-without-pause", line_with(LOOK, source)) if found else None)
 
 
@@ -107,3 +111,43 @@ def test_a_method_that_each_message_calls_is_told(made: str, *, found: bool) -> 
     cause = why_often(evidence(recording([]), submission({NODE_FILE: source})), "publish", FRAME_S, PERIOD_S)
     words = "send is called for every message, 62.5 times per second, and each time it calls publish."
     assert (cause is not None and cause.text == words) == found
+
+
+@pytest.mark.parametrize(
+    ("loop", "words"),
+    [
+        ("while True: self.publisher.publish(msg)", "This loop calls publish without a pause."),
+        ("while True: self.publisher.publish(msg); time.sleep(0.5)", None),
+        ("self.timer = self.create_timer(0, self.other)", "The period of this timer is 0 s, so it calls its method"),
+        ("self.timer = self.create_timer(0.0, self.idle)\n\n    def idle(self):\n        pass", None),
+        ("self.timer = self.create_timer(0.1, self.other)", None),
+    ],
+)
+def test_what_publishes_without_a_pause_is_told(loop: str, words: str | None) -> None:
+    source = NODE.format(made="count = 3", at_send="", sent=loop)
+    cause = why_often(evidence(recording([]), submission({NODE_FILE: source})), "publish", 0.001, PERIOD_S)
+    assert (cause is None) == (words is None)
+    assert cause is None or words is None or cause.text.startswith(words)
+
+
+TWICE = "publish(msg); self.publisher.publish(msg)"
+
+
+@pytest.mark.parametrize(
+    ("sent", "mean_s", "found"),
+    [
+        (f"self.publisher.{TWICE}", 0.25, True),
+        (f"with lock:\n            self.publisher.{TWICE}", 0.25, True),
+        (f"self.publisher.{TWICE}", 0.5, False),
+        ("if a: self.p.publish(1)\n        else: self.p.publish(2)", 0.25, False),
+        ("if a:\n            self.p.publish(1)\n            return\n        self.p.publish(2)", 0.25, False),
+        ("for a in b:\n            if a: self.p.publish(1)\n            else: self.p.publish(2)", 0.25, False),
+        ("self.p.publish(1)", 0.25, False),
+    ],
+)
+def test_calls_that_all_run_each_time_are_counted(sent: str, mean_s: float, *, found: bool) -> None:
+    source = NODE.format(made="count = 3", at_send="", sent=sent)
+    given = evidence(recording([]), submission({NODE_FILE: source}))
+    cause = why_several_calls(given, "publish", mean_s, PERIOD_S)
+    assert (cause is not None) == found
+    assert cause is None or cause.text.startswith("send calls publish 2 times each time it runs, in lines")

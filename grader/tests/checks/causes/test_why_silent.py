@@ -64,6 +64,12 @@ def silence(source: str) -> tuple[str, str, int | None] | None:
         (TIMER, "self.client.call(request)  # look", "waits-in-callback", "call waits inside a callback,"),
         ("pass", "pass", "method-never-called", "Nothing calls send."),
         ("rclpy.spin(self)  # look", "pass", "blocks-in-init", "rclpy.spin returns only after Ctrl-C,"),
+        (
+            "while self.pose is None: time.sleep(0.1)  # look",
+            "pass",
+            "blocks-in-init",
+            "If this loop in __init__ does not end, rclpy.spin is never reached.",
+        ),
     ],
 )
 def test_silence_is_explained_at_its_line(made: str, sent: str, diagnosis: str, words: str) -> None:
@@ -88,10 +94,27 @@ def test_silence_is_explained_at_its_line(made: str, sent: str, diagnosis: str, 
         (TIMER, "make().call(words)"),
         (TIMER, "call(words)"),
         (TIMER, "while True: break"),
+        (f"while True: break\n        {TIMER}", "pass"),
+        (f"while not self.client.wait_for_service(1.0): pass\n        {TIMER}", "pass"),
+        (f"while not self.client.service_is_ready(): time.sleep(0.1)\n        {TIMER}", "pass"),
+        (f"Thread(target=lambda: rclpy.spin(self)).start()\n        {TIMER}", "pass"),
+        ("self.create_timer(0.5, self)\n\n    def __call__(self):\n        self.send()", "pass"),
+        ("getattr(self, 'se' + 'nd')()", "pass"),
     ],
 )
 def test_what_looks_right_is_not_blamed(made: str, sent: str) -> None:
     assert silence(NODE.format(made=made, sent=sent)) is None
+
+
+@pytest.mark.parametrize(
+    ("base", "name", "found"),
+    [("Thread", "run", False), ("Node", "run", True), ("Driver", "go", True), ("Driver", "destroy_node", False)],
+)
+def test_a_method_that_a_base_class_calls_is_not_blamed(base: str, name: str, *, found: bool) -> None:
+    own = f"\n\nclass Other({base}):\n    def {name}(self):\n        self.publisher.publish(1)\n"
+    reported = silence(NODE.format(made=TIMER, sent="pass") + own)
+    words = f"Nothing calls {name}. The method is not the callback of a timer or a subscription."
+    assert (reported is not None and reported[1] == words) == found
 
 
 def test_a_method_that_sends_nothing_need_not_be_called() -> None:

@@ -28,5 +28,13 @@ def test_a_class_without_an_import_is_found_in_a_callback(imports: str) -> None:
     assert words in found.cause
 
 
-def test_another_error_is_not_taken_for_a_transition() -> None:
-    assert "rclpy hides" not in reported(SOURCE.format(imports="", look=""), "RCLError: Failed to publish").cause
+@pytest.mark.parametrize(
+    ("error", "found"),
+    [
+        ("RCLError: Failed to trigger lifecycle state machine transition: unknown", True),
+        ("RCLError: Failed to trigger lifecycle state machine: unknown", False),
+        ("RCLError: Failed to publish", False),
+    ],
+)
+def test_another_error_is_not_taken_for_a_transition(error: str, *, found: bool) -> None:
+    assert ("rclpy hides" in reported(SOURCE.format(imports="", look=""), error).cause) == found

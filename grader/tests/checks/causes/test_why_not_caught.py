@@ -1,0 +1,88 @@
+"""The reasons why a target was not caught, each with a trial that differs in one thing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from grader.checks.causes.why_not_caught import why_not_caught
+from grader.tests.checks.made import NODE, NODE_FILE, evidence, graph, recording, submission
+from grader.trial.observed import Call, Track
+from grader.trial.recording import Beside, Endpoint, Output, ProcessEnd
+
+if TYPE_CHECKING:
+    from grader.tests.checks.made import Timed
+
+CATCHER = NODE.replace(
+    "        self.timer",
+    '        self.client = self.create_client(Kill, "/catch")\n'
+    "        self.client.call_async(Kill.Request())\n        self.timer",
+)
+AHEAD: list[Timed] = [(0.1 * number, 0.5, 0.0) for number in range(1, 100)]
+"""Commands that drive turtle1 to the right, from x=5.54 m, at 0.5 m/s."""
+
+
+def cause(commands: list[Timed], x: float = 9.0, from_s: float = 0.0, **changes: Any) -> str:  # noqa: ANN401
+    far = Track("far", ((from_s, x, 5.544445, 0.0),), None)
+    poses = Endpoint("subscription", "/draw_circle", "/far/pose", "turtlesim/msg/Pose")
+    seen = graph()
+    changes.setdefault("graphs", (replace(seen, endpoints=(*seen.endpoints, poses)),))
+    trial = recording(commands, tracks=(far,), **changes)
+    return why_not_caught(evidence(trial, submission({NODE_FILE: CATCHER})), [far]).text
+
+
+def catch(name: str) -> Call:
+    return Call(1.0, "/catch", "turtlesim/srv/Kill", {"name": name}, {}, 1.0)
+
+
+def speed(linear: float, angular: float) -> list[Timed]:
+    return [(t_s, linear, angular) for t_s, _, _ in AHEAD]
+
+
+@pytest.mark.parametrize(
+    ("commands", "words"),
+    [
+        (speed(0.0, 0.0), "All commands that arrived contained only zeros."),
+        (speed(0.0, 1.0), "linear.x is 0 in every command, so the turtle only turns."),
+        (speed(0.5, 0.0), "The turtle still moved in the last 3 s of the trial. The turtle came as near as"),
+    ],
+)
+def test_what_the_commands_contain_is_told(commands: list[Timed], words: str) -> None:
+    assert cause(commands).startswith(words)
+    others = {"All commands that arrived", "linear.x is 0 in every", "The turtle still moved"}
+    assert [each for each in others if each in cause(commands)] == [each for each in others if each in words]
+
+
+def test_a_turtle_that_stays_despite_its_commands_is_told() -> None:
+    still = recording([]).frames
+    words = "Commands arrived, but the turtle stayed where it was."
+    assert (cause(AHEAD, frames=still) == words, cause(speed(0.0, 1.0)) != words) == (True, True)
+
+
+@pytest.mark.parametrize(("from_s", "near"), [(0.0, "0.0 m"), (5.0, "1.5 m"), (20.0, None)])
+def test_the_way_to_a_target_counts_while_the_target_exists(from_s: float, near: str | None) -> None:
+    said = cause(AHEAD, 6.5, from_s)
+    assert (" The turtle came as near as" not in said) == (near is None)
+    assert near is None or said.endswith(f" The turtle came as near as {near} to far.")
+
+
+@pytest.mark.parametrize(("name", "found"), [("turtle1", True), ("far", False)])
+def test_a_name_that_no_target_has_is_told(name: str, *, found: bool) -> None:
+    said = cause(AHEAD, calls=(catch(name),))
+    assert (said == 'The node called /catch with the name "turtle1". The targets were far.') == found
+
+
+@pytest.mark.parametrize(("x", "found"), [(6.4, True), (9.0, False)])
+def test_a_turtle_stands_beside_a_target_or_far_from_all(x: float, *, found: bool) -> None:
+    said = cause(AHEAD[:14], x, calls=(catch("far"),))
+    assert (said == "The turtle stands beside far.") == found
+    assert found or said.startswith("The turtle stood still at the end.")
+
+
+@pytest.mark.parametrize(("by", "found"), [("itself", True), ("SIGINT", False)])
+def test_the_end_of_the_other_node_ends_the_trial(by: Any, *, found: bool) -> None:  # noqa: ANN401
+    beside = (Beside("spawner", Output(""), Output(""), ProcessEnd(by, 0, 2.0, None)),)
+    said = cause(AHEAD, beside=beside, sigint_t_s=2.0)
+    assert (said == "spawner ended at 2.0 s, so the trial was over.") == found

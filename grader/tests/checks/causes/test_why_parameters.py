@@ -1,0 +1,40 @@
+"""A callback with too many or too few parameters: what the caller passes to it."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.tests.checks.crashes import DRIVER, reported
+
+SOURCE = DRIVER.replace("\ndef outside", "\n    def changed(self):\n        pass\n\ndef outside")
+ERROR = "TypeError: Driver.changed() takes 1 positional argument but 2 were given"
+LINES = (
+    "self.add_on_set_parameters_callback(self.changed)",
+    "self.create_service(SetBool, '/a', self.changed)",
+    "self.create_subscription(Pose, '/a', self.changed, 10)",
+    "future.add_done_callback(self.changed)",
+)
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        (
+            "self.add_on_set_parameters_callback(self.changed)",
+            "The callback for parameters gets the list of new parameters.",
+        ),
+        (
+            "self.create_service(SetBool, '/a', self.changed)",
+            "A service passes the request and the response to its callback.",
+        ),
+        (
+            "self.create_subscription(Pose, '/a', self.changed, 10)",
+            "A subscription passes the message to its callback.",
+        ),
+        ("future.add_done_callback(self.changed)", "A future passes itself to its callback."),
+    ],
+)
+def test_each_caller_passes_something_else(line: str, words: str) -> None:
+    said = {other: reported(SOURCE.format(line=other), ERROR).cause for other in LINES}
+    assert said[line] == f"changed is called with an argument but has no parameter for it. {words}"
+    assert not any(words in said[other] for other in LINES if other != line)

@@ -1,0 +1,63 @@
+"""The reasons why a student's tests fail on the correct node, each with a message that is nearly the same."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.checks.causes.why_rejected import why_rejected
+from grader.submission.pytest_files import read_test_code
+from grader.testbench.result import NodeRun
+
+FILE = "test/test_guard.py"
+CODE = read_test_code({FILE: b"def test_it(bench):\n    assert bench\n"}, "my_package")
+
+
+def cause(message: str, *, over: bool = False) -> str:
+    run = NodeRun("", None if over else 1, over=over, test=f"{FILE}::test_it", outcome="failed", message=message)
+    return why_rejected(run, CODE).text
+
+
+@pytest.mark.parametrize(
+    ("message", "near", "words"),
+    [
+        (
+            "E   RuntimeError: Context.init() must only be called once",
+            "E   RuntimeError: Context.init() failed",
+            "rclpy.init was called twice without rclpy.shutdown in between. A fixture calls rclpy.init before",
+        ),
+        (
+            "E   rclpy.exceptions.NotInitializedException: no init",
+            "E   InitializedException: no",
+            "A node exists between rclpy.init and rclpy.shutdown. A fixture calls rclpy.init before the yield and",
+        ),
+        (
+            "E   _tkinter.TclError: no display name and no $DISPLAY environment variable",
+            ">   assert DISPLAY == 3\nE   AssertionError: assert 4 == 3",
+            "A test must also run without a display and without a network.",
+        ),
+        (
+            "E   ImportError: cannot import name 'SPEED' from 'my_robot_controller.wall_guard' (/ws/wall_guard.py)",
+            "E   ImportError: cannot import name 'PI' from 'math' (unknown location)",
+            "Only the class is promised, not SPEED. Write your numbers into the tests.",
+        ),
+        (
+            "E   fixture 'bench' not found",
+            "E   AssertionError: not found",
+            "No fixture is named bench. Does a function with this name have the decorator @pytest.fixture?",
+        ),
+        (
+            "E   AssertionError: The 'x' field must be of type 'float'",
+            "E   AssertionError: The 'x' field is not 1.0",
+            "The field x is a float. Write the number with a decimal point.",
+        ),
+    ],
+)
+def test_the_message_of_pytest_decides(message: str, near: str, words: str) -> None:
+    assert cause(message).startswith(words)
+    assert cause(near) == "Compare the test with the promise in wall_guard.py. Does the test give the node enough time?"
+
+
+@pytest.mark.parametrize("over", [True, False])
+def test_only_tests_that_did_not_end_need_a_deadline(*, over: bool) -> None:
+    words = "A loop that waits for a message needs a deadline. rclpy.spin never returns."
+    assert (not over) == (cause("", over=over) != words)

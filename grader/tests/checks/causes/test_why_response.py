@@ -1,0 +1,53 @@
+"""The sentences about callbacks of services, each with a callback that is nearly the same."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.tests.checks.crashes import reported, to_look_at
+
+SOURCE = """\
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        self.create_service(SetBool, "/pause", self.pause)
+
+    def pause(self, {parameters}):{look}
+        {body}
+
+rclpy.spin(Driver())  # crashed
+"""
+MUST = "The callback of a service must return its response."
+
+
+@pytest.mark.parametrize(
+    ("parameters", "body", "error", "words"),
+    [
+        (
+            "response, request",
+            "self.on = request.data",
+            "AttributeError: 'SetBool_Response' object has no attribute 'data'",
+            "pause gets the request first, and the response second.",
+        ),
+        (
+            "request, response",
+            "self.on = request.data",
+            "AttributeError: 'SetBool_Response' object has no attribute 'x'",
+            "",
+        ),
+        ("response, request", "self.on = request.data", "AttributeError: 'Driver' object has no attribute 'data'", ""),
+        ("request, response", "response.success = True", "TypeError", f"pause returns nothing. {MUST}"),
+        ("request, response", "return", "TypeError", f"pause returns nothing. {MUST}"),
+        ("request, response", "return True", "TypeError", f"pause returns True. {MUST}"),
+        ("request, response", "return response", "TypeError", ""),
+        ("request, response", "return True", 'TypeError: can only concatenate str (not "int") to str', ""),
+        ("request, response", "response.success = True", "TypeError: 'int' object is not callable", ""),
+    ],
+)
+def test_a_callback_of_a_service_is_blamed_only_for_its_own_error(
+    parameters: str, body: str, error: str, words: str
+) -> None:
+    source = SOURCE.format(parameters=parameters, body=body, look="  # look" if words else "")
+    found = reported(source, error)
+    own = " gets the request first" in found.cause or MUST in found.cause
+    assert (found.cause if own else "", found.line) == (words, to_look_at(source))
