@@ -133,7 +133,7 @@ def _rows(bench: Bench, students: int, notebook_students: int) -> Iterator[Row]:
     begun, graded, ended = bench.f(), class_cost(bench.new_folder(), students, None, "right"), bench.f()
     yield Row(f"a class of {students}, wall time each", 2 * graded.wall_s / (begun.wall_s + ended.wall_s), "F", 0.55)
     yield Row(f"a class of {students}, CPU time each", 2 * graded.cpu_s / (begun.cpu_s + ended.cpu_s), "F of CPU")
-    yield Row(f"a class of {students}, memory in all", graded.peak_mb, "MB", 400.0)
+    yield Row(f"a class of {students}, total memory", graded.peak_mb, "MB", 400.0)
     if notebook_students:
         synced_s = notebooks.sync_s(bench.new_folder(), notebook_students) / notebook_students
         in_f = 2 * synced_s / (ended.wall_s + bench.f().wall_s)

@@ -31,7 +31,7 @@ def write_book(out: Path, repository: str = "") -> int:
     """
     among = lessons()
     if out.exists() and not out.is_dir():
-        message = f"{out} is a file. Name a folder for the pages."
+        message = f"{out} is a file. Choose a folder for the pages."
         raise UsageError(message)
     for path, content in _files(among, repository):
         file = out / path

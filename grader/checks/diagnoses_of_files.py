@@ -30,7 +30,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "unreadable": "the grader cannot read the submission, or the data that the submission sends",
     },
     "setup.py and the build": {
-        "colcon-ignore": "a file in the package makes colcon ignore it",
+        "colcon-ignore": "a file in the package makes colcon ignore the package",
         "setup-py-missing": "the package has no setup.py",
         "setup-py-syntax": "setup.py has a syntax error",
         "setup-py-raises": "setup.py raises an exception",
@@ -94,7 +94,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
     },
     "Names": {
         "missing-self": "self is missing before an attribute or a method",
-        "name-misspelt": "a name is almost that of something that exists",
+        "name-misspelt": "a name is almost the same as one that exists",
         "name-undefined": "a name is not defined anywhere",
         "local-name": "a function reads a variable before it assigns to it, as with a global counter",
         "name-too-early": "a variable is used before the line that sets it",

@@ -73,10 +73,10 @@ def _write_all(members: Iterable[Member], folder: Path) -> None:
                 "try again."
             )
             raise DiskError(message) from error
-        message = f"is damaged, or contains a name that no disk accepts ({error.strerror})"
+        message = f"is damaged, or contains a file name that the disk does not accept ({error.strerror})"
         raise NotUnpackedError(message) from error
     except ValueError as error:  # a NUL in a name
-        message = f"is damaged, or contains a name that no disk accepts ({error})"
+        message = f"is damaged, or contains a file name that the disk does not accept ({error})"
         raise NotUnpackedError(message) from error
 
 

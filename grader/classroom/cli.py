@@ -157,7 +157,7 @@ def build(
         bool,
         typer.Option(
             "--trust-submissions",
-            help="Run submissions even if Gradescope allows no sandbox. A submission could then change its mark.",
+            help="Run submissions even if Gradescope allows no sandbox. A submission could then change its own mark.",
         ),
     ] = False,
 ) -> None:
@@ -165,7 +165,7 @@ def build(
     from grader.classroom.gradescope_archive import build_archive
 
     if file.is_dir() or file.suffix != ".zip":
-        message = f"{file} does not end in .zip. Name a .zip file."
+        message = f"{file} does not end in .zip. Choose a name that ends in .zip."
         raise UsageError(message)
     build_archive(exercise, file, checks, trusted=trusted)
     typer.echo(f"Upload {file} to Gradescope: open your assignment, then Configure Autograder.")

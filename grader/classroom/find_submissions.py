@@ -173,7 +173,7 @@ def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
         if Path(os.path.realpath(leave_out)).is_relative_to(absolute):
             message = (
                 f"The results must not be inside {shown(str(path))}: the student may have put forged results there. "
-                "Name another folder with --out."
+                "Choose another folder with --out."
             )
             raise UsageError(message)
         yield from _of_student(name, absolute, wanted)
@@ -224,7 +224,7 @@ def _why_not_graded(entry: Path) -> str:
     if entry.name in _OF_PROGRAMS:
         return ""
     if os.path.islink(entry):
-        return f"{shown(entry.name)} is a symbolic link. The grader follows no link to a submission."
+        return f"{shown(entry.name)} is a symbolic link. The grader does not follow links to submissions."
     is_archive = os.path.isfile(entry) and entry.name.lower().endswith(archives.EVERY_ENDING)
     if entry.name.startswith(".") and (os.path.isdir(entry) or is_archive):
         return f"{shown(entry.name)} is hidden, because its name begins with a dot. Rename it."

@@ -146,7 +146,7 @@ def _why_again(old: Result, key: Key) -> str:
     if "grader" in parts:
         return "graded by another version of the grader"
     if "exercise" in parts:
-        return "judged by other checks"
+        return "judged with different checks"
     if parts:
-        return "graded with other options"
-    return "not finished because of a fault of the machine" if old.report.with_status(Status.ERROR) else ""
+        return "graded with different options"
+    return "not finished because the machine failed" if old.report.with_status(Status.ERROR) else ""

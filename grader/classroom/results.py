@@ -133,7 +133,7 @@ def opened(folder: Path) -> Iterator[Results]:
     """
     lock = folder / _LOCK
     if folder.exists() and not (folder.is_dir() and (lock.exists() or not any(folder.iterdir()))):
-        message = f"{folder} contains files that are not results of `grader grade`. Name a new folder with --out."
+        message = f"{folder} contains files that are not results of `grader grade`. Choose a new folder with --out."
         raise UsageError(message)
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
@@ -143,7 +143,7 @@ def opened(folder: Path) -> Iterator[Results]:
     except OSError as error:
         message = (
             f"The results cannot be written to {folder}: {error.strerror}. "
-            "Free some space, or name another folder with --out."
+            "Free some space, or choose another folder with --out."
         )
         raise MachineError(message) from error
     with file:
@@ -151,7 +151,8 @@ def opened(folder: Path) -> Iterator[Results]:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
             message = (
-                f"Another `grader grade` is using {folder}. Let that command finish, or name another folder with --out."
+                f"Another `grader grade` is using {folder}. Let that command finish, "
+                "or choose another folder with --out."
             )
             raise UsageError(message) from error
         for leftover in folder.rglob(f"*{_PARTIAL}"):

@@ -149,7 +149,7 @@ def _zip(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
                 yield name, mode, None
             elif stat.S_IFMT(mode) in (0, stat.S_IFREG):
                 if info.flag_bits & 1:
-                    message = "is locked with a password"
+                    message = "is protected with a password"
                     raise NotUnpackedError(message)
                 with packed.open(info) as content:
                     yield name, mode, content
@@ -174,7 +174,7 @@ def _tar(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
 def _parts(name: str) -> tuple[str, ...]:
     path = PurePosixPath(name)
     if path.is_absolute() or ".." in path.parts:
-        message = f"contains a path that leads out of it: {_shown(name)}"
+        message = f"contains a path that points outside the archive: {_shown(name)}"
         raise NotUnpackedError(message)
     if len(path.parts) > MOST_DEPTH or len(os.fsencode(name)) > MOST_PATH_BYTES:
         message = f"contains a path that is too long: {_shown(name[:60])}..."

@@ -88,10 +88,10 @@ def sentence(number: int, where: str = "", room: str = ROOM) -> str:
         most = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
         return f"The grader may not open more than {most} files: raise this limit, for example with `ulimit -n 4096`."
     if number == errno.ENFILE:
-        return "This machine has too many files open: end other programs."
+        return "This machine has too many files open: close other programs."
     if number == errno.ENOMEM:
-        return "This machine has no memory left: end other programs, or grade fewer submissions at once (--jobs)."
+        return "This machine has no memory left: close other programs, or grade fewer submissions at once (--jobs)."
     if number == errno.EAGAIN:
-        return "This machine cannot start more processes for you: end other programs, or raise the limit (`ulimit -u`)."
+        return "This machine cannot start more processes for you: close other programs, or raise `ulimit -u`."
     what = os.strerror(number) if number else "it gave no reason"
     return f"The system did not allow something that the grader needs{at} ({what}): {_NOT_ALLOWED}."

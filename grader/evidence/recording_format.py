@@ -128,7 +128,7 @@ def check_free(folder: Path) -> None:
         UsageError: the path is a file, or a folder that is not empty.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        message = f"{folder} is not an empty folder. Name a new folder for the recording."
+        message = f"{folder} is not an empty folder. Choose a new folder for the recording."
         raise UsageError(message)
 
 

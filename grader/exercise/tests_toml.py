@@ -59,7 +59,7 @@ def _broken(table: Table, right: Behaviour) -> NodeUnderTest:
     id_ = table.string("id", ID, "lowercase letters, digits and single hyphens, as in wrong-topic")
     behaviour = _behaviour(table, right, ("id",))
     if behaviour == right:
-        table.problem("this node equals the right node: change at least one key.")
+        table.problem("this node is the same as the correct node: change at least one key.")
     return NodeUnderTest(id_, behaviour)
 
 

@@ -83,7 +83,7 @@ def sync(
         typer.echo(printable(f"{each.student} {each.step}{which}: 0 points, needs manual grading: {each.why}."))
     if done.unjudged:
         unjudged = printable(a_list(done.unjudged))
-        typer.echo(f"Not judged because of a fault of the machine: {unjudged}. Run this command again.")
+        typer.echo(f"Not judged because the machine failed: {unjudged}. Run this command again.")
         raise typer.Exit(3)
 
 

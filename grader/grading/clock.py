@@ -85,9 +85,9 @@ def first_clock(choice: ClockChoice, evidence: Evidence) -> Clock:
         entry = evidence.entry_point()
         clues = wall_clues(evidence.submission.files, entry.partition(":")[0].strip() if entry else None)
     except Exception as error:  # the checks that read the source report this error
-        return Clock("wall", f"the source could not be read ({in_words(error)}), so it may follow wall time")
+        return Clock("wall", f"the source could not be read ({in_words(error)}), so the node may use wall time")
     if clues:
-        return Clock("wall", f"{clues[0].name} at {clues[0].file}:{clues[0].line} may follow wall time")
+        return Clock("wall", f"{clues[0].name} at {clues[0].file}:{clues[0].line} may use wall time")
     return Clock("simulated", "the node waits only for ROS time and messages")
 
 

@@ -70,7 +70,7 @@ def run(
     workspace: Workspace = None,
     view: Annotated[bool, typer.Option("--view/--no-view", help="Show the turtle on a page on this machine.")] = True,
 ) -> None:
-    """Build your package and run its node beside a turtlesim that you can watch. Ctrl-C ends the node and turtlesim."""
+    """Build your package and run its node together with a turtlesim that you can watch. Ctrl-C ends both."""
     from grader.learner import run_node
 
     raise typer.Exit(run_node.run(run_node.program_of(step, program, workspace), view=view))
@@ -105,7 +105,7 @@ def solution(
     ],
     workspace: Workspace = None,
 ) -> None:
-    """Show the solution of a step beside your files, after the step has passed."""
+    """Show the solution of a step next to your files, after the step has passed."""
     from rich.console import Console
 
     from grader.learner.compare import print_solution

@@ -71,7 +71,7 @@ def _exercise(step: str | None, folder: Path | None) -> Exercise:
         return find_exercise(step)
     at = steps.current(folder)
     if at is None:
-        message = "No step was started. Name a step, as in `grader hint 03`, or start a step: `grader start 01`."
+        message = "No step has been started. Name a step, as in `grader hint 03`, or start a step: `grader start 01`."
         raise UsageError(message)
     return at[0]
 

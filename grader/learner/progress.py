@@ -128,7 +128,7 @@ def update(workspace: Path, change: Callable[[Progress], Progress]) -> Progress:
             fresh.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
             fresh.replace(file)
     except OSError as error:
-        more = refusal(error) if of_the_machine(error) else "Name another folder with XDG_STATE_HOME."
+        more = refusal(error) if of_the_machine(error) else "Choose another folder with XDG_STATE_HOME."
         message = f"Your progress could not be written to {file} ({error.strerror}). {more}"
         raise MachineError(message) from error
     return changed

@@ -47,7 +47,7 @@ def program_of(step: str | None, executable: str | None, workspace: Path | None)
     exercise, place = meant(Path(step) if step else None, None, workspace)
     names = executables(exercise)
     if not names:
-        message = f"{exercise.id} has no node to run. `grader sim --view` starts the turtle alone."
+        message = f"{exercise.id} has no node to run. `grader sim --view` starts turtlesim without a node."
         raise UsageError(message)
     name = executable or names[0]
     if name not in names:

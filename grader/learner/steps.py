@@ -123,7 +123,7 @@ def note(exercise: Exercise, submission: Path, report: Report, folder: Path | No
         [
             *lines,
             "The next step: grader start next" if waiting else _open_steps(known),
-            f'Our solution beside yours, and the answers to "To think about": grader solution {exercise.id[:2]}',
+            f'Our solution next to yours, and the answers to "To think about": grader solution {exercise.id[:2]}',
         ]
     )
 

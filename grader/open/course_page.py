@@ -52,7 +52,7 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
             closing(Events(None)) as events,
             _page(place, workspace, opens=opens) as connection,
         ):
-            print(f"Learn here: {place.address.url}", flush=True)
+            print(f"Open the course at {place.address.url}", flush=True)
             for line in elsewhere(place.address.port, os.environ):
                 print(line, flush=True)
             print("Press Ctrl-C to stop serving the page.", flush=True)

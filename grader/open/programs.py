@@ -33,7 +33,7 @@ NO_CELL = "There is no sandbox here, so the program runs under your account, as 
 _LOOK_S = 0.05
 _NO_DAEMON = {"GRADER_ROS2_DAEMON": "0"}
 """A ros2 daemon would continue to run."""
-_ADDRESS = re.compile(r"See it move: http://127\.0\.0\.1:(\d+)/#(\S+)")
+_ADDRESS = re.compile(r"See the turtle move: http://127\.0\.0\.1:(\d+)/#(\S+)")
 _SCREENS = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
 
 

@@ -125,7 +125,7 @@ def _draw_narrow(topics: Sequence[Topic], types: dict[str, list[str]], nodes: li
 
 def _picture(parts: Sequence[str], topics: Sequence[Topic], width: float, height: float, name: str) -> str:
     about = " ".join(
-        f"On {shorten(topic.name)} publishers: {_who(topic.publishers)}; subscribers: {_who(topic.subscribers)}."
+        f"Publishers on {shorten(topic.name)}: {_who(topic.publishers)}; subscribers: {_who(topic.subscribers)}."
         for topic in topics
     )
     return picture(

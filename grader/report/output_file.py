@@ -20,7 +20,7 @@ def check_writable(file: Path | None) -> None:
         message = f"There is no folder {file.absolute().parent} to write {file.name} to."
         raise UsageError(message)
     if file is not None and file.is_dir():
-        message = f"{file} is a folder. Name a file."
+        message = f"{file} is a folder. Choose a file name."
         raise UsageError(message)
 
 

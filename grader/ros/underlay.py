@@ -139,7 +139,7 @@ def _require_tools(search: str) -> None:
         manager = package_managers.find_manager(search)
         message = (
             f"The turtlesim interfaces must be built once, but this machine lacks {_listed(missing)}. "
-            f"Install it: {package_managers.command(manager, missing, root=os.geteuid() == 0)}"
+            f"Install what is missing: {package_managers.command(manager, missing, root=os.geteuid() == 0)}"
         )
         raise MachineError(message)
 

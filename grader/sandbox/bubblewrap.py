@@ -161,7 +161,7 @@ def require(*, trusted: bool = False) -> bool:
     if why is None or trusted:
         return why is None
     message = (
-        f"No sandbox is available, so the grader does not run code of other people: {why}. On "
+        f"No sandbox is available, so the grader does not run other people's code: {why}. On "
         "a machine without important data, --trust-submissions runs it with limits on time, memory and output only."
     )
     raise MachineError(message)

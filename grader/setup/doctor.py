@@ -234,7 +234,7 @@ def look_at_limits() -> Line:
             return Line("limits", "the kernel counts the memory and the processes of a sandbox")
     return Line(
         "limits",
-        "the grader counts a sandbox's memory ten times per second, since the system allows it no control groups",
+        "the grader counts a sandbox's memory ten times per second, since it is not allowed to use control groups",
     )
 
 

@@ -43,7 +43,7 @@ def provide(needs: Sequence[package_managers.Need], env: Mapping[str, str], say:
         say("The system lacks some programs. sudo asks for your password to install them (unless INSTALL_SYSTEM=0):")
         print(f"    sudo sh -c '{script}'", flush=True)
     else:
-        say(f"Installing what the system lacks: {command}")
+        say(f"Installing the missing system packages: {command}")
     return _run([*rights, "sh", "-c", script], manager.program, env)
 
 

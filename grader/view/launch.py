@@ -114,7 +114,7 @@ def _page(feed: socket.socket, port: int | None) -> Iterator[subprocess.Popen[by
             start_new_session=True,
         ) as process:
             listening.close()
-            print(f"See it move: {place.address.url}", flush=True)
+            print(f"See the turtle move: {place.address.url}", flush=True)
             yield process
 
 

@@ -128,8 +128,8 @@ def _missing(evidence: Evidence, points: tuple[EntryPoint, ...]) -> Cause:
         file = module_file((point.target or "").partition(":")[0], files)
         if file is not None and file.rpartition("/")[2] == f"{executable}.py":
             text = (
-                f"The entry point of {file} has another name, {shorten(point.name)}. The name of an entry point is the "
-                "part before the = sign."
+                f"The entry point of {file} has a different name, {shorten(point.name)}. The name of an entry point is "
+                "the part before the = sign."
             )
             where = Where("setup.py", point.line)
             return Cause("entry-point-name", text, where).fixed_by(at(where, point.name, executable))

@@ -67,13 +67,13 @@ class Wait:
         if self.name in SERVERS:
             ready = self.name.replace("wait_for_", "") + "_is_ready"
             text = (
-                f"{self._subject} waits inside a callback until the server exists, perhaps for ever. Meanwhile, the "
+                f"{self._subject} waits inside a callback until the server exists, perhaps forever. Meanwhile, the "
                 f"node calls no other callback. {ready} returns at once."
             )
             return Cause("waits-in-callback", text, self.where)
         text = (
             "While a callback sleeps, the node calls no other callback. "
-            "Count the calls of the timer instead, or use a second timer."
+            "Count the timer calls instead, or use a second timer."
         )
         return Cause("sleep-in-callback", text, self.where)
 

@@ -177,7 +177,7 @@ def _after_shutdown(scene: CrashScene) -> Cause | None:
     around = scene.function_around(ended[-1]) if ended else None
     if around is None or (around is not scene.function and around.name != "__init__"):
         return None
-    text = "This call of shutdown ends ROS 2 in the program. No line after this call can spin or publish."
+    text = "This call to shutdown ends ROS 2 in the program. No line after this call can spin or publish."
     return Cause("crash", text, scene.at(ended[-1]))
 
 

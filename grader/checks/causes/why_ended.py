@@ -34,7 +34,7 @@ def why_ended(evidence: Evidence) -> Cause:
     stop = _exits(evidence)
     ended: Diagnosis = "ends-at-once" if ended_at_start(evidence.recording) else "ended-early"
     if stop is not None:
-        return Cause(ended, "This call of exit may end the program.", stop)
+        return Cause(ended, "This call to exit may end the program.", stop)
     return Cause(ended, "", evidence.place("spin", "init"))
 
 

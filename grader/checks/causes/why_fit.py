@@ -112,7 +112,8 @@ def _why_centre(fit: Fit) -> tuple[Diagnosis, str] | None:
     angle = fit.arc.angles()
     xs, ys = x + fit.arc.radius_m * np.cos(angle), y + fit.arc.radius_m * np.sin(angle)
     if fit.is_like((2.0 * x, 2.0 * y), max(fit.within)):
-        return "centre-doubled", "The centre is twice as far as it should be: the equation contains 2·x·a and 2·y·b."
+        text = "The centre is twice as far away as it should be: the equation contains 2·x·a and 2·y·b."
+        return "centre-doubled", text
     if fit.is_like((-x, -y)) or fit.is_like((-2.0 * x, -2.0 * y), max(fit.within)):
         return "centre-sign", "The centre has the wrong sign. Check on which side of the equation each term is."
     if fit.is_like((float(xs.mean()), float(ys.mean())), ROUGH_M):

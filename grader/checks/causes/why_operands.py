@@ -28,6 +28,6 @@ def why_operands(scene: CrashScene) -> Cause | None:
             "string-and-number", "A string and a number cannot be added. Use an f-string to put a number into a string."
         )
     if "list" in types and types & NUMBERS:
-        text = "A list is not an array: Python cannot compute with all values of a list. `np.array` makes an array."
+        text = "A list is not an array: Python cannot compute with a whole list. `np.array` turns a list into an array."
         return Cause("list-for-array", text)
     return Cause("crash", f"Python cannot do this with a value of type {left} and a value of type {right}.")

@@ -72,7 +72,7 @@ def _why_mean(evidence: Evidence, noun: str, call: str, mean: float, rate_hz: fl
     if timers and timers[0][1] is None and sends_each_time(evidence, call):
         return Cause("timer-period", PERIOD, timers[0][0].where)
     where = timers[0][0].where if timers else evidence.place(call)
-    return Cause("wrong-rate", f"The time between two calls of {call} sets the rate.", where)
+    return Cause("wrong-rate", f"The time between two calls to {call} sets the rate.", where)
 
 
 def _period_cause(cause: Cause, period: float, rate_hz: float) -> Cause:

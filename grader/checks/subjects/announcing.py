@@ -68,7 +68,7 @@ def announces(evidence: Evidence, params: Announces) -> Finding:
         crash = crash_of(evidence)
         if crash is not None:
             return crash_finding(evidence, crash, end_observed(evidence), expected)
-        cause = Cause("timer-period", "Publish in each call of the timer.", evidence.place("create_timer"))
+        cause = Cause("timer-period", "Publish each time the timer fires.", evidence.place("create_timer"))
         finding = failed(observed, expected, waits_in_callback(evidence) or cause, near_edge=most.near(longest_s))
         return unless_starved(finding, evidence.recording, off=longest_s - 1.4 * params.period_s, per_s=1.0)
     often = OFTEN * (times_s[-1] - times_s[0]) / params.period_s
@@ -100,14 +100,14 @@ def _wrong_names(evidence: Evidence, message: Announcement, expected: str) -> Fi
         text = 'The text consists of the names, separated by single spaces: " ".join(names).'
         return failed(f'{at} is "{shorten(message.text)}".', expected, Cause("target-format", text, where))
     if strange:
-        text = "Remove a name when its turtle is caught, and add a name when the response of /spawn arrives."
+        text = "Remove a name when its turtle is caught, and add a name when the response from /spawn arrives."
         observed = f"{at} names {a_list([shorten(name) for name in strange])}, which does not exist."
         return failed(observed, expected, Cause("still-announced", text, where))
     missing = sorted(throughout - called - set(message.names))
     if missing:
         observed = f"{at} does not name {a_list([shorten(name) for name in missing])}."
         stuck = waits_in_callback(evidence)
-        text = "Add the name of a turtle to the list in the callback that receives the response of /spawn."
+        text = "Add the name of a turtle to the list in the callback that receives the response from /spawn."
         return failed(observed, expected, stuck or Cause("target-unannounced", text, where))
     return None
 

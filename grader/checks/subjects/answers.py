@@ -244,7 +244,7 @@ def _compare(evidence: Evidence, name: str, given: Answer, truth: Collection[str
     observed = f"{name} is {_shown(given)}: {difference}."
     diagnosis: Diagnosis = "wrong-list" if surplus and missing else "list-too-long" if surplus else "list-incomplete"
     return failed(
-        observed, ("The list contains all right items, and no other items."), Cause(diagnosis, cause.strip(), where)
+        observed, ("The list contains all correct items, and no other items."), Cause(diagnosis, cause.strip(), where)
     )
 
 

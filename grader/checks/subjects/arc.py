@@ -43,16 +43,16 @@ class Arc:
 
     radius_m: float = number(above=0, at_most=5.5, about="The radius of the arc.")
     radius_tolerance_m: float = number(0.06, above=0, about="The maximum error of the radius.")
-    residual_m: float = number(0.03, above=0, about="The maximum deviation of the piece from the fitted circle (RMS).")
+    residual_m: float = number(0.03, above=0, about="The maximum deviation of the arc from the fitted circle (RMS).")
     direction: str = choice("counter-clockwise", "clockwise", about="The direction of the turn.")
-    angle_deg: float = number(0.0, at_least=0, about="The angle of the arc; 0 allows every angle.")
+    angle_deg: float = number(0.0, at_least=0, about="The angle of the arc; 0 allows any angle.")
     angle_tolerance_deg: float = number(12.0, above=0, about="The maximum error of the angle.")
-    speed_m_s: float = number(0.0, at_least=0, about="The speed of the turtle; 0 allows every speed.")
+    speed_m_s: float = number(0.0, at_least=0, about="The speed of the turtle; 0 allows any speed.")
     speed_tolerance_m_s: float = number(0.05, above=0, about="The maximum error of the speed.")
     from_s: float = number(0.0, at_least=0, about="Only the movement after this time counts.")
     until_s: float = number(600.0, above=0, about="Only the movement before this time counts.")
     red: float = number(
-        -1.0, at_least=-1, at_most=255, about="The colour of the pen; without this key, every colour counts."
+        -1.0, at_least=-1, at_most=255, about="The colour of the pen; without this key, any colour counts."
     )
     green: float = number(-1.0, at_least=-1, at_most=255, about="The green component of the colour.")
     blue: float = number(-1.0, at_least=-1, at_most=255, about="The blue component of the colour.")
@@ -138,9 +138,9 @@ def _other_angle(evidence: Evidence, params: Arc, chosen: Steps, angle: float) -
     if not too_long and params.color is not None and _always_draws(evidence) and _goes_on(evidence, chosen):
         text = "The pen must have this colour before the turtle moves: wait for the response before you drive."
         cause = Cause("not-in-colour", text, evidence.place("publish"))
-        return "A part of this arc was drawn in another colour.", cause
+        return "A part of this arc was drawn in a different colour.", cause
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
-    text = "The angle is angular.z times the time: the number of calls of the timer times its period."
+    text = "The angle is angular.z times the time: the number of timer calls times the timer period."
     return f"This arc has an angle of {angle:.0f} degrees.", Cause("wrong-angle", text, where)
 
 

@@ -49,7 +49,7 @@ class NoGoalAfter:
 
 def cancels_goal(evidence: Evidence, params: CancelsGoal) -> Finding:
     """When the trial calls the service, the turtle's current goal is cancelled in time."""
-    expected = f"The goal is cancelled within {params.within_s:g} s after a call of {params.service}."
+    expected = f"The goal is cancelled within {params.within_s:g} s after a call to {params.service}."
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     if not any(call.response is not None for call in calls):
         return no_response(evidence, params.service, params.type, calls[0] if calls else None, expected)
@@ -58,7 +58,7 @@ def cancels_goal(evidence: Evidence, params: CancelsGoal) -> Finding:
     if found is None:
         if not goals:
             return no_goal(evidence, expected)
-        observed = f"The turtle followed no goal when {params.service} was called."
+        observed = f"The turtle was not following a goal when {params.service} was called."
         text = "Until the service is called, the node sends the next goal as soon as the previous goal has ended."
         return failed(observed, expected, Cause("goal-not-sent", text, evidence.place("send_goal_async")))
     call, goal = found
@@ -87,12 +87,12 @@ def _goes_on(evidence: Evidence, params: CancelsGoal, goal: Goal, took_s: float,
         )
     text = "cancel_goal_async of the goal handle requests the cancellation."
     cause = waits_in_callback(evidence) or Cause("goal-goes-on", text, where)
-    return failed(f"After the call of {params.service}, the turtle continued to its goal.", expected, cause)
+    return failed(f"After the call to {params.service}, the turtle continued to its goal.", expected, cause)
 
 
 def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
     """After the trial has called the service, no goal arrives."""
-    expected = f"After a call of {params.service}, the node sends no more goals."
+    expected = f"After a call to {params.service}, the node sends no more goals."
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     goals = goals_of(evidence)
     found = _stopped(goals, calls)
@@ -111,7 +111,7 @@ def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
 
 def says_whether_active(evidence: Evidence, params: SaysWhetherActive) -> Finding:
     """In each response, `success` is true if the turtle followed a goal when the call arrived, and false if not."""
-    expected = f"In the response of {params.service}, success is true if a goal was active, and false if not."
+    expected = f"In the response from {params.service}, success is true if a goal was active, and false if not."
     goals = goals_of(evidence)
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     if not calls:

@@ -72,7 +72,7 @@ def fits_circle(evidence: Evidence, params: FitCall) -> Finding:
     if not all(math.isfinite(value) for value in values):
         if fit.centre_right:
             return failed(observed, expected, Cause(*RADIUS_OF_C).at(where))
-        cause = "In numpy, the root of a negative number and a division by zero give NaN, with only a warning."
+        cause = "In numpy, the square root of a negative number and a division by zero give NaN, with only a warning."
         return failed(observed, expected, Cause("not-a-number", cause, where))
     return passed(observed) if fit.right else failed(observed, expected, why_fit(fit).at(where))
 

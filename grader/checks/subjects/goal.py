@@ -102,7 +102,7 @@ GOAL = Kind(
     "The turtle drives to its goal",
     Goal,
     goal,
-    about="Velocity commands drive the turtle to the goal, and it stands still there at the end.",
+    about="Velocity commands drive the turtle to the goal, where it stands still at the end.",
     drives=True,
     requested=requested_goal,
 )

@@ -247,5 +247,5 @@ NAME = Kind(
     "The package name is the same everywhere",
     NoParams,
     name,
-    about="package.xml, setup.py and the folder of the modules have the name that `package` in `[exercise]` gives.",
+    about="package.xml, setup.py and the folder of the modules use the name from `package` in `[exercise]`.",
 )

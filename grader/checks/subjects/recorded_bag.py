@@ -56,7 +56,9 @@ def readable(evidence: Evidence, params: InBag) -> Finding:
         )
         return failed(f"{params.bag} has no metadata.yaml.", expected, Cause("bag-unfinished", cause, where))
     if bag.problem == "storage":
-        cause = "The usual storage of ROS 2 Jazzy is MCAP. Record without the options -s and --compression-mode."
+        cause = (
+            "The default storage format of ROS 2 Jazzy is MCAP. Record without the options -s and --compression-mode."
+        )
         return failed(
             f"{params.bag} contains {shorten(bag.detail)} but no .mcap file.",
             expected,

@@ -59,7 +59,7 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
     observed = f"The node is named {shorten(guess)}."
     if len(names) > 1:
         observed = f"The nodes are named {a_list([shorten(each) for each in names])}."
-    expected = f"It is named {evidence.trial.node}."
+    expected = f"The node is named {evidence.trial.node}."
     where = evidence.place("create_node", "__init__")
     if guess.endswith(wanted):
         return failed(observed, expected, Cause("node-namespace", "The node is in a namespace.", where))
@@ -81,5 +81,5 @@ NAME = Kind(
     "The node has the right name",
     NoParams,
     name,
-    about="The node has the name that `node` in `[[trial]]` gives.",
+    about="The name of the node is the value of `node` in `[[trial]]`.",
 )

@@ -62,7 +62,7 @@ def calls_service(evidence: Evidence, params: CallsService) -> Finding:
         too_early = bool(first is not None and after) and _before_the_answer(made[right[-1]], made[first or 0])
         if in_order and not too_early:
             return passed(f"The node called {params.service} with {request}.")
-        text = f"Send this request in the callback that receives the response of {after}."
+        text = f"Send this request in the callback that receives the response from {after}."
         observed = f"The node called {params.service} with {request}, but not after {after}."
         if in_order:
             observed = f"The node called {params.service} with {request} before {after} had responded."
@@ -93,7 +93,7 @@ def _other_request(evidence: Evidence, params: CallsService, calls: list[Call], 
     nearest_call = min(calls, key=lambda call: _difference(call.request, params.fields))
     wrong = wrong_fields(nearest_call.request, params.fields)
     seen = ", ".join(f"{name}={_value(nearest_call.request.get(name))}" for name in wrong)
-    observed = f"The most similar call of {params.service} has {seen}."
+    observed = f"The most similar call to {params.service} has {seen}."
     where = next((place for name in wrong if (place := evidence.code.assigned(name)) is not None), None)
     zero = all(not nearest_call.request.get(name) for name, _ in params.fields)
     text = "All these fields have their default values: set them before the call." if zero else ""
@@ -107,7 +107,7 @@ class AnswersCall:
     service: str = string("the full name of a service", start="/", about="The name of the service.")
     type: str = string("a service type, as in std_srvs/srv/SetBool", about="The type of the service.")
     nth: float = number(
-        1, at_least=1, about="The number of the call that is judged, among all calls of this service, counted from 1."
+        1, at_least=1, about="The number of the call that is judged, among all calls to this service, counted from 1."
     )
     within_s: float = number(1.0, above=0, about="The maximum time until the response.")
     fields: tuple[tuple[str, Any], ...] = table(about="The relevant fields of the response, with their values.")
@@ -116,7 +116,7 @@ class AnswersCall:
 def answers_call(evidence: Evidence, params: AnswersCall) -> Finding:
     """The node answered the trial's call in time, with these fields."""
     wanted = ", ".join(f"{name}={_value(value)}" for name, value in params.fields)
-    expected = f"The node answers a call of {params.service} within {params.within_s:g} s, with {wanted}."
+    expected = f"The node answers a call to {params.service} within {params.within_s:g} s, with {wanted}."
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     call = calls[int(params.nth) - 1] if len(calls) >= params.nth else None
     if call is None or call.missing or call.response is None or call.answered_s is None:
@@ -129,10 +129,10 @@ def answers_call(evidence: Evidence, params: AnswersCall) -> Finding:
     wrong = wrong_fields(call.response, params.fields)
     if wrong:
         seen = ", ".join(f"{name}={_value(call.response.get(name))}" for name in wrong)
-        text = "The callback of a service fills in the fields of its second argument and returns it."
+        text = "The callback of a service fills in the fields of its second argument and returns this argument."
         cause = Cause("wrong-response", text, evidence.place("create_service"))
         return failed(f"The response has {seen}.", expected, cause)
-    return passed(f"The node answered the call of {params.service}.", near_edge=took.near(took_s))
+    return passed(f"The node answered the call to {params.service}.", near_edge=took.near(took_s))
 
 
 def no_response(evidence: Evidence, service: str, type_: str, call: Call | None, expected: str) -> Finding:
@@ -151,7 +151,7 @@ def no_response(evidence: Evidence, service: str, type_: str, call: Call | None,
         cause = waits_in_callback(evidence) or Cause(
             "no-response", "Something in the node blocks its callbacks.", where
         )
-        return failed(f"The node received the call of {service} and never answered.", expected, cause)
+        return failed(f"The node received the call to {service} and never answered.", expected, cause)
     return _missing(evidence, service, type_, expected)
 
 

@@ -167,7 +167,7 @@ def removes(evidence: Evidence, params: Removes) -> Finding:
         if wrong:
             observed = f"{shorten(wrong[0].turtle)} was removed, although nobody caught it."
             return failed(observed, expected, why_killed(evidence, wrong[0], params.service))
-    return passed(f"A call of {params.service} removes the turtle.")
+    return passed(f"A call to {params.service} removes the turtle.")
 
 
 def _not_killed(

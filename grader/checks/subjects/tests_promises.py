@@ -109,7 +109,7 @@ def _last(node: ast.AST) -> str:
 PROMISES = Kind(
     "tests_promises",
     "source",
-    "The tests use only the promises of the node",
+    "The tests use only what the node promises",
     NoParams,
     promises,
     about="The test files do not use the methods and attributes that the class under test defines.",

@@ -50,7 +50,7 @@ def pass_(evidence: Evidence, _: NoParams) -> Finding:
         where = code.tests[0].where if code.tests else None
         skipped = any(run.skipped for run in runs)
         why = "Every test is skipped, and a skipped test tests nothing." if skipped else LEFT_OUT
-        return failed("No test ran to its end.", expected, Cause("all-skipped", why, where))
+        return failed("No test ran to completion.", expected, Cause("all-skipped", why, where))
     if not rejected:
         hung = next((run for run in evidence.bench.runs if run.over), None)
         return _hung(expected, code, hung)
@@ -146,7 +146,7 @@ FOUND = Kind("tests_found", "trial", "pytest finds tests", NoParams, found, abou
 PASS = Kind(
     "tests_pass",
     "trial",
-    "The tests pass on the right node",
+    "The tests pass on the correct node",
     NoParams,
     pass_,
     about="All tests pass in every run on the correct node.",

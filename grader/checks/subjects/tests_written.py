@@ -46,7 +46,7 @@ def declared(evidence: Evidence, _: NoParams) -> Finding:
     setup, manifest = evidence.setup_py, evidence.manifest
     if setup is not None and not any(_name(each) == PYTEST for each in setup.tested_with):
         old = setup.tests_require_line
-        cause = "Without this entry, colcon test runs unittest, which finds no test function of pytest."
+        cause = "Without this entry, colcon test runs unittest, which does not find pytest's test functions."
         if old is not None:
             cause = "setuptools ignores tests_require since version 72, and colcon test then runs unittest."
         observed = f'setup.py does not list "{PYTEST}" in extras_require.'
@@ -92,7 +92,7 @@ def outside(evidence: Evidence, _: NoParams) -> Finding:
 
 
 SPIN = "Import the class, create the node in the test, and spin it. Then the test controls the time."
-LOOKS = "The same node can be written in many ways. A test of the source rejects some of them, although all are right."
+LOOKS = "The same node can be written in many ways. A test of the source rejects some, although all are correct."
 
 
 def _imported(node: ast.AST, modules: frozenset[str]) -> str:

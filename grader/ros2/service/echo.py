@@ -23,7 +23,8 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     completes(parser.add_argument("service_name", help="name of the service, as in /spawn"), services)
     completes(
-        parser.add_argument("service_type", nargs="?", help="its type, required if no server is running"), service_types
+        parser.add_argument("service_type", nargs="?", help="type of the service, required if no server is running"),
+        service_types,
     )
     parser.add_argument(
         "--csv", action="store_true", help="print each event on one line, with commas between the values"

@@ -24,7 +24,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
     completes(parser.add_argument("topic_name", help="name of the topic, as in /turtle1/pose"), topics)
-    kind = parser.add_argument("message_type", nargs="?", help="its type, required if no publisher is running")
+    kind = parser.add_argument("message_type", nargs="?", help="type of the topic, required if no publisher is running")
     completes(kind, topic_types)
     qos.add_qos(parser, "sensor_data")
     parser.add_argument(

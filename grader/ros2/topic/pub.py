@@ -36,7 +36,7 @@ def nonnegative_int(text: str) -> int:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     completes(parser.add_argument("topic_name", help="name of the topic, as in /turtle1/cmd_vel"), topics)
-    completes(parser.add_argument("message_type", help="its type, as in geometry_msgs/msg/Twist"), topic_types)
+    completes(parser.add_argument("message_type", help="type of the topic, as in geometry_msgs/msg/Twist"), topic_types)
     source = parser.add_mutually_exclusive_group()
     given = source.add_argument(
         "values", nargs="?", default="{}", help='the values, as in "{linear: {x: 2.0}}"; by default, all are zero'
@@ -70,7 +70,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         type=positive_float,
         default=0.1,
-        help="keep the node for N seconds after the last message (default: 0.1)",
+        help="keep the node running for N seconds after the last message (default: 0.1)",
     )
     parser.add_argument("-n", "--node-name", help="name of the node that publishes")
     qos.add_qos(parser, "default")

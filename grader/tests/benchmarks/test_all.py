@@ -46,6 +46,6 @@ def test_each_figure_stands_beside_its_aim() -> None:
         "grader hint 03": ["3.00", "0.10", "s"],
         "a class of 4, wall time each": ["0.50", "0.55", "F"],
         "a class of 4, CPU time each": ["0.90", "F", "of", "CPU"],
-        "a class of 4, memory in all": ["300.00", "400.00", "MB"],
+        "a class of 4, total memory": ["300.00", "400.00", "MB"],
         "gradebook sync of 3, wall time each": ["1.00", "0.55", "F"],
     }

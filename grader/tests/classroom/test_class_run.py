@@ -96,9 +96,7 @@ def test_a_submission_that_kills_two_workers_is_an_error_and_the_others_are_grad
     with opened(tmp_path / "grades") as results:
         kept, todo = sort_out(order, results)
     assert sorted(result.student for result in kept) == ["anna", "ben", "clara"]
-    assert [(one.found.student, one.why) for one in todo] == [
-        ("deadly", "not finished because of a fault of the machine")
-    ]
+    assert [(one.found.student, one.why) for one in todo] == [("deadly", "not finished because the machine failed")]
 
 
 def test_a_worker_ends_with_its_owner() -> None:

@@ -107,7 +107,7 @@ def nothing(folder: Path) -> None:
 
 
 ODD: dict[str, tuple[Callable[[Path], None], str]] = {
-    "a long name": (a_long_name, "a name that no disk accepts"),
+    "a long name": (a_long_name, "a file name that the disk does not accept"),
     "damaged bzip2": (damaged(zipfile.ZIP_BZIP2), "damaged"),
     "damaged lzma": (damaged(zipfile.ZIP_LZMA), "damaged"),
     "damaged deflate": (damaged(zipfile.ZIP_DEFLATED), "damaged"),

@@ -31,7 +31,7 @@ def children_of(pid: int) -> list[int]:
 
 def test_one_command_shows_the_turtle_and_ctrl_c_ends_everything(learner: Learner) -> None:
     child = learner.types("run")
-    child.expect("See it move: http://127")
+    child.expect("See the turtle move: http://127")
     child.expect("draw_circle is running")
     child.expect(r"\[draw_circle\]: ")
     started = children_of(child.pid)

@@ -162,7 +162,7 @@ def drive(learner: Course, browser: Browser) -> None:
     page.get_by_role("button", name="Stop turtlesim").click()
     page.get_by_role("button", name="Start turtlesim").wait_for()
     page.get_by_text("No turtlesim was started here.").wait_for()
-    assert "See it move" not in page.content()
+    assert "See the turtle move" not in page.content()
     # The text may be shown for less time than the browser takes to look for it, so the page collects the texts.
     page.evaluate(
         """() => {

@@ -57,7 +57,7 @@ def test_root_installs_at_once_and_says_so_in_one_line(machine: Machine, monkeyp
     assert machine.provide(CMAKE, COMPILER) == ""
     assert machine.stand_ins.calls() == ["apt-get update -q", f"{APT} cmake g++"]
     assert machine.said == [
-        "Installing what the system lacks: apt-get update && apt-get install -y cmake g++",
+        "Installing the missing system packages: apt-get update && apt-get install -y cmake g++",
     ]
 
 

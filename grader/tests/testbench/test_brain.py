@@ -90,7 +90,7 @@ def test_a_run_cannot_create_nodes_without_end() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "problem"),
     [
-        ("period_s = 0.2", "period_s = 0.1", "this node equals the right node"),
+        ("period_s = 0.2", "period_s = 0.1", "this node is the same as the correct node"),
         ("period_s = 0.2", "period = 0.2", "unknown key"),
         ('turn_field = "angular.x"', 'turn_field = "z"', '"turn_field" must be one of'),
         ('walls = ["left", "right"]', 'walls = ["west"]', '"walls" must contain'),

@@ -51,7 +51,7 @@ def test_grader_sim_shows_its_turtle_and_takes_parameters(alone: World) -> None:
     assert list(reported["turtles"]) == ["turtle1"]
     assert reported["background"] == [7, 86, 255]
     assert simulator.stop() == 0
-    for line in ("turtlesim in ROS domain ", "See it move: http://127.0.0.1:"):
+    for line in ("turtlesim in ROS domain ", "See the turtle move: http://127.0.0.1:"):
         assert any(each.startswith(line) for each in simulator.lines), line
     assert not any("Traceback" in line for line in simulator.lines)
 

@@ -111,7 +111,7 @@ def cause(line: str, error: str) -> str:
             "TypeError: descriptor '__init__' requires a 'super' object but received a 'str'",
         ),
         (
-            "This call of shutdown ends ROS 2",
+            "This call to shutdown ends ROS 2",
             "rclpy.shutdown()\n        rclpy.spin(self)",
             "rclpy.spin(self)  # crashed\n        rclpy.shutdown()",
             "TypeError: 'NoneType' object does not support the context manager protocol",
