@@ -118,7 +118,7 @@ def _stale_step(solution: Path, exercise: Path) -> list[str]:
         elif present.files[path] != wanted[path].data:
             lines.append(f"{exercise}/{path} does not match its solution.")
         elif (path in present.executable) != wanted[path].executable:
-            lines.append(f"{exercise}/{path} has a different executable bit than its solution.")
+            lines.append(f"{exercise}/{path} and its solution differ in the executable bit.")
     return lines
 
 

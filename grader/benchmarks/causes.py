@@ -237,11 +237,11 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1, help="seed for the choice of packages and mistakes")
     parser.add_argument("--only", nargs="*", default=[], help="names of operators (default: all)")
     parser.add_argument("--keep", type=Path, help="keep the recordings in this folder")
-    parser.add_argument("--all", action="store_true", help="list all packages, including those without a missed cause")
+    parser.add_argument("--all", action="store_true", help="list all packages, not only those with a missed cause")
     parser.add_argument(
         "--again", type=Path, help="judge the recordings in this folder again, without running packages"
     )
-    parser.add_argument("--explained", type=int, default=8, help="number of packages for the cost of testing causes")
+    parser.add_argument("--explained", type=int, default=8, help="packages used to measure the cost of testing causes")
     parser.add_argument("--workers", type=int, default=2, help="number of packages judged in parallel")
     wanted = parser.parse_args()
     operators = [operator for operator in OPERATORS if not wanted.only or operator.name in wanted.only]

@@ -13,7 +13,7 @@ OF_CATCHING: dict[str, dict[Diagnosis, str]] = {
         "target-name": "a spawned turtle has the wrong name",
         "target-place": "a turtle is spawned outside the field, or all turtles are spawned in the same place",
         "target-unannounced": "an existing turtle is not announced",
-        "target-format": "the names in an announcement are not separated by spaces only",
+        "target-format": "the names in an announcement are separated by something other than spaces",
         "still-announced": "a turtle that was caught, or never existed, is announced",
         "not-killed": "a turtle that was caught is not removed",
         "killed-uncaught": "a turtle is removed although nobody caught it",

@@ -20,7 +20,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "ros-1-package-xml": "package.xml requires catkin, the build tool of ROS 1",
         "build-type": "the build type in package.xml is not ament_python",
         "missing-depend": "package.xml does not declare a package that the node uses",
-        "depend-misspelt": "package.xml declares a package whose name is almost the name of a missing package",
+        "depend-misspelt": "the name of a required package is misspelt in package.xml",
         "depend-kind": "package.xml declares the package for building or testing only, not for running",
         "depend-commented-out": "the dependency is inside an XML comment",
         "depend-in-setup-py": "the dependency is in install_requires of setup.py instead of package.xml",
@@ -110,7 +110,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "future-for-answer": "a future is used as if it were its result",
         "name-of-node": "an attribute has a name that every node already uses",
         "node-publishes": "publish is called on the node instead of the publisher",
-        "none-before-message": "an attribute is used while it is still None, before the first message arrived",
+        "none-before-message": "an attribute is used while it is still None, before the first message has arrived",
     },
     "Calls": {
         "init-misspelt": "the method that creates the object is not called __init__",

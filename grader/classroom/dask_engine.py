@@ -174,4 +174,4 @@ class DaskEngine:
         gone = [self._running.pop(key) for key in lost]
         for each in gone:
             each.future.cancel(force=True)
-        return [Died(each.task, f"the worker {each.where} went away") for each in gone]
+        return [Died(each.task, f"the worker {each.where} was lost") for each in gone]

@@ -50,7 +50,7 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
         name = rows[line][needed[0]]
         if any(values[len(columns) :]):
             fault = (
-                f"{len(values)} values for {len(columns)} columns. Put a value into quotes if it contains a separator."
+                f"{len(values)} values for {len(columns)} columns. Put a value in quotes if it contains a separator."
             )
         elif empty:
             fault = f"the {empty[0]} is missing."

@@ -86,8 +86,8 @@ def perform(
     """
     if task.grader != grader_key():
         message = (
-            f"A worker has another version of the grader ({grader_key()} instead of {task.grader}). Update the worker "
-            "and start it again."
+            f"A worker has a different version of the grader ({grader_key()} instead of {task.grader}). "
+            "Update the worker and start it again."
         )
         raise MachineError(message)
     in_cell = _confined(trusted=task.trusted)

@@ -24,7 +24,7 @@ def new_folder(folder: Path, mode: int = 0o777) -> Iterator[None]:
     """
     was_there = folder.exists()
     if was_there and (not folder.is_dir() or any(folder.iterdir())):
-        message = f"{folder} is not an empty folder. Name a new folder."
+        message = f"{folder} is not an empty folder. Choose a new folder."
         raise UsageError(message)
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)

@@ -42,7 +42,7 @@ def render(dot: str, kind: Format) -> bytes:
         last = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
         message = (
             f"The graph could not be drawn ({last}). pygraphviz is needed: run `make demo` in the course's folder to "
-            "install it. Without it, --text and --output graph.dot work."
+            "install it. Without it, --text and --output graph.dot still work."
         )
         raise MachineError(message)
     if kind == "svg":

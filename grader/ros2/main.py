@@ -73,7 +73,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
             raise
         _forget_the_terminal()
         fault = f"ros2: an error in the course's ros2, not in your code: {type(error).__name__}: {error}"
-        more = "Please report it. GRADER_DEBUG=1 before the command shows the traceback."
+        more = "Please report it. Put GRADER_DEBUG=1 before the command to see the traceback."
         _report(refusal(error) or f"{fault}\n{more}")
         return 3
     return code

@@ -190,7 +190,7 @@ def requested_python(name: str) -> machine.Python:
     """Return the interpreter with this name. Raises ArgumentTypeError if the interpreter does not run."""
     python = machine.probe(shutil.which(name) or name)
     if python is None:
-        message = f"{name} is not a Python that runs here"
+        message = f"{name} is not a Python that runs on this machine"
         raise argparse.ArgumentTypeError(message)
     return python
 

@@ -70,7 +70,7 @@ def read_bag(files: Mapping[str, bytes], folder: str) -> BagFolder:
     try:
         return _read([inside[path] for path in stored])
     except EndOfFile:
-        return _unread("damaged", "a file ends in the middle")
+        return _unread("damaged", "a file is truncated")
     except Exception as error:  # any exception is possible: a damaged file has wrong offsets, strings and checksums
         return _unread("damaged", shorten(str(error) or type(error).__name__, 80))
 

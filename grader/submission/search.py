@@ -159,4 +159,4 @@ def _nearest_parent(name: str) -> str:
         return ""
     while not above.is_dir():
         above = above.parent
-    return f" (the path is right as far as {shown(str(above))})"
+    return f" (the path exists up to {shown(str(above))})"

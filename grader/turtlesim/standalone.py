@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 _MOST_AT_ONCE = 200
 """The maximum number of callbacks per frame, so that a flood of messages cannot stop the turtle."""
 _NO_WINDOW = (
-    "This turtlesim has no window. To see the turtle, stop it with Ctrl-C and start it with --view (a page in the "
-    "browser) or --view terminal."
+    "This turtlesim has no window. To see the turtle, stop turtlesim with Ctrl-C and start it again with --view "
+    "(a page in the browser) or --view terminal."
 )
 """This text is printed only on a terminal. In a pipe, the output is the same as the output of the real turtlesim."""
 

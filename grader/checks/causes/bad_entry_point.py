@@ -43,7 +43,7 @@ def bad_entry_point(point: EntryPoint) -> Finding:
         text = "The entry point does not name a function. After the module, write a colon and the function name."
         why = Cause("entry-point-no-function", text)
     elif "-" in module:
-        text = "A module name has no hyphen. The folder with the Python files is named with underscores."
+        text = "A module name cannot contain a hyphen. The name of the folder with the Python files has underscores."
         why = Cause("entry-point-format", text).fixed_by(at(where, module, module.replace("-", "_")))
     return failed(observed, expected, why.at(where))
 

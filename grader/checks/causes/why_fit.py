@@ -79,7 +79,7 @@ RADIUS_OF_C: tuple[Diagnosis, str] = (
 )
 """Mistakes that lead to a wrong radius, or NaN, although the centre is right."""
 _FIRST_TRY = (
-    "The equations are wrong, or the computation of the circle from the solution of the equations. Test the function "
+    "The equations are wrong, or the circle is computed incorrectly from their solution. Test the function "
     "with four "
     "points of a circle that you know."
 )

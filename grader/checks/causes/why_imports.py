@@ -59,7 +59,7 @@ def _no_module(scene: CrashScene, name: str) -> Cause:
         return Cause("sibling-import", text)
     guess = nearest(name, {*ros_names.MODULES, *(each.partition(".")[0] for each in ros_names.MODULES)}, alike=0.8)
     if guess is not None:
-        text = f"There is a module {guess}. Compare the two names letter by letter."
+        text = f"A similar module exists: {guess}. Compare the two names letter by letter."
         return Cause("module-misspelt", text).fixed_by(at(scene.crash.where, name, guess.partition(".")[0]))
     return Cause(
         "module-missing",

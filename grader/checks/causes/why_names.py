@@ -147,7 +147,7 @@ def _in_other_capitals(scene: CrashScene, name: str) -> Cause | None:
     other = name.lower()
     if not passed or other == name or not any(function is scene.function for _, function in _stores(scene, other)):
         return None
-    text = f"There is a name {other}. Upper and lower case matter."
+    text = f"A similar name exists: {other}. Upper and lower case matter."
     return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, name, other))
 
 
@@ -205,7 +205,7 @@ def _alike(scene: CrashScene, name: str) -> Cause | None:
         plain = {each.lower(): each for each in _bound(scene)}
         guess = plain.get(name.lower())
     if guess is not None:
-        text = f"There is a name {shorten(guess)}. Compare the two names letter by letter."
+        text = f"A similar name exists: {shorten(guess)}. Compare the two names letter by letter."
         return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, name, guess))
     return None
 

@@ -73,7 +73,7 @@ def _known(message: str, where: Where | None) -> Cause | None:
         return Cause("fixture-missing", text, where)
     unnamed = UNNAMED.search(message)
     if unnamed is not None:
-        text = "The name of a fixture is not a parameter of the test. Then the name means the fixture's function."
+        text = "The name of the fixture is not a parameter of the test, so it refers to the fixture function itself."
         return Cause("fixture-missing", text, where)
     field = FIELD.search(message)
     if field is not None:

@@ -37,8 +37,8 @@ def why_qos(evidence: Evidence) -> Cause | None:
     if not any(INCOMPATIBLE in text for text in output):
         return None
     text = (
-        "The QoS settings are not compatible with those of turtlesim. A queue size instead of a QoS profile is "
-        "compatible."
+        "The QoS settings are not compatible with those of turtlesim. If you pass a queue size instead of a QoS "
+        "profile, they are compatible."
     )
     return Cause("qos-mismatch", text, evidence.place("QoSProfile", "create_publisher", "create_subscription"))
 
@@ -109,7 +109,7 @@ def _waits(node: ast.AST, module: Module) -> Cause | None:
     if not isinstance(name, str) or not waits or f"/{name.strip('/')}" in ros_names.SERVICES:
         return None
     guess = nearest(f"/{name.strip('/')}", ros_names.SERVICES)
-    more = f" There is {guess}." if guess else ""
+    more = f" A similar service exists: {guess}." if guess else ""
     return Cause("service-not-there", f"The node waits for the service {shorten(name)}, which does not exist.{more}")
 
 

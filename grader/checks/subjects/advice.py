@@ -30,7 +30,7 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
         return Finding(Status.SKIPPED, "Not judged, because the file of the node is not known yet.")
     if evidence.code.node_file not in {module.file for module in evidence.code.modules if module.tree is not None}:
         return Finding(Status.SKIPPED, "Not judged, because the file of the node cannot be read.")
-    cause = "A timer calls a method at a period that the node chooses, whatever else happens."
+    cause = "A timer calls a method periodically, at a period that the node chooses."
     if loops(evidence):
         cause = "A node that runs its own loop receives no messages. With a timer, rclpy.spin does the waiting."
     if evidence.code.calls("create_rate"):

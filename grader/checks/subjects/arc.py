@@ -97,7 +97,7 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
         observed = f"The turtle ran into a wall after {trajectory.t_s[touched[0]]:.1f} s."
         return failed(observed, expected, Cause("wall", radius_of_commands(evidence), where))
     if not round_.holds(fitted.rms):
-        off = f"it deviates by {max(fitted.rms, 0.01):.2f} m (RMS) from the best circle"
+        off = f"it deviates by {max(fitted.rms, 0.01):.2f} m (RMS) from the best-fitting circle"
         text = "The command or the pen changes during this part of the path."
         cause = Cause("not-round", text, where)
         return failed(

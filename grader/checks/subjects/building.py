@@ -227,7 +227,7 @@ PLAIN_FILES = Kind(
     "The package contains only normal files",
     NoParams,
     plain_files,
-    about="The submission contains only files and folders: no link that leads outside, no device, no huge file.",
+    about="The submission contains only files and folders: no links to the outside, no devices, no huge files.",
 )
 BUILDS = Kind(
     "builds",

@@ -122,8 +122,8 @@ def says_whether_active(evidence: Evidence, params: SaysWhetherActive) -> Findin
         active = _is_active(goals, call.t_s)
         said = call.response.get("success")
         if active is not None and said is not active:
-            state = "a goal" if active else "no goal"
-            observed = f"The turtle followed {state} at {call.t_s:.1f} s, but success was {str(said).lower()}."
+            was = "was" if active else "was not"
+            observed = f"The turtle {was} following a goal at {call.t_s:.1f} s, but success was {str(said).lower()}."
             text = (
                 "Set success in the callback of the service, before the goal is cancelled: it is true if "
                 "a goal was active."

@@ -62,7 +62,7 @@ class WithinReach:
 def catches(evidence: Evidence, params: Catches) -> Finding:
     """All targets were removed before SIGINT, and turtle1 moved only by driving."""
     recording = evidence.recording
-    expected = f"All targets are caught within {recording.duration_s:g} s, and turtle1 only drives."
+    expected = f"All targets are caught within {recording.duration_s:g} s, and turtle1 moves only by driving."
     tracks = recording.tracks
     gone = caught(recording)
     moved = _forbidden(recording)
@@ -119,7 +119,7 @@ def _forbidden(recording: Recording) -> str | None:
 def nearest_first(evidence: Evidence, _: NoParams) -> Finding:
     """After each catch, the next target is the target that was nearest to turtle1 at that time."""
     recording = evidence.recording
-    expected = "The next target is always the one that is nearest to turtle1."
+    expected = "The next target is always the one nearest to turtle1."
     gone = caught(recording)
     if not gone:
         return failed("No target was caught.", expected, why_not_caught(evidence, list(recording.tracks)))

@@ -94,7 +94,9 @@ def _no_module(evidence: Evidence, module_name: str) -> Finding:
     else:
         guess = nearest(module_name, modules)
         cause = (
-            f"There is a module {shorten(guess)}." if guess else "Compare the module name with the names of your files."
+            f"A similar module exists: {shorten(guess)}."
+            if guess
+            else "Compare the module name with the names of your files."
         )
         if f"{last}.py" in files:
             cause = f"{last}.py is next to setup.py. The file belongs in the folder {shorten(outer)}."

@@ -54,7 +54,7 @@ def sends_goals(evidence: Evidence, params: SendsGoals) -> Finding:
     expected = f"Goal {first + 1} of the node is a heading of {headings[0]:g} degrees, and the turtle reaches it."
     if amount > 1:
         expected = (
-            f"The turtle reaches {amount} goals, the first at {headings[0]:g} degrees, and each next goal "
+            f"The turtle reaches {amount} goals, the first at {headings[0]:g} degrees, and each following goal "
             f"{params.turn_deg:g} degrees further to the left."
         )
     if not goals:

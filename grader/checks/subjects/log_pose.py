@@ -62,7 +62,7 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
 
     early = [line for line in logged if line.t_s < evidence.trial.scenario.pose_from_s]
     if early:
-        observed = "The log has a line with numbers before the first pose had arrived."
+        observed = "A line with numbers was logged before the first pose arrived."
         cause = (
             "Before the first pose, the position is unknown, not 0. Until the first pose arrives, store None and log "
             "nothing."

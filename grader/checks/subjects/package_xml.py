@@ -164,7 +164,7 @@ def _why_not_declared(
     name = missing[0]
     guess = nearest(name, [each for each in manifest.run_depends if each not in needed and not _used(evidence, each)])
     if guess is not None:
-        cause = f'The file declares "{shorten(guess)}". Is that a typing error?'
+        cause = f'The file declares "{shorten(guess)}". Is that a typo?'
         return Cause("depend-misspelt", cause, _line(evidence, re.escape(guess)))
     comment = re.search(rf"<!--(?:(?!-->).)*\b{re.escape(name)}\b", _text(evidence), re.DOTALL)
     if comment is not None:
@@ -212,7 +212,7 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
     if not any(path.startswith(f"{wanted}/") for path in modules):
         folders = {path.partition("/")[0] for path in modules if path.count("/") == 1}
         guess = nearest(wanted, folders)
-        cause = f"There is a folder {shorten(guess)}." if guess else ""
+        cause = f"A similar folder exists: {shorten(guess)}." if guess else ""
         return failed(
             f"There is no folder {wanted} with Python files.",
             expected,

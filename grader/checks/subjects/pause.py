@@ -83,7 +83,7 @@ def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *,
         text = "Each call changes the state. The new state must not depend on the old state, but only on request.data."
         return failed(observed, expected, Cause("pause-toggles", text, where), near_edge=near_edge)
     if driving:
-        observed = f"The turtle still moved {stop_s:.1f} s after the call."
+        observed = f"The turtle was still moving {stop_s:.1f} s after the call."
         text = (
             "The commands still move the turtle during the pause: while the node is paused, publish a command with "
             "all values 0."

@@ -104,7 +104,7 @@ def square(evidence: Evidence, params: Square) -> Finding:
     sides = sides_of(trajectory)
     if sides.curved_share > CURVED_SHARE:
         observed = f"{100.0 * sides.curved_share:.0f} % of the trajectory is curved."
-        cause = "Drive with angular.z at 0, then turn with linear.x at 0. Never drive and turn at once."
+        cause = "Drive with angular.z at 0, then turn with linear.x at 0. Never drive and turn at the same time."
         return failed(observed, expected, Cause("curves", cause, where))
     if len(sides.lengths) < SIDES:
         observed = f"The trajectory has {count(len(sides.lengths), 'side')}."
@@ -205,7 +205,7 @@ SQUARE = Kind(
     "The turtle drives a square",
     Square,
     square,
-    about="The turtle drives four straight sides with corners of 90 degrees, is back at its start, and stands still.",
+    about="The turtle drives four straight sides with corners of 90 degrees, returns to its start, and stands still.",
     drives=True,
     requested=requested_square,
 )

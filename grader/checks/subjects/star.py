@@ -44,7 +44,7 @@ def star(evidence: Evidence, params: Star) -> Finding:
     amount = int(params.sides)
     expected = (
         f"The turtle drives {amount} straight sides of {params.side_m:g} m: the first with a heading of "
-        f"{params.heading_deg:g} degrees, and each next side {params.corner_deg:g} degrees further to the left."
+        f"{params.heading_deg:g} degrees, and each following side {params.corner_deg:g} degrees further to the left."
     )
     where, trajectory = evidence.place("publish"), evidence.trajectory
     others = [name for name in evidence.recording.interventions if name in (MOVING | ALWAYS) - {BY_GOALS}]

@@ -69,5 +69,5 @@ NEVER_WAITS = Kind(
     early=_early,
     about="No callback waits for a response, for a server or for time to pass: `call`, "
     "`spin_until_future_complete`, `wait_for_service` without a timeout, `sleep`, under any name. With several "
-    "threads, waiting for a response is allowed if the node goes on after the response.",
+    "threads, waiting for a response is allowed if the node continues after the response.",
 )

@@ -140,7 +140,7 @@ def test_the_command_makes_and_checks(root: Path, capsys: pytest.CaptureFixture[
     ("change", "what"),
     [
         ("printf x >> 01-x/pkg/node.py", "01-x/pkg/node.py does not match its solution."),
-        ("chmod -x 01-x/pkg/run.sh", "01-x/pkg/run.sh has a different executable bit than its solution."),
+        ("chmod -x 01-x/pkg/run.sh", "01-x/pkg/run.sh and its solution differ in the executable bit."),
         ("touch 01-x/more.txt", "01-x/more.txt does not come from a solution. Delete it."),
         ("mkdir 02-y; touch 02-y/a", "02-y/a does not come from a solution. Delete it."),
         ("rm 01-x/pkg/data.bin", "01-x/pkg/data.bin is missing."),

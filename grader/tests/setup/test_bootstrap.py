@@ -208,7 +208,7 @@ def test_help_names_every_target() -> None:
         (["learner", "tests"], "unrecognized arguments: tests"),
         (["learner", "--verbose"], "unrecognized arguments: --verbose"),
         (["learner", "--python"], "argument --python: expected one argument"),
-        (["learner", "--python", "python9"], "argument --python: python9 is not a Python that runs here"),
+        (["learner", "--python", "python9"], "argument --python: python9 is not a Python that runs on this machine"),
     ],
 )
 def test_a_wrong_argument_is_reported_with_the_usage(arguments: list[str], said: str) -> None:

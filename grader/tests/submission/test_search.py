@@ -71,7 +71,7 @@ def refused(path: Path | str) -> str:
 def test_no_such_folder_names_the_part_that_exists(tmp_path: Path) -> None:
     message = refused(tmp_path / "nope" / "pkg")
     assert f"no folder {tmp_path}/nope/pkg" in message
-    assert f"right as far as {tmp_path}" in message
+    assert f"the path exists up to {tmp_path}" in message
 
 
 def test_a_path_through_a_file_is_no_folder(package: Path) -> None:

@@ -23,7 +23,7 @@ GENERAL = "Check the entry point character by character: = and : must each appea
         (
             "draw_circle = my-robot-controller.draw_circle:main",
             "entry-point-format",
-            "A module name has no hyphen. The folder with the Python files is named with underscores.",
+            "A module name cannot contain a hyphen. The name of the folder with the Python files has underscores.",
         ),
         (
             "draw_circle = my_robot_controller/draw_circle:main",

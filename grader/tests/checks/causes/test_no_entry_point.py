@@ -176,7 +176,7 @@ def leads_to(target: str) -> Build:
         (
             "my_robot_controller.draw_cirle:main",
             "entry-point-module",
-            "There is a module my_robot_controller.draw_circle.",
+            "A similar module exists: my_robot_controller.draw_circle.",
         ),
         ("elsewhere.quaff:main", "entry-point-module", "Compare the module name with the names of your files."),
         (

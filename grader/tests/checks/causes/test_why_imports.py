@@ -17,7 +17,7 @@ HELPER = {"my_robot_controller/helper.py": "", "my_robot_controller/unhelper.py"
         ("No module named 'turtlesim_msgs'", "turtlesim-msgs", "Newer ROS 2 distributions have"),
         ("No module named 'turtlesim_msgs.msg'", "turtlesim-msgs", "Newer ROS 2 distributions have"),
         ("No module named 'helper'", "sibling-import", "my_robot_controller/helper.py exists, but"),
-        ("No module named 'geometry_msg.msg'", "module-misspelt", "There is a module geometry_msgs.msg."),
+        ("No module named 'geometry_msg.msg'", "module-misspelt", "A similar module exists: geometry_msgs.msg."),
         ("No module named 'cv2'", "module-missing", "No installed package has a module cv2."),
         (
             "cannot import name 'twist' from 'geometry_msgs.msg' (unknown)",

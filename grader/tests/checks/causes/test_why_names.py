@@ -18,12 +18,12 @@ def name_error(name: str) -> str:
         ("send()", "send", "missing-self", "send belongs to the object"),
         ("twist = Twist()", "Twist", "missing-import", "import Twist. Twist is in the module geometry_msgs.msg."),
         ("time.sleep(1)", "time", "missing-import", "import the module time."),
-        ("print(steps)", "steps", "name-misspelt", "There is a name step."),
-        ("total = totl + 1", "totl", "name-misspelt", "There is a name total."),
-        ("outsde()", "outsde", "name-misspelt", "There is a name outside."),
-        ("print(Drivr)", "Drivr", "name-misspelt", "There is a name Driver."),
-        ("pritn(1)", "pritn", "name-misspelt", "There is a name print."),
-        ("Nodes()", "Nodes", "name-misspelt", "There is a name Node."),
+        ("print(steps)", "steps", "name-misspelt", "A similar name exists: step."),
+        ("total = totl + 1", "totl", "name-misspelt", "A similar name exists: total."),
+        ("outsde()", "outsde", "name-misspelt", "A similar name exists: outside."),
+        ("print(Drivr)", "Drivr", "name-misspelt", "A similar name exists: Driver."),
+        ("pritn(1)", "pritn", "name-misspelt", "A similar name exists: print."),
+        ("Nodes()", "Nodes", "name-misspelt", "A similar name exists: Node."),
         ("print(ValueErro)", "ValueErro", "name-undefined", "Nothing defines this name"),
         ("print(forward)", "forward", "name-undefined", "Nothing defines this name"),
     ],
@@ -45,7 +45,7 @@ def test_an_unknown_name_is_explained_by_what_there_is(line: str, name: str, dia
 )
 def test_what_is_imported_is_a_name(imported: str, name: str, guess: str) -> None:
     found = reported(f"{imported}\nprint({name})  # crashed", name_error(name))
-    assert (found.diagnosis, f"There is a name {guess}." in found.cause) == ("name-misspelt", True)
+    assert (found.diagnosis, f"A similar name exists: {guess}." in found.cause) == ("name-misspelt", True)
 
 
 def test_a_method_without_self_does_not_know_it() -> None:
@@ -115,7 +115,7 @@ def test_an_unbound_name_in_other_words_is_local_all_the_same() -> None:
             "local-name",
             "a local variable of a",
         ),
-        ("msg = twist()  # crashed\nfrom a import Twist\n", "twist", "name-misspelt", "There is a name Twist."),
+        ("msg = twist()  # crashed\nfrom a import Twist\n", "twist", "name-misspelt", "A similar name exists: Twist."),
         (DRIVER.format(line="create_timer(1, 2)"), "create_timer", "missing-self", "write self.create_timer"),
     ],
 )

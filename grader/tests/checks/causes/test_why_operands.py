@@ -6,7 +6,7 @@ import pytest
 
 from grader.tests.checks.crashes import DRIVER, reported
 
-LISTS = "A list is not an array: Python cannot compute with all values of a list."
+LISTS = "A list is not an array: Python cannot compute with a whole list."
 STRINGS = "A string and a number cannot be added."
 OTHERS = "Python cannot do this with a value of type {} and a value of type {}."
 

@@ -165,7 +165,7 @@ def test_a_service_that_nobody_offers_is_named(name: str, waits: str, words: str
     if found is not None and words is not None:
         assert (found[0], found[2]) == ("service-not-there", line_with(LOOK, source))
         assert found[1].startswith(words)
-        assert found[1].endswith(" There is /spawn.") == ("spwan" in name)
+        assert found[1].endswith(" A similar service exists: /spawn.") == ("spwan" in name)
 
 
 def test_a_client_without_a_name_is_none() -> None:

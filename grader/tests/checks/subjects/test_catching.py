@@ -114,7 +114,10 @@ def test_a_teleport_is_not_driving() -> None:
 
 def test_the_farther_one_first_is_named() -> None:
     finding = found(NEAREST_FIRST, given(at("near", 6.5, 9.0), at("far", 9.0, 3.4)))
-    assert diagnosis(finding) == "other-order"
+    assert (finding.diagnosis, finding.expected) == (
+        "other-order",
+        "The next target is always the one nearest to turtle1.",
+    )
 
 
 @pytest.mark.parametrize(

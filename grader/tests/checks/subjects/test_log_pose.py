@@ -139,6 +139,7 @@ def test_too_few_lines_are_not_compared() -> None:
     for kind in (LOG_POSITION, LOG_DISTANCE):
         few = found(kind, evidence(recording(WAY, log=trial.log[:2]), PACKAGE), format=FORMAT)
         assert (few.diagnosis, str(few.where)) == ("too-few-log-lines", f"{NODE_FILE}:14")
+        assert few.expected == "The log has at least 3 lines in this format."
         enough = found(kind, evidence(recording(WAY, log=trial.log[:3]), PACKAGE), format=FORMAT)
         assert enough.status is Status.PASSED
 
@@ -175,7 +176,7 @@ def test_a_line_with_numbers_before_the_first_pose_is_named() -> None:
     trial = recording(WAY, log=(early, *logged(truth()).log))
     finding = found(LOG_POSITION, evidence(trial), format=FORMAT)
     assert (finding.status, finding.diagnosis) == (Status.FAILED, "before-first-pose")
-    assert finding.observed == "The log has a line with numbers before the first pose had arrived."
+    assert finding.observed == "A line with numbers was logged before the first pose arrived."
     late = LogLine(99.0, "INFO", "pose_subscriber", "x=9.00 y=9.00 distance=9.00")
     after = found(LOG_POSITION, evidence(recording(WAY, log=(*logged(truth()).log, late))), format=FORMAT)
     assert (after.status, "At 99 s" in after.observed) in ((Status.FAILED, True), (Status.PASSED, False))

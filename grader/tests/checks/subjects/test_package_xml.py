@@ -67,7 +67,7 @@ def test_format_2_is_valid_and_a_byte_order_mark_does_no_harm() -> None:
 def test_a_misspelt_dependency_is_shown() -> None:
     found = of("dependencies", xml("geometry_msgs", "geometry_msg"))
     assert found.observed == "package.xml does not declare geometry_msgs."
-    assert found.cause == 'The file declares "geometry_msg". Is that a typing error?'
+    assert found.cause == 'The file declares "geometry_msg". Is that a typo?'
 
 
 NODE_IMPORT = "from geometry_msgs.msg import Twist\n"
@@ -178,7 +178,7 @@ def test_without_a_package_xml_nothing_is_declared(files: Files) -> None:
         (setup_py('"my_robot_controller"', '"my-robot"'), "ROS 2 package names use underscores, not dashes."),
         (
             {INIT: None, NODE_FILE: None, "my_robot_control/x.py": "", "my_robot_controllers/a/b.py": "", "x.py": ""},
-            "There is a folder my_robot_control.",
+            "A similar folder exists: my_robot_control.",
         ),
         ({INIT: None, NODE_FILE: None, "quaff/x.py": ""}, ""),
     ],
