@@ -145,7 +145,7 @@ def no_response(evidence: Evidence, service: str, type_: str, call: Call | None,
         return failed("The node had ended before the call.", expected, Cause("no-response", where=where))
     ended = end_observed(evidence)
     if not call.missing and ended:
-        observed = f"The node did not answer the call of {service}. {ended}"
+        observed = f"The node did not answer the call to {service}. {ended}"
         return failed(observed, expected, Cause("no-response", where=where))
     if not call.missing:
         cause = waits_in_callback(evidence) or Cause(

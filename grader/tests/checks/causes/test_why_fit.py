@@ -23,7 +23,7 @@ def between_extremes() -> tuple[float, float, float]:
 
 
 OTHERWISE = (
-    "The equations are wrong, or the computation of the circle from the solution of the equations. Test the function "
+    "The equations are wrong, or the circle is computed incorrectly from their solution. Test the function "
     "with four points of a circle that you know."
 )
 SENTENCES = (
@@ -34,7 +34,7 @@ SENTENCES = (
     "This is the diameter, twice the radius.",
     "The third unknown is c = r² - a² - b², not r²: the squares of the centre are missing.",
     "A radius that is computed only from the outermost points contains all the noise of these points.",
-    "The centre is twice as far as it should be: the equation contains 2·x·a and 2·y·b.",
+    "The centre is twice as far away as it should be: the equation contains 2·x·a and 2·y·b.",
     "The centre has the wrong sign. Check on which side of the equation each term is.",
     "This is the mean of the points. The mean is the centre only if the points cover the whole circle.",
     "This is the midpoint between the extreme points. The circle of an arc extends beyond the points of the arc.",
@@ -64,7 +64,7 @@ def says(values: tuple[float, float, float]) -> str:
         (
             (2 * X, 2 * Y, R),
             (2 * X, 2 * Y + 0.1, R),
-            "The centre is twice as far as it should be: the equation contains",
+            "The centre is twice as far away as it should be: the equation contains",
         ),
         ((-X, -Y, R), (-X, Y, R), "The centre has the wrong sign. Check on which side of the equation each term is."),
         (
@@ -78,7 +78,7 @@ def says(values: tuple[float, float, float]) -> str:
             (between_extremes()[0] + 0.1, *between_extremes()[1:]),
             "This is the midpoint between the extreme points. The circle of an arc extends beyond the points of the",
         ),
-        ((1.0, 2.0, 3.5), (X, Y, 2 * R), "The equations are wrong, or the computation of the circle from the solution"),
+        ((1.0, 2.0, 3.5), (X, Y, 2 * R), "The equations are wrong, or the circle is computed incorrectly"),
     ],
 )
 def test_each_mistake_is_known_by_its_numbers(

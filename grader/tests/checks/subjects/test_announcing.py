@@ -92,7 +92,7 @@ def with_one(text: str, t_s: float = 2.1) -> tuple[Message, ...]:
             with_one("target1 target2 target3"),
         ),
         (
-            "Remove a name when its turtle is caught, and add a name when the response of /spawn arrives.",
+            "Remove a name when its turtle is caught, and add a name when the response from /spawn arrives.",
             with_one("target1 target2 target3 target9"),
             with_one("target1 target2"),
         ),
@@ -103,7 +103,7 @@ def with_one(text: str, t_s: float = 2.1) -> tuple[Message, ...]:
         ),
         ("Add the name of a turtle to the list in the callback", with_one("target1 target2"), with_one("mouse")),
         ("After the message at 1.0 s, no message arrived for 9.0 s.", RIGHT[:1], RIGHT),
-        ("Publish in each call of the timer.", RIGHT[:1], ()),
+        ("Publish each time the timer fires.", RIGHT[:1], ()),
         (
             "Publish in the callback of one timer.",
             tuple(said(0.01 * number, names_at(0.01 * number)) for number in range(60, 990)),

@@ -90,7 +90,7 @@ def test_the_colour_is_only_told_if_it_is_required() -> None:
     assert "drawn in the colour" not in about(CIRCLE, (pen(0.0),), radius_m=1.0)
 
 
-PART = "A part of this arc was drawn in another colour."
+PART = "A part of this arc was drawn in a different colour."
 LATE_PEN = "The pen must have this colour before the turtle moves: wait for the response before you drive."
 
 

@@ -89,12 +89,12 @@ def about(*goals: Goal) -> str:
             goal(1.0, 80.0, 3.9, "canceled", cancel_asked_s=3.8),
             goal(1.0, 80.0, 3.9),
         ),
-        ("After the call of /stop, the turtle continued to its goal.", goal(1.0, 80.0, 3.9), ACTIVE),
-        ("The turtle followed no goal when /stop was called.", goal(1.0, 80.0, 2.9), goal(1.0, 80.0, 3.9)),
+        ("After the call to /stop, the turtle continued to its goal.", goal(1.0, 80.0, 3.9), ACTIVE),
+        ("The turtle was not following a goal when /stop was called.", goal(1.0, 80.0, 2.9), goal(1.0, 80.0, 3.9)),
         ("Until the service is called, the node sends the next goal", goal(1.0, 80.0, 2.9), goal(1.0, 80.0, 3.9)),
         ("The goal sent at 1.0 s was aborted. The node did not cancel the goal.", ABORTED, goal(1.0, 80.0, 3.1)),
         ("The node did not cancel the goal.", ABORTED, replace(ABORTED, cancel_asked_s=3.05)),
-        ("The goal is cancelled within 0.5 s after a call of /stop.", goal(1.0, 80.0, 3.9), ACTIVE),
+        ("The goal is cancelled within 0.5 s after a call to /stop.", goal(1.0, 80.0, 3.9), ACTIVE),
     ],
 )
 def test_a_sentence_about_a_cancelled_goal_is_true(words: str, true: Goal, near: Goal) -> None:
@@ -112,7 +112,7 @@ def after(*goals: Goal) -> str:
         ("No goal arrived after the call.", [ACTIVE], [ACTIVE, goal(3.5, 0.0, 5.0)]),
         ("The node sent another goal 0.5 s after the call.", [ACTIVE, goal(3.5, 0.0, 5.0)], [ACTIVE]),
         ("A cancelled goal also has a result", [ACTIVE, goal(3.5, 0.0, 5.0)], [ACTIVE]),
-        ("After a call of /stop, the node sends no more goals.", [ACTIVE, goal(3.5, 0.0, 5.0)], [ACTIVE]),
+        ("After a call to /stop, the node sends no more goals.", [ACTIVE, goal(3.5, 0.0, 5.0)], [ACTIVE]),
         ("Not judged, because no goal was stopped.", [goal(3.5, 0.0, 5.0)], [ACTIVE, goal(3.5, 0.0, 5.0)]),
     ],
 )
@@ -131,11 +131,11 @@ def about_success(success: bool | None, *goals: Goal) -> str:
 @pytest.mark.parametrize("goals", [(ACTIVE,), ()])
 def test_a_sentence_about_success_is_true(goals: tuple[Goal, ...]) -> None:
     right, wrong = about_success(bool(goals), *goals), about_success(not goals, *goals)
-    said, other = ("a goal", "false") if goals else ("no goal", "true")
+    was, other = ("was", "false") if goals else ("was not", "true")
     for words in (
-        f"The turtle followed {said} at 3.0 s, but success was {other}.",
+        f"The turtle {was} following a goal at 3.0 s, but success was {other}.",
         "Set success in the callback of the service, before the goal is cancelled",
-        "In the response of /stop, success is true if a goal was active, and false if not.",
+        "In the response from /stop, success is true if a goal was active, and false if not.",
     ):
         assert words in wrong
         assert words not in right
@@ -144,5 +144,5 @@ def test_a_sentence_about_success_is_true(goals: tuple[Goal, ...]) -> None:
 
 
 def test_a_response_that_never_came_says_nothing_about_a_goal() -> None:
-    assert "The node received the call of /stop and never answered." in about_success(None, ACTIVE)
+    assert "The node received the call to /stop and never answered." in about_success(None, ACTIVE)
     assert found(SAYS_WHETHER_ACTIVE, given(ACTIVE), service="/stop").diagnosis == "no-response"

@@ -152,7 +152,7 @@ def kill(name: str) -> Call:
     ("words", "true", "near"),
     [
         ("All 2 targets were caught, the last one at 3 s.", (NEAR, FAR), (NEAR, WESTERN)),
-        ("All targets are caught within 10 s, and turtle1 only drives.", (NEAR, WESTERN), (NEAR, FAR)),
+        ("All targets are caught within 10 s, and turtle1 moves only by driving.", (NEAR, WESTERN), (NEAR, FAR)),
         ("1 of 2 targets were caught.", (NEAR, WESTERN), (NEAR, FAR)),
         ("Only 1 target of 2 appeared.", (NEAR,), (NEAR, WESTERN)),
     ],
@@ -213,7 +213,7 @@ LATER = Track("b", ((3.0, 9.0, 5.544445, 0.0),), 3.4)
     [
         ("2 targets were caught, the nearest first.", (NEAR, FAR), B_FIRST),
         ("No target was caught.", (at("a", 6.5, None),), (NEAR,)),
-        ("The next target is always the one that is nearest to turtle1.", B_FIRST, (NEAR, FAR)),
+        ("The next target is always the one nearest to turtle1.", B_FIRST, (NEAR, FAR)),
         ("At 0.0 s, a was 1.0 m away and b 3.5 m, but b was caught first.", B_FIRST, (B_FIRST[0], LATER)),
         ("The first target was the farthest one.", B_FIRST, (*B_FIRST, at("c", 1.0, None))),
         ("After each catch, compute the distance from turtle1", (*B_FIRST, at("c", 1.0, None)), B_FIRST),

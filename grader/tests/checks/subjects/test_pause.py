@@ -68,7 +68,7 @@ EARLY = [(0.5, 1.0, 1.0), *[each for each in every(0.1, 1.0, 1.0) if each[0] > 6
         ("The turtle did not continue.", rests(3.0, 99.0), rests(3.0, 8.0)),
         ("The turtle continued after 2.0 s.", rests(3.0, 8.0), rests(3.0, 99.0)),
         ("The request with data=False ends the pause.", rests(3.0, 8.0), rests(4.0, 6.0)),
-        ("The turtle still moved 1.0 s after the call.", rests(4.0, 6.0), rests(3.3, 6.0)),
+        ("The turtle was still moving 1.0 s after the call.", rests(4.0, 6.0), rests(3.3, 6.0)),
         ("The commands still move the turtle during the pause", rests(4.0, 6.0), SILENT),
         ("The turtle took 0.9 s to stop after the call.", SILENT, rests(3.0, 6.0)),
         ("Without a new command, a turtle continues for one second.", SILENT, rests(4.0, 6.0)),

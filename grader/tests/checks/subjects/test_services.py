@@ -83,8 +83,8 @@ OTHERS = "/turtle2/set_pen"
             [answered(1.0, PEN, 2.5), TWO],
             [answered(1.0, PEN, 1.5), TWO],
         ),
-        ("The most similar call of /spawn has x=3.0.", [asked(1.0, PEN), asked(2.0, SPAWN, x=3.0)], [TWO]),
-        ("The most similar call of /spawn has x=1.0.", [ZERO, asked(3.0, SPAWN, x=1.0)], [ZERO]),
+        ("The most similar call to /spawn has x=3.0.", [asked(1.0, PEN), asked(2.0, SPAWN, x=3.0)], [TWO]),
+        ("The most similar call to /spawn has x=1.0.", [ZERO, asked(3.0, SPAWN, x=1.0)], [ZERO]),
         ("All these fields have their default values: set them", [ZERO], [asked(2.0, SPAWN, x=3.0)]),
         ("The node never called /spawn.", [asked(1.0, PEN)], [asked(1.0, PEN), ZERO]),
         ("The node called /other/spawn instead of /spawn.", [asked(2.0, "/other/spawn")], [asked(1.0, PEN)]),
@@ -120,22 +120,22 @@ def about_answers(calls: list[Call], **changes: Any) -> str:  # noqa: ANN401
 @pytest.mark.parametrize(
     ("words", "true", "near"),
     [
-        ("The node answered the call of /pause.", [paused(success=True)], [paused(success=False)]),
+        ("The node answered the call to /pause.", [paused(success=True)], [paused(success=False)]),
         (
-            "The node answers a call of /pause within 1 s, with success=True.",
+            "The node answers a call to /pause within 1 s, with success=True.",
             [paused(success=False)],
             [paused(success=True)],
         ),
         ("The response has success=False.", [paused(success=False)], [paused(success=True)]),
         (
-            "The callback of a service fills in the fields of its second argument and returns it.",
+            "The callback of a service fills in the fields of its second argument and returns this argument.",
             [paused(success=False)],
             [paused(5.5, success=False)],
         ),
         ("The response took 2.5 s.", [paused(5.5, success=True)], [paused(3.9, success=True)]),
         ("A callback must not sleep or wait.", [paused(5.5, success=True)], [paused(success=False)]),
         ("The node had ended before the call.", [], [paused(None, missing=True)]),
-        ("The node received the call of /pause and never answered.", [paused(None)], [paused(None, missing=True)]),
+        ("The node received the call to /pause and never answered.", [paused(None)], [paused(None, missing=True)]),
         (BLOCKED, [paused(None)], [paused(None, missing=True)]),
         ("The node offers no service.", [paused(None, missing=True)], [paused(None)]),
     ],
@@ -147,7 +147,7 @@ def test_a_sentence_about_a_response_is_true(words: str, true: list[Call], near:
 
 def test_a_node_that_ended_after_a_call_did_not_block_its_callbacks() -> None:
     ended = about_answers([paused(None)], end=ENDED)
-    assert "The node did not answer the call of /pause. The node exited on its own after 3.2 s." in ended
+    assert "The node did not answer the call to /pause. The node exited on its own after 3.2 s." in ended
     assert BLOCKED not in ended
 
 

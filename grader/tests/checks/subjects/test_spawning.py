@@ -135,7 +135,7 @@ Gone = dict[str, float]
 @pytest.mark.parametrize(
     ("words", "true", "near"),
     [
-        ("A call of /catch removes the turtle.", ([catch(), kill()], CAUGHT), ([], {})),
+        ("A call to /catch removes the turtle.", ([catch(), kill()], CAUGHT), ([], {})),
         ("The node had ended before the call.", ([], {}), ([catch()], {})),
         (
             "When /catch is called, the node removes the turtle that the request names, and no other turtle",
