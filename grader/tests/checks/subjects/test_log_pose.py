@@ -176,9 +176,11 @@ def test_a_line_with_numbers_before_the_first_pose_is_named() -> None:
     trial = recording(WAY, log=(early, *logged(truth()).log))
     finding = found(LOG_POSITION, evidence(trial), format=FORMAT)
     assert (finding.status, finding.diagnosis) == (Status.FAILED, "before-first-pose")
-    assert finding.observed == "A line with numbers was logged before the first pose arrived."
+    words = "A line with numbers was logged before the first pose arrived."
+    assert finding.observed == words
     late = LogLine(99.0, "INFO", "pose_subscriber", "x=9.00 y=9.00 distance=9.00")
     after = found(LOG_POSITION, evidence(recording(WAY, log=(*logged(truth()).log, late))), format=FORMAT)
+    assert after.observed != words
     assert (after.status, "At 99 s" in after.observed) in ((Status.FAILED, True), (Status.PASSED, False))
 
 
