@@ -1,42 +1,55 @@
 """Find out from the movement itself whether something other than velocity commands moved the turtle.
 
-turtlesim moves a turtle in each frame by its velocities alone. A frame in which the turtle moved differently, or with a
-turning speed that no command set, shows a teleport, a reset or a rotate_absolute goal.
+turtlesim moves a turtle in each frame by its velocities alone, up to the walls. A frame in which the turtle moved
+differently, or turned while it followed a goal or without a command with this turning speed, shows a teleport, a reset
+or a rotate_absolute goal.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.common.lazy import np
 from grader.evidence import activity
+from grader.trial.observed import MOST_GOALS
+from grader.turtlesim.turtle import FRAME_S, SIDE_M
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
+
     from grader.trial.recording import Floats, Recording
 
-MOVING = frozenset({"reset", "teleport_absolute", "teleport_relative", "rotate_absolute"})
+    Steps = npt.NDArray[np.bool_]
+
+RESET = "reset"
+MOVING = frozenset({RESET, "teleport_absolute", "teleport_relative", "rotate_absolute"})
 """Calls that may move a turtle. Such a call has no effect if the turtle is already at the destination."""
-ALWAYS = frozenset({"kill", "set_parameters"})
+KILL = "kill"
+ALWAYS = frozenset({KILL, "set_parameters"})
 """Calls that remove a turtle or change its response to commands."""
-FRAME_S = 0.016
+ROTATE = "/turtle1/rotate_absolute"
 SAME = 1e-5
 """The largest difference (m, rad, rad/s) that counts as zero."""
 KEPT_S = 1.1
 """turtlesim stops a turtle when no command arrives for 1 s."""
 
 
-def moved_by(recording: Recording, *, from_start: bool) -> str | None:
+def moved_by(recording: Recording, *, from_start: bool, others_removed: bool = False) -> str | None:
     """Return the call that moved the turtle, or None.
 
     With `from_start`, all calls since the start of the trial count. Without `from_start`, only events after the first
-    command count.
+    command count. With `others_removed`, the node may remove other turtles and set parameters. It must still not remove
+    turtle1 and spawn it at another place.
     """
-    always = next((name for name in recording.interventions if name in ALWAYS), None)
-    names = [name for name in recording.interventions if name in MOVING]
-    if always is not None or not names:
+    always = next((name for name in recording.interventions if name in ALWAYS and not others_removed), None)
+    if always is not None:
         return always
     first = 0 if from_start else first_driven(recording)
-    return names[0] if _moved(recording, first) else None
+    names = [name for name in recording.interventions if name in MOVING]
+    if names and _moved(recording, first):
+        return names[0]
+    return KILL if KILL in recording.interventions and _jumped(recording, first) else None
 
 
 def first_driven(recording: Recording) -> int:
@@ -47,27 +60,72 @@ def first_driven(recording: Recording) -> int:
 
 def _moved(recording: Recording, first: int) -> bool:
     """Return whether this frame or a later frame shows a movement that the velocities or commands do not explain."""
+    path = _path(recording, first)
+    linear = recording.frames.linear[path.frames]
+    unlike = ~(_driven(path, linear) | _driven(path, -linear)) | path.turned_otherwise
+    return bool((unlike | _unasked(recording, path.frames) | _by_goal(recording, path.frames)).any())
+
+
+def _jumped(recording: Recording, first: int) -> bool:
+    """Return whether the turtle moved farther or turned more in this frame or a later frame than at its velocities."""
+    path = _path(recording, first)
+    far = np.hypot(np.diff(path.x), np.diff(path.y)) - np.abs(recording.frames.linear[path.frames]) * FRAME_S
+    return bool((~(far <= SAME) | path.turned_otherwise).any())
+
+
+@dataclass(frozen=True)
+class _Path:
+    """The part of a trajectory that some frames belong to.
+
+    `x`, `y` (m) and `theta` (rad) begin before the first of these frames. `turned_otherwise` says in which frames the
+    turtle did not turn at its turning speed.
+    """
+
+    frames: slice
+    x: Floats
+    y: Floats
+    theta: Floats
+    turned_otherwise: Steps
+
+
+def _path(recording: Recording, first: int) -> _Path:
+    """Return the path in the frames from number `first` until SIGINT."""
     frames = recording.frames
     stop = int(np.searchsorted(frames.t_s, activity.end_s(recording), side="right"))
-    begin = recording.start if first == 0 else None
     x, y, theta = (
-        values[first - 1 : stop] if begin is None else np.append(start, values[:stop])
+        values[first - 1 : stop] if first else np.append(start, values[:stop])
         for values, start in (
             (frames.x, recording.start.x),
             (frames.y, recording.start.y),
             (frames.theta, recording.start.theta),
         )
     )
-    now = slice(first, stop)
-    dx, dy = np.diff(x), np.diff(y)
-    turned = np.mod(np.diff(theta) - frames.angular[now] * FRAME_S + np.pi, 2.0 * np.pi) - np.pi
-    far = np.abs(np.hypot(dx, dy) - np.abs(frames.linear[now]) * FRAME_S)
-    aside = np.abs(dx * np.sin(theta[1:]) - dy * np.cos(theta[1:]))
-    by_position = ~((far <= SAME) & (aside <= SAME) | frames.wall[now])
-    return bool((by_position | ~(np.abs(turned) <= SAME) | _unasked(recording, now)).any())
+    turn = np.mod(np.diff(theta) - frames.angular[first:stop] * FRAME_S + np.pi, 2.0 * np.pi) - np.pi
+    return _Path(slice(first, stop), x, y, theta, ~(np.abs(turn) <= SAME))
 
 
-def _unasked(recording: Recording, now: slice) -> Floats:
+def _driven(path: _Path, speed: Floats) -> Steps:
+    """Return an array that says in which frames the turtle moved forward at this speed (m/s), as far as the walls."""
+    cos, sin = np.cos(path.theta[1:]), np.sin(path.theta[1:])
+    x = np.clip(path.x[:-1] + cos * speed * FRAME_S, 0.0, SIDE_M)
+    y = np.clip(path.y[:-1] + sin * speed * FRAME_S, 0.0, SIDE_M)
+    driven: Steps = (np.abs(x - path.x[1:]) <= SAME) & (np.abs(y - path.y[1:]) <= SAME)
+    return driven
+
+
+def _by_goal(recording: Recording, now: slice) -> Steps:
+    """Return an array that says in which of these frames the turtle turned while it followed a goal."""
+    t_s, angular = recording.frames.t_s[now], recording.frames.angular[now]
+    # After so many goals, further goals are not in the recording.
+    follows = np.full(len(t_s), len(recording.goals) >= MOST_GOALS)
+    for goal in recording.goals:
+        if goal.action == ROTATE:
+            follows |= (t_s > goal.t_s) & (t_s <= (np.inf if goal.ended_s is None else goal.ended_s))
+    turns: Steps = follows & (np.abs(angular) > SAME)
+    return turns
+
+
+def _unasked(recording: Recording, now: slice) -> Steps:
     """Return an array that says which of these frames have a turning speed that no recent command set."""
     frames = recording.frames
     times = np.array([command.t_s for command in recording.commands])

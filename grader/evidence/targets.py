@@ -76,6 +76,11 @@ def is_there(track: Track, from_s: float, to_s: float) -> bool:
     return track.rows[0][0] <= to_s and (track.gone_s is None or track.gone_s >= from_s)
 
 
+def moved_targets(recording: Recording) -> list[Track]:
+    """Return the turtles other than turtle1 that did not stay where they appeared."""
+    return [track for track in recording.tracks if len({row[1:] for row in track.rows}) > 1]
+
+
 def caught(recording: Recording) -> list[Track]:
     """Return the targets that were removed before SIGINT, in the order of their removal."""
     until = activity.end_s(recording)

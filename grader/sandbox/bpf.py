@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 Line = tuple[int, int, int, int]
 """A struct sock_filter: the operation, the numbers of lines to skip if the condition is true or false, and a value."""
 
-LOAD, EQUAL, AT_LEAST, ANY_BIT, RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
+LOAD, AND, EQUAL, AT_LEAST, ANY_BIT, RETURN = 0x20, 0x54, 0x15, 0x35, 0x45, 0x06
 ALLOW, ERRNO = 0x7FFF0000, 0x00050000
 _NUMBER, _ARCHITECTURE, _ARGUMENTS = 0, 4, 16
 _X86_64, _X32 = 0xC000003E, 0x40000000

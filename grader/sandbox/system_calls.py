@@ -54,15 +54,19 @@ DENIED = {
         "setdomainname": 171, "iopl": 172, "ioperm": 173, "vhangup": 153,
     },
 }  # fmt: skip
-_SOCKET, _CLONE, _CLONE3, _FCNTL = 41, 56, 435, 72
+_SOCKET, _SOCKETPAIR, _CLONE, _CLONE3, _FCNTL = 41, 53, 56, 435, 72
 _SET_PIPE_SIZE = 1031
 """F_SETPIPE_SZ of fcntl(2).
 
 This call is forbidden, because a user may have only 64 pipes of 1 MiB. Further pipes are small.
 """
 # AF_UNIX, AF_INET, AF_INET6, and AF_NETLINK for listing interfaces. AF_VSOCK would reach the host of a virtual machine.
-_FAMILIES = (1, 2, 10, 16)
+_NETLINK = 16
+_FAMILIES = (1, 2, 10, _NETLINK)
+# SOCK_STREAM, SOCK_DGRAM, SOCK_RAW (for AF_NETLINK) and SOCK_SEQPACKET, without the flags in the higher bits.
+_TYPES, _TYPE_BITS = (1, 2, 3, 5), 0xF
 # The family's default protocol, TCP and UDP. For others, such as SCTP, the kernel loads modules that are little tested.
+# The protocols of AF_NETLINK have numbers of their own: only the default, NETLINK_ROUTE, lists interfaces.
 _PROTOCOLS = (0, 6, 17)
 # CLONE_NEWNS, NEWCGROUP, NEWUTS, NEWIPC, NEWUSER, NEWPID and NEWNET.
 _NEW_NAMESPACE = 0x7E020000
@@ -96,13 +100,29 @@ def program() -> bytes:
     lines += [(bpf.ANY_BIT, 0, 1, _NEW_NAMESPACE), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
     lines += [(bpf.EQUAL, 0, 4, _FCNTL), (bpf.LOAD, 0, 0, bpf.argument(1))]
     lines += [(bpf.EQUAL, 0, 1, _SET_PIPE_SIZE), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
-    lines += [(bpf.EQUAL, 0, len(_FAMILIES) + len(_PROTOCOLS) + 4, _SOCKET)]
-    lines += _one_of(0, _FAMILIES, errno.EAFNOSUPPORT) + _one_of(2, _PROTOCOLS, errno.EPROTONOSUPPORT)
+    sockets = _usual_socket()
+    lines += [(bpf.EQUAL, 1, 0, _SOCKET), (bpf.EQUAL, 0, len(sockets), _SOCKETPAIR), *sockets]
     lines += [(bpf.RETURN, 0, 0, bpf.ALLOW)]
     return bpf.packed(lines)
 
 
-def _one_of(index: int, values: Sequence[int], error: int) -> list[bpf.Line]:
-    """Return the lines of the filter that make a call fail unless this argument has one of the values."""
+def _usual_socket() -> list[bpf.Line]:
+    """Return the lines of the filter that make socket and socketpair fail for a rare kind of socket.
+
+    The kernel loads the module of a family or protocol before it finds out that the call is not possible.
+    """
+    lines = _one_of(0, _FAMILIES, errno.EAFNOSUPPORT)
+    lines += _one_of(1, _TYPES, errno.ESOCKTNOSUPPORT, bits=_TYPE_BITS)
+    lines += _one_of(2, _PROTOCOLS, errno.EPROTONOSUPPORT)
+    of_netlink = _one_of(2, _PROTOCOLS[:1], errno.EPROTONOSUPPORT)
+    return [*lines, (bpf.LOAD, 0, 0, bpf.argument(0)), (bpf.EQUAL, 0, len(of_netlink), _NETLINK), *of_netlink]
+
+
+def _one_of(index: int, values: Sequence[int], error: int, *, bits: int = 0) -> list[bpf.Line]:
+    """Return the lines of the filter that make a call fail unless this argument has one of the values.
+
+    Only the given bits of the argument are compared, or all of its low 32 bits.
+    """
+    load = [(bpf.LOAD, 0, 0, bpf.argument(index)), *([(bpf.AND, 0, 0, bits)] if bits else [])]
     lines = [(bpf.EQUAL, len(values) - number, 0, value) for number, value in enumerate(values)]
-    return [(bpf.LOAD, 0, 0, bpf.argument(index)), *lines, (bpf.RETURN, 0, 0, bpf.ERRNO | error)]
+    return [*load, *lines, (bpf.RETURN, 0, 0, bpf.ERRNO | error)]

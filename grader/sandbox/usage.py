@@ -1,4 +1,4 @@
-"""Watch the total resource use of a cell: the memory and number of its processes, its disks, and the files on them.
+"""Watch the total resource use of a cell: its processes, their memory, the data in its sockets, its disks and files.
 
 Resource limits apply to each process separately, and bubblewrap limits the bytes of a tmpfs but not its files. Control
 groups limit totals, but not every user can create control groups. Checking the totals ten times per second works
@@ -8,6 +8,7 @@ everywhere.
 from __future__ import annotations
 
 import os
+import sys
 import time
 from pathlib import Path
 from threading import Event, Thread
@@ -25,6 +26,9 @@ LAUNCHERS = 16
 In a cell, the kernel counts processes too and refuses new ones before this number is reached.
 """
 _DISKS = ("ws", "tmp", "dev/shm")
+_SOCKETS = ("udp", "udp6", "tcp", "tcp6")
+_MOST_LISTED = 4 * 1024 * 1024
+"""A list of sockets that is longer than this (bytes) has more than 25,000 lines, which only an attack has."""
 _PAGE = os.sysconf("SC_PAGE_SIZE")
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
@@ -34,12 +38,15 @@ def exceeded(pid: int, limits: Limits) -> str | None:
     memory = 0
     processes = 0
     disks: dict[int, tuple[int, int]] = {}
+    networks = {_network(os.getpid()): 0}
     for process in family(pid):
         memory += _own_bytes(process)
         processes += _threads(process)
+        networks.setdefault(_network(process), process)
         if not disks:
             disks = _disks(process)
     memory += sum(used for used, _ in disks.values())
+    memory += sum(map(_waiting_bytes, filter(None, networks.values())))
     if memory > limits.total_memory:
         return "memory"
     if processes > limits.processes + LAUNCHERS:
@@ -111,6 +118,35 @@ def _own_bytes(pid: int) -> int:
     except (OSError, ValueError):
         return 0
     return (int(resident) - int(shared)) * _PAGE
+
+
+def _network(pid: int) -> str:
+    """Return the network namespace of the process, or "" if it is unknown."""
+    try:
+        return os.readlink(f"/proc/{pid}/ns/net")  # noqa: PTH115 - many, often
+    except OSError:
+        return ""
+
+
+def _waiting_bytes(pid: int) -> int:
+    """Return the size of the data that waits in the UDP and TCP sockets of the process's network (bytes).
+
+    The kernel has one limit on this memory for all networks of the machine. If it is reached, messages of other trials
+    are lost.
+    """
+    total = 0
+    for name in _SOCKETS:
+        try:
+            with open(f"/proc/{pid}/net/{name}", "rb") as file:  # noqa: PTH123 - quicker
+                listed = file.read(_MOST_LISTED)
+        except OSError:
+            continue
+        if len(listed) == _MOST_LISTED:
+            return sys.maxsize
+        for line in listed.splitlines()[1:]:
+            sends, _, receives = line.split(maxsplit=5)[4].partition(b":")
+            total += int(sends, 16) + int(receives, 16)
+    return total
 
 
 def _threads(pid: int) -> int:

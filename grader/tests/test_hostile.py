@@ -157,14 +157,16 @@ def assert_held(attack: Attack, done: Graded) -> None:
 
 
 def was_there(evidence: Evidence, what: str) -> bool:
-    """Return whether a topic, a node or an intervention is in the recording, or the build made too many files."""
+    """Return whether a topic, a node or an intervention is in a recording, or the build made too many files."""
     if evidence.run.overwhelmed is not None:
         return True
     if what.endswith(" files"):
         return evidence.build is not None and evidence.build.out_of is not None
-    recording = evidence.recording
-    nodes = {node.lstrip("/") for graph in recording.graphs for node in graph.nodes}
-    return what in recording.topics or what in recording.interventions or what in nodes
+    seen: set[str] = set()
+    for recording in (run.recording for run in evidence.runs.values() if run.recording is not None):
+        seen |= {node.lstrip("/") for graph in recording.graphs for node in graph.nodes}
+        seen |= {*recording.topics, *recording.interventions}
+    return what in seen
 
 
 @pytest.mark.clocks("undefended")

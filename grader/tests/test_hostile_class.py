@@ -35,12 +35,14 @@ HONEST = (
     "mistakes/332-clockwise",
 )
 """The submissions of the honest students: our solution, or a case."""
-TESTS = "12-tests"
-HONEST_TESTS = ("solution", "mistakes/1206-functions-not-named-test")
+HONEST_OF = {"12-tests": ("solution", "mistakes/1206-functions-not-named-test")}
+"""The honest submissions for another step, if they are not only our solution."""
 ATTACKS = read_attacks()
 CIRCLES = tuple(attack for attack in ATTACKS if attack.base == STEP)
 SAMPLE = tuple(attack for attack in CIRCLES if attack.sample)[:4]
 EACH = CLASS - len(HONEST)
+OTHERS = tuple(dict.fromkeys(attack.base for attack in ATTACKS if attack.base != STEP))
+"""The other steps that an attack is made for."""
 
 
 @dataclass(frozen=True)
@@ -136,10 +138,7 @@ def test_a_class_of_forty_with_every_attack(first: int, folder: Path, *, as_user
 
 
 @pytest.mark.exhaustive
-def test_a_class_with_every_attack_on_the_tests_of_step_12(folder: Path, *, as_user: bool) -> None:
-    attacks = tuple(attack for attack in ATTACKS if attack.base == TESTS)
-    assert_untouched(Class(folder, TESTS, HONEST_TESTS, as_user), attacks)
-
-
-def test_every_attack_is_in_a_class() -> None:
-    assert {attack.base for attack in ATTACKS} == {STEP, TESTS}
+@pytest.mark.parametrize("step", OTHERS)
+def test_a_class_with_every_attack_on_another_step(step: str, folder: Path, *, as_user: bool) -> None:
+    attacks = tuple(attack for attack in ATTACKS if attack.base == step)
+    assert_untouched(Class(folder, step, HONEST_OF.get(step, ("solution",)), as_user), attacks)

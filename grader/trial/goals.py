@@ -6,15 +6,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from grader.ros.message_values import plain
-from grader.trial.observed import Goal
+from grader.trial.observed import MOST_GOALS, Goal
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from grader.turtlesim.goal_event import GoalEvent
-
-MOST_GOALS = 1000
-"""A node that keeps sending goals must not fill the memory of the grader."""
 
 
 class GoalLog:

@@ -9,6 +9,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 
+MOST_GOALS = 1000
+"""The maximum number of goals in a recording. A node that keeps sending goals must not fill the grader's memory."""
+
+
 @dataclass(frozen=True)
 class Call:
     """A service call, with its request and response as plain data, at the time `t_s` of the trial's clock.

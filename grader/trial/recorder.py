@@ -38,7 +38,10 @@ OF_EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
 MOST_OBSERVED = 50_000
 """The maximum number of nodes and endpoints in all snapshots together."""
 MOST_MESSAGES = 20_000
+"""The maximum number of messages on a judged topic, and on all other topics together."""
 MOST_BYTES = 32 * 1024 * 1024
+MOST_JUDGED_BYTES = 4 * 1024 * 1024
+"""The maximum size of the messages on a judged topic."""
 
 
 class Recorder(Node):
@@ -73,16 +76,23 @@ class Recorder(Node):
         self._prefixes = prefixes
         self._simulated = simulated
         self._known: set[tuple[str, str]] = set()
-        self._bytes = 0
+        self._kept: Counter[str] = Counter()
+        self._bytes: Counter[str] = Counter()
+        """The number and the size of the messages, counted like `_subscribed`."""
         self._observed = 0
         self._participant = self._own_participant()
 
     def keep(self, topic: str, type_name: str, data: bytes) -> bool:
-        """Store a message that has just arrived. Return False if the recording is full."""
-        if len(self.messages) >= MOST_MESSAGES or self._bytes + len(data) > MOST_BYTES:
+        """Store a message that has just arrived. Return False if the recording is full.
+
+        Messages on other topics must not displace those on a judged topic.
+        """
+        group, most_bytes = (topic, MOST_JUDGED_BYTES) if topic in self._judged else ("", MOST_BYTES)
+        if self._kept[group] >= MOST_MESSAGES or self._bytes[group] + len(data) > most_bytes:
             self.dropped += 1
             return False
-        self._bytes += len(data)
+        self._kept[group] += 1
+        self._bytes[group] += len(data)
         self.messages.append(Message(topic, type_name, data, self.now(), time.monotonic()))
         return True
 

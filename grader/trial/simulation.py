@@ -5,18 +5,17 @@ from __future__ import annotations
 import time
 from collections import Counter
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import rclpy
 from rclpy.executors import SingleThreadedExecutor, TimeoutException
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 
-from grader.ros.message_values import plain
 from grader.trial.arrivals import MOST_AT_ONCE, take_messages, take_requests
+from grader.trial.call_log import CallLog
 from grader.trial.caller import Caller
 from grader.trial.goals import GoalLog
-from grader.trial.observed import Call
 from grader.trial.recorder import Recorder
 from grader.trial.silent_servers import SilentServers
 from grader.trial.target_keeper import TargetKeeper
@@ -33,6 +32,7 @@ if TYPE_CHECKING:
     from grader.trial.crowd import Stalls
     from grader.trial.inputs import Inputs
     from grader.trial.node_group import NodeGroup
+    from grader.trial.observed import Call
     from grader.trial.recording import Pose
 
 COMMANDS = "/turtle1/cmd_vel"
@@ -69,6 +69,7 @@ class Simulation:
         simulated = {**PUBLISHED, "/clock": "rosgraph_msgs/msg/Clock"}
         self.recorder = Recorder(self.now, prefixes, simulated, (COMMANDS, *PUBLISHED, *judged))
         self.goals = GoalLog(self.now)
+        self._calls = CallLog(self.now)
         self.turtlesim = TurtlesimNode(
             start=Start(start.x, start.y, start.theta),
             pose_every=inputs.pose_every,
@@ -78,19 +79,18 @@ class Simulation:
             on_command=self.recorder.keep_command,
             on_publish=self.recorder.keep,
             on_intervention=self._intervened,
-            on_call=self._called,
+            on_call=self._calls.answered,
             on_goal=self.goals.add,
         )
-        self.turtles = TurtleWatch()
+        self.turtles = TurtleWatch(target.name for target in inputs.targets)
         self.caller = Caller(self.recorder, inputs.calls, self.now) if inputs.calls else None
         self.recorder.follows_services = self.caller is not None
-        self._calls: list[Call] = []
         several = node is not None and len(node.processes) > 1
-        self._silent_servers = SilentServers(self.recorder, prefixes, self._overheard) if several else None
+        self._silent_servers = SilentServers(self.recorder, prefixes, self._calls.overheard) if several else None
         self._in_company_s: float | None = None
         leave_out_events(self.recorder)
         leave_out_events(self.turtlesim)  # before there are other turtles, which can be removed
-        self.keeper = TargetKeeper(self.turtlesim, inputs.targets, self._called) if inputs.targets else None
+        self.keeper = TargetKeeper(self.turtlesim, inputs.targets, self._calls.answered) if inputs.targets else None
         self._nodes: tuple[Node, ...] = (self.turtlesim, self.recorder)
         self._nodes += (self.keeper,) if self.keeper is not None else ()
         self.executor = SingleThreadedExecutor()
@@ -248,16 +248,7 @@ class Simulation:
     def calls(self) -> tuple[Call, ...]:
         """The calls to the simulator and to the node, in order."""
         made = self.caller.calls if self.caller is not None else ()
-        return tuple(sorted((*self._calls, *made), key=lambda call: call.t_s))
-
-    def _called(self, service: str, type_name: str, request: Any, response: Any, waited_s: float) -> None:  # noqa: ANN401
-        if len(self._calls) < _MOST_INTERVENTIONS:
-            now_s = self.now()
-            self._calls.append(Call(now_s - waited_s, service, type_name, plain(request), plain(response), now_s))
-
-    def _overheard(self, service: str, type_name: str, request: Any) -> None:  # noqa: ANN401 - a ROS message
-        if len(self._calls) < _MOST_INTERVENTIONS:
-            self._calls.append(Call(self.now(), service, type_name, plain(request)))
+        return tuple(sorted((*self._calls.calls, *made), key=lambda call: call.t_s))
 
     def _intervened(self, name: str) -> None:
         # A thousand calls to a harmless service must not hide the next teleport.

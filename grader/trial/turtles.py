@@ -7,18 +7,22 @@ from typing import TYPE_CHECKING
 from grader.trial.observed import PenChange, Track
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from grader.turtlesim.turtle import Pen
     from grader.turtlesim.world import World
 
 MOST_ROWS = 100_000
-"""The maximum number of rows in all tracks together."""
+"""The maximum number of rows in all tracks together, without those of the targets."""
 MOST_CHANGES = 2000
 
 
 class TurtleWatch:
     """Records the changes to turtles and pens, frame by frame."""
 
-    def __init__(self) -> None:
+    def __init__(self, targets: Iterable[str] = ()) -> None:
+        """Record nothing yet. The `targets` are recorded however many other turtles there are."""
+        self._targets = frozenset(targets)
         self._pens: dict[str, Pen] = {}
         self._changes: list[PenChange] = []
         self._rows: dict[str, list[tuple[float, float, float, float]]] = {}
@@ -33,11 +37,11 @@ class TurtleWatch:
                     pen = turtle.pen
                     self._changes.append(PenChange(now_s, name, pen.color, pen.width, pen.down))
                 self._pens[name] = turtle.pen
-            if name != "turtle1" and self._count < MOST_ROWS:
+            if name in self._targets or (name != "turtle1" and self._count < MOST_ROWS):
                 rows = self._rows.setdefault(name, [])
                 if not rows or rows[-1][1:] != (turtle.x, turtle.y, turtle.theta):
                     rows.append((now_s, turtle.x, turtle.y, turtle.theta))
-                    self._count += 1
+                    self._count += name not in self._targets
         if len(self._pens) > len(world.turtles):
             for name in set(self._pens) - set(world.turtles):
                 del self._pens[name]

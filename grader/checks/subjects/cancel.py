@@ -15,6 +15,7 @@ from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.subjects.goals import goals_of, no_goal
 from grader.checks.subjects.services import calls_of, no_response
 from grader.checks.tolerance import Band
+from grader.trial.observed import MOST_GOALS
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -98,6 +99,9 @@ def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
     found = _stopped(goals, calls)
     if found is None:
         return Finding(Status.SKIPPED, "Not judged, because no goal was stopped.")
+    if len(evidence.recording.goals) >= MOST_GOALS:
+        observed = f"The node sent {MOST_GOALS} goals or more, and the recording does not contain all of them."
+        return failed(observed, expected, Cause("goal-after-cancel", "", evidence.place("send_goal_async")))
     after = [goal for goal in goals if goal.t_s > found[0].t_s]
     if after:
         observed = f"The node sent another goal {after[0].t_s - found[0].t_s:.1f} s after the call."

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
@@ -18,8 +18,8 @@ from grader.checks.subjects.services import calls_of
 from grader.checks.tolerance import unless_starved
 from grader.common.words import a_list, count, shorten
 from grader.evidence import activity
-from grader.evidence.interventions import MOVING, moved_by
-from grader.evidence.targets import caught, distance_m, is_there
+from grader.evidence.interventions import KILL, RESET, moved_by
+from grader.evidence.targets import caught, distance_m, is_there, moved_targets
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -65,18 +65,15 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
     expected = f"All targets are caught within {recording.duration_s:g} s, and turtle1 moves only by driving."
     tracks = recording.tracks
     gone = caught(recording)
-    moved = _forbidden(recording)
+    moved = moved_by(recording, from_start=True, others_removed=True)
     if moved is not None:
         observed = f"The node moved the turtle with {moved}."
         text = "The turtle must drive to each target: publish on /turtle1/cmd_vel."
         return failed(observed, expected, Cause("not-driven", text, evidence.place("create_client", "ActionClient")))
-    if evidence.trial.scenario.targets and "kill" in recording.interventions:
-        text = "Only the spawner may remove a target. Call its service /catch."
-        cause = Cause("not-driven", text, evidence.place("create_client"))
-        killed = {call.request.get("name") for call in calls_of(evidence) if call.service == "/kill"}
-        target = any(track.turtle in killed for track in tracks)
-        observed = "The node removed a target itself, with /kill." if target else "The node called /kill."
-        return failed(observed, expected, cause)
+    by_node = _without_driving(evidence)
+    if by_node is not None:
+        observed, text = by_node
+        return failed(observed, expected, Cause("not-driven", text, evidence.place("create_client")))
     uncaught = _uncaught(recording, gone, params.service)
     if uncaught is not None:
         observed = f"{shorten(uncaught.turtle)} was removed at {uncaught.gone_s:.1f} s, although nobody caught it."
@@ -110,10 +107,26 @@ def _uncaught(recording: Recording, gone: list[Track], service: str) -> Track | 
     return next(late, None)
 
 
-def _forbidden(recording: Recording) -> str | None:
-    """Return the service call that moved turtle1, or None. Removing a target is allowed."""
-    moving = tuple(name for name in recording.interventions if name in MOVING)
-    return moved_by(replace(recording, interventions=moving), from_start=True)
+def _without_driving(evidence: Evidence) -> tuple[str, str] | None:
+    """Return how the node caught a target without driving to it, and the cause, or None.
+
+    A spawner of the submission may move and remove its own targets.
+    """
+    recording = evidence.recording
+    if not evidence.trial.scenario.targets:
+        return None
+    text = "Only the spawner may remove a target. Call its service /catch."
+    if RESET in recording.interventions:
+        return "The node removed all targets itself, with /reset.", text
+    if KILL in recording.interventions:
+        killed = {call.request.get("name") for call in calls_of(evidence) if call.service == "/kill"}
+        target = any(track.turtle in killed for track in recording.tracks)
+        return "The node removed a target itself, with /kill." if target else "The node called /kill.", text
+    moved = moved_targets(recording)
+    if moved:
+        text = "The turtle must drive to each target. Publish on /turtle1/cmd_vel only."
+        return f"The node moved {shorten(moved[0].turtle)}, which is a target.", text
+    return None
 
 
 def nearest_first(evidence: Evidence, _: NoParams) -> Finding:
@@ -193,6 +206,11 @@ def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
         return failed(observed, f"{expected} One call is enough.", Cause("catch-again", text, where))
     if not calls:
         return failed(f"The node never called {params.service}.", expected, why_unasked(evidence, params.service))
+    unseen = _uncaught(recording, caught(recording), params.service)
+    if unseen is not None:
+        observed = f"{shorten(unseen.turtle)} was removed, but the recording has no call of {params.service} for it."
+        text = "A recording keeps a limited number of calls. The node made too many."
+        return failed(observed, expected, Cause("catch-again", text, where))
     return passed(f"Each time the node called {params.service}, the target was near.")
 
 

@@ -17,13 +17,13 @@ from grader.checks.outcome import Finding, failed, passed
 from grader.checks.tolerance import Band
 from grader.common.words import count
 from grader.evidence import activity
+from grader.evidence.interventions import ROTATE
 from grader.turtlesim.turtle import normalize
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
     from grader.trial.observed import Goal
 
-ROTATE = "/turtle1/rotate_absolute"
 TYPE = "turtlesim/action/RotateAbsolute"
 SAME_RAD = 0.02
 HALF_TURN_S = 3.2

@@ -11,6 +11,7 @@ from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, failed, passed
+from grader.checks.subjects.path import moved_otherwise
 from grader.checks.tolerance import Band
 from grader.common.lazy import np
 from grader.evidence.trajectory import RESTS_M
@@ -48,6 +49,9 @@ def pause(evidence: Evidence, params: Pause) -> Finding:
     expected = f"At {params.from_s:g} s, the turtle has {params.within_s:g} s to stop."
     expected += f" At {params.until_s:g} s, the turtle continues." if params.goes_on else ""
     where = evidence.place("create_service")
+    moved = moved_otherwise(evidence, expected)
+    if moved is not None:
+        return moved
     crash = crash_of(evidence)
     if crash is not None and evidence.recording.end.t_s < params.until_s + params.within_s:
         return crash_finding(evidence, crash, end_observed(evidence), expected)

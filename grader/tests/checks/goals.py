@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from grader.checks.subjects.goals import ROTATE, TYPE
+from grader.checks.subjects.goals import TYPE
+from grader.evidence.interventions import ROTATE
 from grader.tests.checks.made import NODE, NODE_FILE, evidence, recording, submission
 from grader.trial.observed import Call, Goal
 

@@ -110,6 +110,21 @@ def test_a_cell_with_too_many_files_is_ended() -> None:
     assert (done.out_of, done.timed_out) == ("files", False)
 
 
+def test_data_that_waits_in_sockets_counts_as_memory() -> None:
+    code = """
+import socket, sys, time
+receivers = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(60)]
+sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+for receiver in receivers:
+    receiver.bind(("127.0.0.1", 0))
+    for _ in range(10 * sends):
+        sender.sendto(bytes(20_000), receiver.getsockname())
+time.sleep(1.0 + 20.0 * sends)
+"""
+    limits = Limits(total_memory=12 * MIB)
+    assert [run(f"sends = {sends}{code}", limits).out_of for sends in (0, 1)] == [None, "memory"]
+
+
 def test_only_forbidden_calls_are_refused() -> None:
     numbers = sorted(number for group in DENIED.values() for number in group.values())
     code = f"""
@@ -123,13 +138,16 @@ assert libc.syscall(39) > 0
 import socket, threading, subprocess
 threading.Thread(target=int).start()
 subprocess.run(["true"], check=True)
-socket.socket(); socket.socket(socket.AF_UNIX)
-try:
-    socket.socket(socket.AF_VSOCK, socket.SOCK_STREAM)
-except OSError as error:
-    assert error.errno == errno.EAFNOSUPPORT
-else:
-    raise AssertionError
+socket.socket(); socket.socket(socket.AF_UNIX); socket.socketpair(); socket.if_nameindex()
+socket.socket(socket.AF_NETLINK, socket.SOCK_RAW | socket.SOCK_CLOEXEC)
+for which in ((40, 1, 0), (2, 6, 0), (2, 10, 0), (2, 1, 132), (16, 3, 6), (16, 3, 15)):
+    for call in (socket.socket, socket.socketpair):
+        try:
+            call(*which)
+        except OSError as error:
+            assert error.errno in (errno.EAFNOSUPPORT, errno.ESOCKTNOSUPPORT, errno.EPROTONOSUPPORT), which
+        else:
+            raise AssertionError(which)
 print("held")
 """
     done = run(code)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from grader.tests.checks.made import recording
-from grader.trial.goals import MOST_GOALS, GoalLog
-from grader.trial.observed import Goal
+from grader.trial.goals import GoalLog
+from grader.trial.observed import MOST_GOALS, Goal
 from grader.trial.recording import from_json, to_json
 from grader.turtlesim.goal_event import TYPE, GoalEvent, What
 

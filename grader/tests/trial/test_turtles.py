@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+from grader.trial import turtles
 from grader.trial.turtles import TurtleWatch
 from grader.turtlesim.turtle import FRAME_S, Pen, Start
 from grader.turtlesim.world import World
+
+if TYPE_CHECKING:
+    import pytest
 
 
 def test_pens_and_other_turtles_are_recorded_as_they_change() -> None:
@@ -38,3 +44,15 @@ def test_pens_and_other_turtles_are_recorded_as_they_change() -> None:
     assert first.rows[0][1:] == (2.0, 3.0, 0.0)
     assert (first.gone_s, second.gone_s) == (6 * FRAME_S, None)
     assert second.rows[0][1:] == (1.0, 1.0, 0.0)
+
+
+def test_a_crowd_of_turtles_does_not_hide_a_target(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(turtles, "MOST_ROWS", 3)
+    world, watch = World(), TurtleWatch(["target"])
+    for name in ("target", *(f"other{number}" for number in range(5))):
+        world.spawn(name, Start())
+    watch.look(0.0, world)
+    world.turtles["target"].x = 1.0
+    watch.look(FRAME_S, world)
+    rows = {track.turtle: len(track.rows) for track in watch.tracks}
+    assert (rows["target"], sum(rows.values())) == (2, 5)

@@ -12,6 +12,7 @@ from grader.checks.subjects.cancel import CANCELS_GOAL, NO_GOAL_AFTER, SAYS_WHET
 from grader.tests.checks.goals import given, goal, stop
 from grader.tests.checks.made import found
 from grader.tests.checks.told import told
+from grader.trial.observed import MOST_GOALS
 
 if TYPE_CHECKING:
     from grader.trial.observed import Goal
@@ -47,6 +48,11 @@ def test_no_goal_follows_a_cancelled_one() -> None:
     assert found(NO_GOAL_AFTER, given(cancelled, calls=calls), service="/stop").status is Status.PASSED
     again = given(cancelled, goal(3.1, 0.0, 5.0), calls=calls)
     assert found(NO_GOAL_AFTER, again, service="/stop").diagnosis == "goal-after-cancel"
+    crowd = (goal(0.5, 0.0, 0.6, "aborted"),) * (MOST_GOALS - 1)
+    flood = found(NO_GOAL_AFTER, given(*crowd, cancelled, calls=calls), service="/stop")
+    assert flood.diagnosis == "goal-after-cancel"
+    assert flood.observed.endswith("goals or more, and the recording does not contain all of them.")
+    assert "or more" not in found(NO_GOAL_AFTER, again, service="/stop").observed
 
 
 @pytest.mark.parametrize(

@@ -112,6 +112,26 @@ def test_a_teleport_is_not_driving() -> None:
     assert diagnosis(finding) == "not-driven"
 
 
+@pytest.mark.parametrize("name", ["kill", "reset"])
+def test_a_target_that_the_node_removed_itself_is_not_caught(name: str) -> None:
+    assert diagnosis(found(CATCHES, with_targets(given(interventions=(name,))))) == "not-driven"
+
+
+def test_a_target_that_moved_is_not_caught() -> None:
+    brought = Track("far", ((0.0, 9.0, 5.54, 0.0), (3.0, 7.2, 5.54, 0.0)), 3.4)
+    assert found(CATCHES, with_targets(given(NEAR, FAR))).status is Status.PASSED
+    finding = found(CATCHES, with_targets(given(NEAR, brought)))
+    assert (diagnosis(finding), finding.observed) == ("not-driven", "The node moved far, which is a target.")
+    assert found(CATCHES, given(NEAR, brought)).status is Status.PASSED, "a spawner may move its own targets"
+
+
+def with_targets(made: Evidence) -> Evidence:
+    """Return the same evidence for a trial whose targets belong to the grader."""
+    trial = made.exercise.trials[0]
+    targets = replace(trial, scenario=replace(trial.scenario, targets=2))
+    return replace(made, exercise=replace(made.exercise, trials=(targets, *made.exercise.trials[1:])))
+
+
 def test_the_farther_one_first_is_named() -> None:
     finding = found(NEAREST_FIRST, given(at("near", 6.5, 9.0), at("far", 9.0, 3.4)))
     assert (finding.diagnosis, finding.expected) == (
@@ -126,6 +146,7 @@ def test_the_farther_one_first_is_named() -> None:
         ((catch(0.1, "near"), catch(3.4, "far")), "from-afar"),
         ((*(catch(1.3 + 0.01 * number, "near") for number in range(5)), catch(3.4, "far")), "catch-again"),
         ((catch(1.4, "near"), catch(3.4, "turtle1")), "target-name"),
+        ((catch(1.4, "near"),), "catch-again"),
     ],
 )
 def test_wrong_calls_are_named(calls: tuple[Call, ...], expected: str) -> None:

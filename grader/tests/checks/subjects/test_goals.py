@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from grader.checks.outcome import Status
-from grader.checks.subjects.goals import AWAITS_RESULT, ROTATE, SENDS_GOALS, TYPE
+from grader.checks.subjects.goals import AWAITS_RESULT, SENDS_GOALS, TYPE
+from grader.evidence.interventions import ROTATE
 from grader.tests.checks.goals import given, goal, stop
 from grader.tests.checks.made import evidence, found, recording
 from grader.tests.checks.told import told

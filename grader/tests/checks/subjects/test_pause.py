@@ -37,6 +37,11 @@ def test_a_turtle_that_hears_nothing_rolls_on() -> None:
     assert found(PAUSE, evidence(recording(commands)), from_s=3.0, until_s=6.0).diagnosis == "no-stop-command"
 
 
+def test_a_turtle_that_is_removed_for_the_pause_does_not_stand_still() -> None:
+    made = recording(rests(3.1, 6.0), interventions=("kill", "spawn"))
+    assert found(PAUSE, evidence(made), from_s=3.0, until_s=6.0).diagnosis == "intervention"
+
+
 def rests(from_s: float, until_s: float, again_s: float = 99.0) -> list[Timed]:
     """Return commands that drive a circle, except between two times. At `again_s`, the turtle drives for 0.5 s."""
     return [

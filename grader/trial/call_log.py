@@ -1,0 +1,49 @@
+"""The service calls that nodes make: to the simulator, and to each other."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+from grader.ros.message_values import plain
+from grader.trial.observed import Call
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+MOST_CALLS, MOST_ALIKE = 1000, 200
+"""The maximum number of calls that are kept. After this number, a call is still kept if fewer than MOST_ALIKE calls
+to services of this name are kept, such as set_pen of any turtle."""
+
+
+class CallLog:
+    """Records the calls. A thousand calls of a harmless service must not hide the next call of another service."""
+
+    def __init__(self, now: Callable[[], float]) -> None:
+        """Create an empty log. `now` returns the time of the trial (s)."""
+        self._now = now
+        self._calls: list[Call] = []
+        self._alike: Counter[str] = Counter()
+
+    @property
+    def calls(self) -> tuple[Call, ...]:
+        """The recorded calls, in the order in which they were answered or overheard."""
+        return tuple(self._calls)
+
+    def answered(self, service: str, type_name: str, request: Any, response: Any, waited_s: float) -> None:  # noqa: ANN401
+        """Record a call that the grader has answered, `waited_s` (s) after the call arrived."""
+        if self._has_room(service):
+            now_s = self._now()
+            self._calls.append(Call(now_s - waited_s, service, type_name, plain(request), plain(response), now_s))
+
+    def overheard(self, service: str, type_name: str, request: Any) -> None:  # noqa: ANN401 - a ROS message
+        """Record a call between two nodes."""
+        if self._has_room(service):
+            self._calls.append(Call(self._now(), service, type_name, plain(request)))
+
+    def _has_room(self, service: str) -> bool:
+        name = service.rpartition("/")[2]
+        if len(self._calls) >= MOST_CALLS and self._alike[name] >= MOST_ALIKE:
+            return False
+        self._alike[name] += 1
+        return True
