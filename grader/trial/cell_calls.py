@@ -2,12 +2,14 @@
 
 This file runs as a separate script. The script reads one line of JSON (`calls`, `script`, `function`, `python_path`,
 `env`, `install`, `files`) and then the install tree, a tar stream, from standard input. The script writes one line of
-JSON for each call. A student's code can write such lines too, but does not know the expected numbers.
+JSON for each call. A call cannot write such lines, because this process cannot be inspected (not dumpable): otherwise,
+one call could decide what another call raised.
 """
 
 from __future__ import annotations
 
 import base64
+import ctypes
 import importlib
 import json
 import os
@@ -29,6 +31,8 @@ CALL_S = 20.0
 MOST_TEXT = 20_000
 POLL_S = 0.005
 TOO_LATE = "too late"
+_DUMPABLE = 4
+"""PR_SET_DUMPABLE of prctl(2)."""
 
 
 def main() -> None:
@@ -48,6 +52,7 @@ def main() -> None:
     for module in order["ahead"]:
         importlib.import_module(module)
     importlib.invalidate_caches()
+    ctypes.CDLL(None).prctl(_DUMPABLE, 0, 0, 0, 0)
     for call in order["calls"]:
         called = _called(order, call)
         os.write(1, json.dumps({"id": call["id"], **called}).encode() + b"\n")
@@ -106,6 +111,7 @@ def _ended(child: int) -> str:
 
 def _child(order: dict[str, Any], call: dict[str, Any], files: tuple[int, int, int]) -> None:
     os.setpgid(0, 0)
+    ctypes.CDLL(None).prctl(_DUMPABLE, 1, 0, 0, 0)  # so that a program can open /dev/stdin and /dev/stdout
     resource.setrlimit(resource.RLIMIT_CPU, (CPU_S, CPU_S + 1))
     os.dup2(files[0], 1)
     os.dup2(files[1], 2)
