@@ -114,7 +114,17 @@ def test_a_teleport_is_not_driving() -> None:
 
 @pytest.mark.parametrize("name", ["kill", "reset"])
 def test_a_target_that_the_node_removed_itself_is_not_caught(name: str) -> None:
-    assert diagnosis(found(CATCHES, with_targets(given(interventions=(name,))))) == "not-driven"
+    finding = found(CATCHES, with_targets(given(interventions=(name,))))
+    assert diagnosis(finding) == "not-driven"
+    assert finding.observed == f"The node removed a target itself, with /{name}."
+    assert finding.cause == "Only the spawner may remove a target. Call its service /catch."
+
+
+def test_a_call_that_is_not_in_the_recording_was_perhaps_made_from_afar() -> None:
+    finding = found(WITHIN_REACH, given(calls=CALLS[:1]), service="/catch", reach_m=0.5)
+    assert finding.observed == "far was removed, but the recording has no call of /catch for it."
+    assert finding.cause == "A recording keeps a limited number of calls. The node made too many."
+    assert "no call" not in found(WITHIN_REACH, given(), service="/catch", reach_m=0.5).observed
 
 
 def test_a_target_that_moved_is_not_caught() -> None:
@@ -122,6 +132,8 @@ def test_a_target_that_moved_is_not_caught() -> None:
     assert found(CATCHES, with_targets(given(NEAR, FAR))).status is Status.PASSED
     finding = found(CATCHES, with_targets(given(NEAR, brought)))
     assert (diagnosis(finding), finding.observed) == ("not-driven", "The node moved far, which is a target.")
+    assert finding.cause == "The turtle must drive to each target. Publish on /turtle1/cmd_vel only."
+    assert "is a target" not in found(CATCHES, given(NEAR, brought)).observed
     assert found(CATCHES, given(NEAR, brought)).status is Status.PASSED, "a spawner may move its own targets"
 
 
@@ -146,7 +158,6 @@ def test_the_farther_one_first_is_named() -> None:
         ((catch(0.1, "near"), catch(3.4, "far")), "from-afar"),
         ((*(catch(1.3 + 0.01 * number, "near") for number in range(5)), catch(3.4, "far")), "catch-again"),
         ((catch(1.4, "near"), catch(3.4, "turtle1")), "target-name"),
-        ((catch(1.4, "near"),), "catch-again"),
     ],
 )
 def test_wrong_calls_are_named(calls: tuple[Call, ...], expected: str) -> None:
