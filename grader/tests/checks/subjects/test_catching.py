@@ -112,11 +112,14 @@ def test_a_teleport_is_not_driving() -> None:
     assert diagnosis(finding) == "not-driven"
 
 
+REMOVED = {"kill": "The node called /kill.", "reset": "The node removed all targets itself, with /reset."}
+
+
 @pytest.mark.parametrize("name", ["kill", "reset"])
 def test_a_target_that_the_node_removed_itself_is_not_caught(name: str) -> None:
     finding = found(CATCHES, with_targets(given(interventions=(name,))))
     assert diagnosis(finding) == "not-driven"
-    assert finding.observed == f"The node removed a target itself, with /{name}."
+    assert finding.observed == REMOVED[name]
     assert finding.cause == "Only the spawner may remove a target. Call its service /catch."
 
 
