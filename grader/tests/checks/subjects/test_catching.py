@@ -282,7 +282,7 @@ OFTEN = tuple(catch(1.3 + 0.01 * number, "near") for number in range(5))
         ("Each time the node called /catch, the target was near.", CALLS, ()),
         ("The node never called /catch.", (), CALLS[:1]),
         ("When the node called /catch for near, this turtle was 0.65 m away.", (catch(0.1, "near"),), CALLS[:1]),
-        ("The node calls /catch when the target is at most 0.5 m away.", (catch(0.1, "near"),), CALLS[:1]),
+        ("The node calls /catch when the target is at most 0.5 m away.", (catch(0.1, "near"),), CALLS),
         ('The node called /catch with the name "mouse".', (catch(1.4, "mouse"),), CALLS[:1]),
         ("The targets were far and near. The name is a field of the request.", (catch(1.4, "mouse"),), OFTEN),
         ("The node called /catch for near repeatedly.", OFTEN, OFTEN[:3]),
