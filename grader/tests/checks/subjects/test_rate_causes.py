@@ -65,8 +65,8 @@ def test_a_sleep_without_a_timer_is_reported() -> None:
     found = rate("one hertz", (f"self.timer = {TIMER}", loop))
     assert (found.diagnosis, found.cause) == ("sleep-period", "The node sleeps for 1 s between two commands.")
     once = rate("one hertz", (f"self.timer = {TIMER}", "time.sleep(1.0)"))
-    assert (once.diagnosis, once.cause) == ("wrong-rate", "The time between two calls of publish sets the rate.")
-    assert "The time between two calls of" not in found.cause
+    assert (once.diagnosis, once.cause) == ("wrong-rate", "The time between two calls to publish sets the rate.")
+    assert "The time between two calls to" not in found.cause
 
 
 @pytest.mark.parametrize(
