@@ -39,7 +39,8 @@ class Arc:
 
     def angles(self) -> Floats:
         """Return the angles of the points (rad)."""
-        return np.radians(np.linspace(self.from_deg, self.to_deg, self.count))
+        radians: Floats = np.radians(np.linspace(self.from_deg, self.to_deg, self.count))
+        return radians
 
     def deviations(self) -> tuple[float, float, float]:
         """Return the standard deviations (m) of centre x, centre y and radius of a circle that is fitted to the points.

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import shlex
+import warnings
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,7 +16,7 @@ from grader.errors import MachineError, UsageError
 from grader.exercise.model import catalogue, course_folder
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
 CONFIG = "nbgrader_config.py"
 CLASS = "class"
@@ -38,6 +40,26 @@ class ClassFolders:
     def results(self) -> Path:
         """The folder of the grader's results."""
         return Path(self.course.root) / CLASS / RESULTS
+
+    @contextmanager
+    def gradebook(self) -> Iterator[Any]:
+        """Open nbgrader's gradebook, and create it if necessary.
+
+        SQLAlchemy's warnings about nbgrader's code are not shown, because they mean nothing to an instructor.
+
+        Raises MachineError if the database cannot be read or written.
+        """
+        from nbgrader.api import Gradebook
+        from sqlalchemy.exc import OperationalError, SAWarning
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", SAWarning)
+            try:
+                with Gradebook(self.course.db_url, self.course.course_id) as opened:
+                    yield opened
+            except OperationalError as error:
+                message = f"The gradebook {self.course.db_url} could not be read or written: {error.orig}."
+                raise MachineError(message) from error
 
     def submitted(self, student: str, step: str) -> Path:
         """Return the folder that a student handed in for a step."""

@@ -48,9 +48,7 @@ def make_class(folder: Path, roster: Path | None) -> int:
 
 def _enrol(students: list[dict[str, str]], folders: ClassFolders) -> None:
     """Add the students to the gradebook, which is created."""
-    from nbgrader.api import Gradebook
-
-    with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
+    with folders.gradebook() as gradebook:
         for student in students:
             about = {key: value for key, value in student.items() if key != "id" and value}
             gradebook.update_or_create_student(student["id"], **about)

@@ -88,13 +88,12 @@ def sync(
         MachineError: the machine cannot grade or write. If the machine fails, unconfirmed scores are also worth 0
             points.
     """
-    from nbgrader.api import Gradebook
     from sqlalchemy.exc import SQLAlchemyError
 
     wanted = [find_exercise(step).id for step in steps]
     submissions = folders.submissions(wanted)
     results = Results(folders.results)
-    with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
+    with folders.gradebook() as gradebook:
         _require_assignments(gradebook, {step for _, step in submissions})
         # Withhold scores first, so that no provisional score remains if grading is interrupted.
         withhold_unconfirmed(gradebook, results, wanted)
@@ -110,7 +109,7 @@ def sync(
     graded = grade_found(request, found, say, tell)
     tally: Counter[str] = Counter()
     elsewhere: dict[str, None] = {}
-    with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
+    with folders.gradebook() as gradebook:
         for result in graded:
             name = (result.student, result.report.exercise)
             try:
@@ -130,12 +129,10 @@ def sync(
 
 def compare(folders: ClassFolders, steps: Sequence[str]) -> list[Difference]:
     """Return checks on which autograde's kernel and the grader disagree, and scores that are not confirmed."""
-    from nbgrader.api import Gradebook
-
     kept = Results(folders.results)
     wanted = [find_exercise(step).id for step in steps]
     differences: list[Difference] = []
-    with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
+    with folders.gradebook() as gradebook:
         doubted = unconfirmed(gradebook, kept, wanted)
         names = [(student, step) for student, step, _ in submissions_of(gradebook, wanted)]
     doubts = {(each.student, each.step, check): each.why for each in doubted for check in each.checks}

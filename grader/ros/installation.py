@@ -44,7 +44,8 @@ _THEIRS = frozenset(
     }
 )
 """Variables whose values are kept if the user has set them."""
-_PYTHON_LIB = Path(f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages")
+PYTHON_LIB = Path(f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages")
+"""The folder of Python packages, relative to a prefix."""
 
 
 @dataclass(frozen=True)
@@ -144,7 +145,7 @@ def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: 
         "AMENT_PREFIX_PATH": os.pathsep.join(map(str, [*local, *ros.prefixes])),
         "CMAKE_PREFIX_PATH": os.pathsep.join(map(str, [*local, *ros.prefixes])),
         "LD_LIBRARY_PATH": os.pathsep.join(map(str, [*(p / "lib" for p in local), *ros.library_path])),
-        "PYTHONPATH": os.pathsep.join(map(str, [*(p / _PYTHON_LIB for p in local), *ros.python_path])),
+        "PYTHONPATH": os.pathsep.join(map(str, [*(p / PYTHON_LIB for p in local), *ros.python_path])),
         # Without this, the .pth file of the wheels would start every interpreter a second time and mix their libraries
         # with those of a sourced ROS.
         "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1",
@@ -272,7 +273,7 @@ def _wheels(prefix: Path) -> Ros | None:
         prefixes=(prefix,),
         python=prefix / "bin" / "python3",
         python_path=(),
-        library_path=(prefix / "lib", *sorted((prefix / _PYTHON_LIB).glob("ros_*.libs"))),
+        library_path=(prefix / "lib", *sorted((prefix / PYTHON_LIB).glob("ros_*.libs"))),
     )
 
 

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 from grader.common import package_managers, xdg
 from grader.common.interpreter import interpreter
+from grader.common.readable_by_all import make_readable
 from grader.errors import MachineError
 from grader.ros import installation
 
@@ -182,6 +183,8 @@ def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> 
             *("-DCMAKE_BUILD_TYPE=None", "-DBUILD_TESTING=OFF"),
             f"-DPython3_EXECUTABLE={ros.python}",
             f"-DCMAKE_INSTALL_PREFIX={prefix}",
+            # ament would find this folder with a Python program that contains the prefix between apostrophes.
+            f"-DPYTHON_INSTALL_DIR={installation.PYTHON_LIB}",
             # Keep the path of the temporary folder out of the build. A shell parses the flags, and the path may contain
             # spaces. CMake would strip quotes around the whole value.
             *(f"-DCMAKE_{language}_FLAGS=-ffile-prefix-map={no_trace}" for language in ("C", "CXX")),
@@ -195,13 +198,16 @@ def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> 
             *("-m", "compileall", "-q", "-s", f"{folder}/staged", str(staged / "lib")), python=str(ros.python), env=env
         )
         _run(compiling.argv, compiling.env, tell)
-        _make_readable(staged)
+        make_readable(staged)
         _move(staged, prefix)
 
 
 def _place_to_build(cache: Path) -> Path:
-    """Return the folder in which to build. CMake cuts the paths of the interfaces at a character that is not ASCII."""
-    return cache if str(cache).isascii() else Path(tempfile.gettempdir())
+    """Return the folder in which to build, whose path has only usual characters.
+
+    CMake cuts the paths of the interfaces at a character that is not ASCII, and not every command quotes apostrophes.
+    """
+    return cache if re.fullmatch(r"[\w./ +-]+", str(cache), re.ASCII) else Path(tempfile.gettempdir())
 
 
 def _move(staged: Path, prefix: Path) -> None:
@@ -254,11 +260,3 @@ def _percent(line: str) -> int | None:
         return None
     done = int(match[1])
     return done if match[2] == "%" else 100 * done // max(int(match[3]), 1)
-
-
-def _make_readable(folder: Path) -> None:
-    """Let every user read the files (a+rX) regardless of the umask, because a trial may run as another user."""
-    for path in [folder, *folder.rglob("*")]:
-        if not path.is_symlink():
-            mode = path.stat().st_mode
-            path.chmod(mode | (0o555 if path.is_dir() or mode & 0o111 else 0o444))

@@ -21,6 +21,7 @@ from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from grader.common import interpreter, package_managers
 from grader.common.package_managers import Need
+from grader.common.readable_by_all import make_readable
 from grader.setup import machine, setup_errors
 from grader.setup.compiled_modules import remove_incomplete
 from grader.setup.provide import provide
@@ -206,6 +207,10 @@ def main(arguments: Sequence[str]) -> int:
     with (ROOT / "requirements.lock").open() as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)  # A second `make` waits for the first one.
         remove_incomplete(ROOT / "grader")
+        if os.getuid() == 0:
+            # Cells run as another user, who must be able to read .venv and the grader.
+            os.umask(0o022)
+            make_readable(ROOT / "grader")
         return set_up(PARTS[requested.parts], ros, requested.python)
 
 

@@ -59,6 +59,9 @@ OPEN(open64)
 ssize_t write(int fd, const void *data, size_t size) {
     return fd > 2 && fails("write") ? -1 : REAL(write)(fd, data, size);
 }
+ssize_t pwrite64(int fd, const void *data, size_t size, off64_t at) {
+    return fails("write") ? -1 : REAL(pwrite64)(fd, data, size, at);
+}
 int pipe2(int ends[2], int flags) { return fails("pipe") ? -1 : REAL(pipe2)(ends, flags); }
 int mkdir(const char *path, mode_t mode) { return fails("mkdir") ? -1 : REAL(mkdir)(path, mode); }
 int rename(const char *from, const char *to) { return fails("rename") ? -1 : REAL(rename)(from, to); }

@@ -25,6 +25,24 @@ def test_first_set_up_makes_the_environment_and_fills_it(course: Course) -> None
     assert (stamp.parts, stamp.ros, stamp.version) == (LEARNER, "wheels", [3, 11, 2])
 
 
+@pytest.mark.parametrize(("user", "mask", "mode"), [(0, 0o022, 0o644), (1000, 0o077, 0o600)])
+def test_what_root_sets_up_can_be_read_by_the_user_of_a_cell(
+    course: Course, monkeypatch: pytest.MonkeyPatch, user: int, mask: int, mode: int
+) -> None:
+    monkeypatch.setattr(os, "getuid", lambda: user)
+    monkeypatch.setattr(machine, "platform_problem", lambda *_: "")
+    monkeypatch.setattr(machine, "sourced_ros", lambda *_: None)
+    module = course.root / "grader/module.py"
+    module.parent.mkdir()
+    module.touch(mode=0o600)
+    before = os.umask(0o077)
+    try:
+        assert bootstrap.main(["learner"]) == 0
+    finally:
+        during = os.umask(before)
+    assert (during, module.stat().st_mode & 0o777) == (mask, mode)
+
+
 def test_second_set_up_does_nothing(course: Course) -> None:
     course.set_up()
     assert course.set_up() == 0
