@@ -33,7 +33,7 @@ from grader.submission.package import Submission, open_answers, open_submission,
 from grader.submission.search import IGNORE_MARKER
 from grader.testbench.result import from_json as tests_from_json
 from grader.trial.called import called_from_json
-from grader.trial.recording import from_json, to_json
+from grader.trial.recording_json import from_json, to_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

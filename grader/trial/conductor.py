@@ -25,9 +25,11 @@ from grader.ros import installation
 from grader.sandbox import bubblewrap
 from grader.sandbox.limits import NODE_LIMITS, limited
 from grader.trial.inputs import Inputs
+from grader.trial.launcher import postponed
 from grader.trial.node_group import NodeGroup
 from grader.trial.node_process import LaunchError, NodeProcess
-from grader.trial.recording import Beside, Pose, Recording, frames_of, to_json
+from grader.trial.recording import Beside, Pose
+from grader.trial.recording_json import new_to_json, to_json
 from grader.trial.rest import DoubtError
 
 if TYPE_CHECKING:
@@ -88,11 +90,12 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
     if order["alone"]:
         from grader.trial.without_node import AloneTrial
 
-        recording = AloneTrial(start, prefixes, inputs).record(order["duration_s"], order["seed"])
-        _say(answers, {"recording": to_json(recording)})
+        alone = AloneTrial(start, prefixes, inputs).record(order["duration_s"], order["seed"])
+        _say(answers, {"recording": to_json(alone)})
         return
     names, in_cell = ["", *order["beside"]], order["in_cell"]
     with ExitStack() as stack:
+        stack.enter_context(postponed())
         processes = [
             stack.enter_context(NodeProcess(lambda *fds: _command(ros, order, *fds), NODE_LIMITS, in_cell=in_cell))
             for _ in names
@@ -118,7 +121,8 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
         first, *others = (Beside(name, *p.output(), p.end(sigint_s)) for name, p in zip(names, processes, strict=True))
         doubts = tuple(trial.doubts)
         recorder = trial.recorder
-        recording = Recording(
+        recording = new_to_json(
+            trial.frames,
             clock=order["clock"],
             why="",
             seed=order["seed"],
@@ -128,7 +132,6 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
             messages=tuple(recorder.messages),
             dropped=recorder.dropped,
             commands=tuple(recorder.commands),
-            frames=frames_of(trial.frames),
             log=tuple(recorder.log),
             graphs=tuple(recorder.graphs),
             topics={topic: tuple(sorted(types)) for topic, types in sorted(recorder.topics.items())},
@@ -150,7 +153,7 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
             crowded=trial.crowded(),
             seconds=trial.seconds,
         )
-        _say(answers, {"recording": to_json(recording)})
+        _say(answers, {"recording": recording})
 
 
 def _run(trial: SimulatedTrial | WallTrial, duration_s: float) -> float:

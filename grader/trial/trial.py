@@ -28,7 +28,7 @@ from grader.sandbox.user import cell_user
 from grader.trial.inputs import Inputs
 from grader.trial.own_domain import own_domain
 from grader.trial.process_group import ProcessGroup
-from grader.trial.recording import from_json
+from grader.trial.recording_json import from_json
 
 if TYPE_CHECKING:
     from grader.trial.recording import ClockName, Pose, Recording

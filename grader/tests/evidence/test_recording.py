@@ -1,9 +1,11 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from dataclasses import fields, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pytest
 from mcap.reader import make_reader
 
 from grader.evidence.bag import read_payloads, write_bag
@@ -19,9 +21,8 @@ from grader.trial.recording import (
     ProcessEnd,
     Recording,
     frames_of,
-    from_json,
-    to_json,
 )
+from grader.trial.recording_json import from_json, new_to_json, to_json
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -94,3 +95,10 @@ def test_the_bag_is_one_that_another_reader_opens(tmp_path: Path) -> None:
 
 def test_arrivals_in_a_stall_or_right_after_it_are_not_trusted() -> None:
     assert [RECORDING.stalled(t_s) for t_s in (0.99, 1.0, 1.5, 1.54, 1.6)] == [False, True, True, True, False]
+
+
+@pytest.mark.parametrize("rows", [[(0.0, 1.0, 2.0, 3.0, 4.0, 5.0, True), (0.016, 1, 2, 3, 4, 5, False)], []])
+def test_a_new_recording_has_the_same_json_without_numpy(rows: list[Any]) -> None:
+    recording = replace(RECORDING, frames=frames_of(rows))
+    values = {field.name: getattr(recording, field.name) for field in fields(recording) if field.name != "frames"}
+    assert json.dumps(new_to_json(rows, **values)) == json.dumps(to_json(recording))

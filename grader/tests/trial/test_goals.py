@@ -7,7 +7,7 @@ from dataclasses import replace
 from grader.tests.checks.made import recording
 from grader.trial.goals import GoalLog
 from grader.trial.observed import MOST_GOALS, Goal
-from grader.trial.recording import from_json, to_json
+from grader.trial.recording_json import from_json, to_json
 from grader.turtlesim.goal_event import TYPE, GoalEvent, What
 
 ACTION = "/turtle1/rotate_absolute"

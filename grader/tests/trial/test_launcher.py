@@ -105,3 +105,25 @@ def test_a_traceback_shows_the_program_alone(in_ros: InRos, tmp_path: Path) -> N
     assert b"Context.init() must only be called once" in done.stderr
     assert b"launcher.py" not in done.stderr
     assert b'node", line 4, in <module>' in done.stderr
+
+
+ARRAYS = """#!/usr/bin/env python3
+import sys
+loaded = [name in sys.modules for name in ("numpy", "yaml")]
+from geometry_msgs.msg import PoseWithCovariance, Twist
+Twist()
+loaded.append("numpy" in sys.modules)
+covariance = PoseWithCovariance().covariance
+import numpy
+import yaml
+print(loaded, type(covariance) is numpy.ndarray, numpy.zeros(2).sum(), yaml.safe_load("1"), type(numpy).__name__)
+"""
+
+
+@pytest.mark.parametrize(("arguments", "loaded"), [(SIMULATED, False), ([], True)], ids=["simulated", "wall"])
+def test_modules_that_few_nodes_need_are_imported_on_first_use(
+    in_ros: InRos, tmp_path: Path, arguments: list[str], *, loaded: bool
+) -> None:
+    """In wall time, they are imported before the program runs, since the import would delay a callback."""
+    done = launch(in_ros, tmp_path, ARRAYS, arguments)
+    assert printed(done).decode() == f"{[loaded] * 3} True 0.0 1 module\n", done.stderr

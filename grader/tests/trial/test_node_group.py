@@ -10,7 +10,8 @@ import pytest
 from grader.ros.installation import find_ros
 from grader.ros.underlay import with_turtlesim
 from grader.trial.inputs import Inputs
-from grader.trial.recording import Pose, Recording, from_json, to_json
+from grader.trial.recording import Pose, Recording
+from grader.trial.recording_json import from_json, to_json
 from grader.trial.target_places import draw_targets
 from grader.trial.trial import Plan, Trial
 
