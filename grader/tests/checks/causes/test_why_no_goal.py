@@ -7,7 +7,8 @@ import math
 import pytest
 
 from grader.checks.causes.why_no_goal import why_aborted, why_no_goal
-from grader.checks.subjects.goals import ROTATE, TYPE
+from grader.checks.subjects.goals import TYPE
+from grader.evidence.interventions import ROTATE
 from grader.tests.checks.made import NODE, NODE_FILE, evidence, recording, submission
 from grader.trial.observed import Goal
 from grader.trial.recording import Endpoint, Graph
