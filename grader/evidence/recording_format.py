@@ -1,4 +1,4 @@
-"""Archive: a graded submission as a folder that contains everything needed to judge it again, without running it.
+"""Recording: a graded submission as a folder that contains everything needed to judge it again, without running it.
 
     trials/ID/       one folder per trial: bag/ with the messages (rosbag2, MCAP) and trial.json with the rest;
                      calls.json instead, if functions or programs were called without a simulator; or tests.json

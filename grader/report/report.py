@@ -79,7 +79,7 @@ class Report:
 def report_of(
     evidence: Evidence, outcomes: tuple[Outcome, ...], ros: str, seconds: dict[str, float], *, confined: bool = True
 ) -> Report:
-    """Return the report on judged evidence.
+    """Return the report on a submission, from its evidence and the outcomes of its checks.
 
     `ros` is the name of the ROS 2 installation, and `seconds` contains the wall time of each stage.
     """

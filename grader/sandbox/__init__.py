@@ -1,1 +1,1 @@
-"""The sandbox: containers ("cells") for student code, and the limits of these containers."""
+"""The sandbox: cells, which contain student code, rooms, which contain the simulator, and their limits."""

@@ -1,6 +1,6 @@
 """Conduct one trial, in the process that contains the simulator, the recorder and the clock.
 
-This process and the student's node run in two containers of the sandbox, a room and a cell (grader.sandbox). The
+This process runs in a room of the sandbox, and the student's node in a cell inside this room (grader.sandbox). The
 process exchanges JSON lines with the grader's own process over its standard streams. The first line of input describes
 the trial. The process answers {"ready": true} when the simulator and the launcher are ready. The second line of input
 says what to start, and the install tree follows this line. The last line of output is {"recording": {...}}, {"doubt":

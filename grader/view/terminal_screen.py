@@ -12,6 +12,7 @@ from rich.text import Text
 
 from grader.common.words import printable
 from grader.graph.graph import Show
+from grader.turtlesim.turtle import TIME_OUT_S
 from grader.view.blocks import Blocks, Picture
 from grader.view.topics import rows
 
@@ -28,8 +29,6 @@ BESIDE = 38
 _BELOW = 6
 """The number of rows for the title, the simulator's output and the keys."""
 _LEAST = 8
-_LASTS_S = 1.0
-"""The time after the last command at which turtlesim stops the turtle (s)."""
 _KEYS = "↑ ↓ ← → drive · E R T D G C V B turn, F stops · Space pause · X clear · Z reset · Tab turtle · Q quit"
 
 
@@ -113,7 +112,7 @@ class Screen:
         if topic is None:
             return [*lines, Text("No command has arrived yet.", style="dim")]
         command = state.commands[topic]
-        old = "dim" if time.monotonic() - command.when_s > _LASTS_S else ""
+        old = "dim" if time.monotonic() - command.when_s > TIME_OUT_S else ""
         linear, angular = command.twist[0], command.twist[5]
         return [
             *lines,
