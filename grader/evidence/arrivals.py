@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Measured:
-    """The arrival times, the intervals between them, the time before the first arrival, and the time after the last (s).
+    """The arrival times, the intervals between them, and the times before the first and after the last arrival (s).
 
     `intervals` and `mean_s` leave out the intervals that were changed by a stall of the machine, and the intervals that
     begin in the initial period (`activity.START_S`). `begins` contains the start times of the intervals. `trusted` is
