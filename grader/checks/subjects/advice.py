@@ -31,7 +31,7 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
     if evidence.code.node_file not in {module.file for module in evidence.code.modules if module.tree is not None}:
         return Finding(Status.SKIPPED, "Not judged, because the file of the node cannot be read.")
     cause = "A timer calls a method periodically, at a period that the node chooses."
-    if loops(evidence):
+    if loops(evidence) and not evidence.code.calls("spin_once"):
         cause = "A node that runs its own loop receives no messages. With a timer, rclpy.spin does the waiting."
     if evidence.code.calls("create_rate"):
         cause = "A rate from create_rate works only while another thread spins the node. A timer needs no thread."

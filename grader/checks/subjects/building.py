@@ -11,11 +11,12 @@ from grader.checks.causes.crash import read_tracebacks
 from grader.checks.causes.syntax import unreadable_observed, why_unreadable
 from grader.checks.causes.why_crashed import why_crashed
 from grader.checks.kind import Kind, NoParams
-from grader.checks.outcome import Finding, failed, passed
+from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.subjects.package_xml import why_not_read
 from grader.common.words import a_list, shorten
 from grader.submission.code import import_path
 from grader.submission.package_xml import line_of
+from grader.submission.plain_setup import read_plain_setup
 from grader.submission.search import IGNORE_MARKER
 from grader.submission.where import Where
 
@@ -57,6 +58,9 @@ def builds(evidence: Evidence, _: NoParams) -> Finding:
     known = early(evidence, _)
     if known is not None:
         return known
+    if build.timed_out and _only_calls_setup(evidence):
+        message = f"`colcon build` was still running after {build.seconds:.0f} s, although setup.py only calls setup()."
+        return Finding(Status.ERROR, f"{message} Try again when the machine is less busy.")
     if build.timed_out:
         cause = "setup.py should only call setup(). setup.py must not sleep, ask for input or loop."
         return failed(
@@ -70,6 +74,12 @@ def builds(evidence: Evidence, _: NoParams) -> Finding:
     if build.exit_code != 0 or build.package is None:
         return _broken(evidence)
     return _modules(evidence)
+
+
+def _only_calls_setup(evidence: Evidence) -> bool:
+    """Return whether setup.py has the usual form, so that the machine and not the package made the build slow."""
+    files = evidence.submission.files
+    return read_plain_setup(files["setup.py"], files.get("setup.cfg", b""), files.keys()) is not None
 
 
 def early(evidence: Evidence, _: NoParams) -> Finding | None:

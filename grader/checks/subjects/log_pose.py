@@ -140,7 +140,7 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
         return failed(observed, expected, Cause("distance-from-zero", cause, where))
     if _is_chords(logged, numbers):
         cause = (
-            "The node adds one straight line per second, between the logged positions. On a curve, the turtle drives "
+            "The node adds one straight line from each logged position to the next. On a curve, the turtle drives "
             "further than the straight line. Add a step each time a pose arrives."
         )
         return failed(observed, expected, Cause("distance-by-chords", cause, where))

@@ -34,6 +34,7 @@ XML = re.compile(
     r"|invalid token|undefined entity"
 )
 """Messages of an XML parser about text that is not valid XML."""
+BARE_AMPERSAND = re.compile(r"&(?!#?\w+;)")
 ROS_1_TAGS = re.compile(r"must not contain the following tags: .*\b(?P<tag>run_depend)\b")
 
 
@@ -84,6 +85,8 @@ def why_not_read(evidence: Evidence, manifest: Manifest) -> Cause:
         if "mismatched tag" in problem:
             tag_, line = open_tag(evidence.submission.files[FILE])
             cause = f"<{shorten(tag_, 30)}> in line {line} has no closing tag </{shorten(tag_, 30)}>."
+        elif BARE_AMPERSAND.search(_line_text(evidence, line)):
+            cause = "In XML, & begins the name of a character. Write &amp; for the character & itself."
         elif "junk after" in problem:
             cause = "Nothing is allowed after the last tag, </package>."
         return Cause("xml-malformed", cause, Where(FILE, line))
@@ -166,7 +169,7 @@ def _why_not_declared(
     if guess is not None:
         cause = f'The file declares "{shorten(guess)}". Is that a typo?'
         return Cause("depend-misspelt", cause, _line(evidence, re.escape(guess)))
-    comment = re.search(rf"<!--(?:(?!-->).)*\b{re.escape(name)}\b", _text(evidence), re.DOTALL)
+    comment = re.search(rf"<!--(?:(?!-->).)*depend>\s*{re.escape(name)}\s*<", _text(evidence), re.DOTALL)
     if comment is not None:
         cause = "The line is inside a comment, between <!-- and -->, so it does not count."
         line = _text(evidence)[: comment.end()].count("\n") + 1
@@ -195,6 +198,12 @@ def _used(evidence: Evidence, package: str) -> bool:
 
 def _text(evidence: Evidence) -> str:
     return evidence.submission.files[FILE].decode("utf-8", "replace")
+
+
+def _line_text(evidence: Evidence, number: int | None) -> str:
+    """Return the line of package.xml with this number (from 1), or an empty string."""
+    lines = _text(evidence).splitlines()
+    return lines[number - 1] if number is not None and number <= len(lines) else ""
 
 
 def name(evidence: Evidence, _: NoParams) -> Finding:

@@ -30,7 +30,7 @@ def stop(evidence: Evidence, params: Stop) -> Finding:
     """The node runs until SIGINT and exits soon after it. The exit code and any traceback do not matter."""
     end = evidence.recording.end
     expected = f"The node runs until Ctrl-C and then stops within {params.within_s:.0f} s."
-    if end.by == "itself":
+    if end.by == "itself" or end.out_of is not None:
         return _too_early(evidence, expected)
     limit = Band.at_most(params.within_s)
     took = end.stop_s if end.stop_s is not None else float("inf")

@@ -31,8 +31,12 @@ def found(evidence: Evidence, _: NoParams) -> Finding:
     runs = evidence.bench.runs
     most = max((run.collected for run in runs), default=0)
     code = code_of(evidence)
-    if most or code.tests or any(run.outcome == "import" for run in runs):
-        return passed(f"pytest finds {count(max(most, len(code.tests)), 'test')}.")
+    if most:
+        return passed(f"pytest finds {count(most, 'test')}.")
+    if code.tests:
+        return passed(f"The files contain {count(len(code.tests), 'test')}.")
+    if any(run.outcome == "import" for run in runs):
+        return passed("pytest finds the files.")
     expected = "pytest finds tests: functions named test_SOMETHING in files named test_SOMETHING.py."
     return failed("pytest finds no test.", expected, why_no_test(code))
 
@@ -48,7 +52,7 @@ def pass_(evidence: Evidence, _: NoParams) -> Finding:
         if any(run.passed for run in runs):
             return passed(f"All tests pass on the correct node ({count(len(runs), 'run')}).")
         where = code.tests[0].where if code.tests else None
-        skipped = any(run.skipped for run in runs)
+        skipped = all(run.skipped >= run.collected > 0 for run in runs)
         why = "Every test is skipped, and a skipped test tests nothing." if skipped else LEFT_OUT
         return failed("No test ran to completion.", expected, Cause("all-skipped", why, where))
     if not rejected:
@@ -108,7 +112,7 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
     if not run.accepted:
         name = shorten(run.test.rpartition("::")[2], 60)
         return passed(f"{name or 'A test'} fails on {params.does}, as it should.")
-    observed = f"All tests pass on {params.does}."
+    observed = f"No test fails on {params.does}."
     return failed(observed, expected, _why_accepted(evidence, params, code))
 
 

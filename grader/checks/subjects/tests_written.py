@@ -79,7 +79,7 @@ def outside(evidence: Evidence, _: NoParams) -> Finding:
                 )
     use = _first_use(code, READERS)
     if use is not None:
-        observed = f"The tests use {shorten(use.written, 60)}, which reads a file."
+        observed = f"The tests use {shorten(use.written, 60)}, which can read a file."
         return failed(observed, expected, Cause("looks-at-source", LOOKS, use.where))
     for module in code.modules:
         for node in module.nodes:

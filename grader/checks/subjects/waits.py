@@ -8,7 +8,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.waiting import has_threads, waits_in_callbacks
 from grader.checks.kind import Kind, NoParams
 from grader.checks.outcome import Finding, failed, passed
-from grader.evidence import activity
+from grader.evidence import activity, student_log
 
 if TYPE_CHECKING:
     from grader.checks.causes.waiting import Wait
@@ -56,7 +56,8 @@ def _hangs(evidence: Evidence) -> bool:
     last_s = max(answered, default=None)
     if last_s is None or activity.end_s(recording) - last_s < SILENT_S:
         return False
-    sent = (*(command.t_s for command in activity.commands(recording)), *(call.t_s for call in made))
+    logged = (line.t_s for line in student_log.students(recording))
+    sent = (*logged, *(command.t_s for command in activity.commands(recording)), *(call.t_s for call in made))
     return max(sent) <= last_s + ALSO_S
 
 

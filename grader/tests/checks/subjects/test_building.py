@@ -9,7 +9,8 @@ import pytest
 
 from grader.checks.outcome import Status
 from grader.tests.checks.changed import BARE, INIT, LINKED, NOTHING, of, setup_py, xml
-from grader.tests.checks.made import BUILD
+from grader.tests.checks.made import BUILD, SETUP_PY, evidence, finding, submission
+from grader.tests.checks.told import told
 
 if TYPE_CHECKING:
     from grader.colcon.build import Build
@@ -165,3 +166,89 @@ def test_folders_that_are_no_packages_explain_that_nothing_was_installed(
     found = of("build", files, build)
     assert found.diagnosis == diagnosis
     assert found.cause.startswith(cause)
+
+
+EMPTY = replace(NOTHING, installed=())
+BROKEN = replace(NOTHING, exit_code=1, log="error: no such option")
+SLOW = replace(NOTHING, exit_code=-9, timed_out=True, seconds=60.0)
+LIMITED = replace(NOTHING, exit_code=1, out_of="memory")
+NO_MARKERS = replace(BUILD, installed=tuple(path for path in BUILD.installed if "resource_index" not in path))
+
+
+@pytest.mark.parametrize(
+    ("words", "check", "true", "near"),
+    [
+        ("`colcon build` built and installed the package.", "build", ({}, BUILD), ({}, BARE)),
+        (
+            "Each folder with Python files has a file __init__.py, which can be empty.",
+            "build",
+            ({INIT: None}, BARE),
+            ({}, BARE),
+        ),
+        (
+            "colcon could not read the arguments of setup() in setup.py.",
+            "build",
+            ({}, replace(NOTHING, exit_code=1, log=UNREAD)),
+            ({}, BROKEN),
+        ),
+        (
+            "setup.py should only call setup(). setup.py must not print anything or exit.",
+            "build",
+            ({}, replace(NOTHING, exit_code=1, log=UNREAD)),
+            ({}, BROKEN),
+        ),
+        ("`colcon build` used all the memory that a package may use.", "build", ({}, LIMITED), ({}, BROKEN)),
+        ("setup.py should only call setup().", "build", ({}, LIMITED), ({}, BROKEN)),
+        (
+            "colcon builds an ament_python package by running its setup.py.",
+            "build",
+            ({"setup.py": None}, EMPTY),
+            ({}, EMPTY),
+        ),
+        ("`colcon build` was still running after 60 s.", "build", ({}, SLOW), ({}, BROKEN)),
+        ("setup.py must not sleep, ask for input or loop.", "build", ({}, SLOW), ({}, LIMITED)),
+        ("ROS 2 finds the installed package.", "installed", ({}, BUILD), ({}, NO_MARKERS)),
+        (
+            "`ros2 run` and other tools use these files to find a package.",
+            "installed",
+            ({}, NO_MARKERS),
+            ({"package.xml": "<package>"}, NO_MARKERS),
+        ),
+        (
+            "colcon cannot read package.xml, so it built a plain Python package.",
+            "installed",
+            ({"package.xml": "<package>"}, NO_MARKERS),
+            ({}, NO_MARKERS),
+        ),
+    ],
+)
+def test_a_sentence_about_the_build_is_true(
+    words: str, check: str, true: tuple[Files, Build], near: tuple[Files, Build]
+) -> None:
+    assert words in told(of(check, *true))
+    assert words not in told(of(check, *near))
+
+
+PLAIN: Files = {
+    "setup.py": SETUP_PY.replace("    packages", '    version="0.1.0",\n    packages'),
+    "setup.cfg": (
+        "[develop]\nscript_dir=$base/lib/my_robot_controller\n"
+        "[install]\ninstall_scripts=$base/lib/my_robot_controller\n"
+    ),
+}
+SLEEPS: Files = {**PLAIN, "setup.py": f"import time\ntime.sleep(99)\n{PLAIN['setup.py']!s}"}
+
+
+@pytest.mark.parametrize(("files", "status"), [(PLAIN, Status.ERROR), (SLEEPS, Status.FAILED)])
+def test_a_slow_build_of_a_usual_setup_py_is_not_the_students_fault(files: Files, status: Status) -> None:
+    found = of("build", files, SLOW)
+    assert found.status is status
+    words = "although setup.py only calls setup(). Try again when the machine is less busy."
+    assert (words in found.observed) == (status is Status.ERROR)
+
+
+@pytest.mark.parametrize(("rejected", "found"), [((), True), (("data: a link that leaves the package.",), False)])
+def test_files_that_are_not_normal_are_told(rejected: tuple[str, ...], *, found: bool) -> None:
+    reported = finding("files", evidence(package=submission(rejected=rejected)))
+    assert (reported.observed == "The package contains only normal files and folders.") == found
+    assert (reported.expected == "A package contains only normal files and folders.") != found

@@ -10,6 +10,7 @@ import pytest
 from grader.checks.outcome import Status
 from grader.tests.checks.changed import NOTHING, POINT, of, setup_py
 from grader.tests.checks.made import BUILD, NODE, NODE_FILE
+from grader.tests.checks.told import told
 
 if TYPE_CHECKING:
     from grader.colcon.build import Build
@@ -114,3 +115,30 @@ def test_a_function_inside_of_the_class_is_not_found() -> None:
 @pytest.mark.parametrize("text", [b"x = " + b"(" * 5000, b"x = " + b"-" * 90_000 + b"1", b"a" * 500_000])
 def test_a_file_that_is_too_much_to_parse_is_left_to_the_trial(text: bytes) -> None:
     assert of("entry-point", {NODE_FILE: text}).status in (Status.PASSED, Status.FAILED)
+
+
+EMPTY: Files = {NODE_FILE: "\n"}
+ONE_LINE: Files = {NODE_FILE: "x = 1\n"}
+ELSEWHERE = replace(BUILD, executables=())
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("my_robot_controller/draw_circle.py contains no code.", (EMPTY, BUILD), (ONE_LINE, BUILD)),
+        ("Did you save the file?", (EMPTY, BUILD), (ONE_LINE, BUILD)),
+        ("The function is at the top level of the file.", (ONE_LINE, BUILD), (EMPTY, BUILD)),
+        ("The file contains the function main, which the entry point names.", (EMPTY, BUILD), (ONE_LINE, BUILD)),
+        (
+            "setup.cfg says where to install executables, so that `ros2 run` finds them.",
+            ({}, ELSEWHERE),
+            ({}, BUILD),
+        ),
+        ("setup.cfg is missing.", ({"setup.cfg": None}, ELSEWHERE), ({}, ELSEWHERE)),
+    ],
+)
+def test_a_sentence_about_the_entry_point_is_true(
+    words: str, true: tuple[Files, Build], near: tuple[Files, Build]
+) -> None:
+    assert words in told(of("entry-point", *true))
+    assert words not in told(of("entry-point", *near))

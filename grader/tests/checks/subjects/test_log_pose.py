@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -11,11 +11,13 @@ import pytest
 from grader.checks.outcome import Finding, Status
 from grader.checks.subjects.log_pose import LOG_DISTANCE, LOG_POSITION
 from grader.tests.checks.made import NODE_FILE, evidence, found, frames, legs, node, recording
+from grader.tests.checks.told import told
 from grader.trial.recording import LogLine
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from grader.checks.kind import Kind
     from grader.trial.recording import Floats, Recording
 
 FORMAT = "x={x:.2f} y={y:.2f} distance={distance:.2f}"
@@ -193,3 +195,64 @@ def test_lines_that_a_stall_delayed_do_not_count_and_without_others_nobody_is_bl
     assert found(LOG_POSITION, evidence(all_of_it), format=FORMAT).status is Status.ERROR
     silent = replace(all_of_it, log=())
     assert found(LOG_POSITION, evidence(silent), format=FORMAT).status is Status.FAILED
+
+
+def about(kind: Kind[Any], trial: Recording, source: str = "") -> str:
+    package = node(("        msg = Twist()", f"        {source or 'pass'}\n        msg = Twist()"))
+    return told(found(kind, evidence(trial, package), format=FORMAT))
+
+
+X, Y, DRIVEN = truth()
+ZERO, CHORDS = (X, Y, DRIVEN * 0), WRONG["from place to place"][0](truth())
+
+
+@pytest.mark.parametrize(
+    ("words", "kind", "true", "near"),
+    [
+        ("Each line shows where the turtle is.", LOG_POSITION, (X, Y, DRIVEN), (X + 1.0, Y, DRIVEN)),
+        ("x and y are fields of the message", LOG_POSITION, (X + 1.0, Y, DRIVEN), (Y, X, DRIVEN)),
+        ("x and y are swapped.", LOG_POSITION, (Y, X, DRIVEN), (X + 1.0, Y, DRIVEN)),
+        ("The numbers never change.", LOG_POSITION, (X * 0, Y * 0, DRIVEN), (X + 1.0, Y, DRIVEN)),
+        ("The distance stays 0. Each time a pose arrives, the step", LOG_DISTANCE, ZERO, (X, Y, 2.0 * DRIVEN)),
+        ("Between two poses the turtle moves by the square root", LOG_DISTANCE, (X, Y, 2.0 * DRIVEN), ZERO),
+        ("The node adds one straight line from each logged position to the next.", LOG_DISTANCE, CHORDS, ZERO),
+        ("It never gets smaller.", LOG_DISTANCE, ZERO, (X, Y, DRIVEN)),
+    ],
+)
+def test_a_sentence_about_the_numbers_is_true(words: str, kind: Kind[Any], true: Said, near: Said) -> None:
+    assert words in about(kind, logged(true))
+    assert words not in about(kind, logged(near))
+
+
+EARLY = LogLine(-0.5, "INFO", "pose_subscriber", "x=0.00 y=0.00 distance=0.00")
+
+
+@pytest.mark.parametrize(("early", "found"), [((EARLY,), True), ((), False)])
+def test_numbers_before_the_first_pose_are_told(early: tuple[LogLine, ...], *, found: bool) -> None:
+    reported = about(LOG_POSITION, recording(WAY, log=(*early, *logged(truth()).log)))
+    assert ("A line with numbers was logged before the first pose arrived." in reported) == found
+    assert ("Before the first pose, the position is unknown, not 0. Until the first pose arrives," in reported) == found
+
+
+@pytest.mark.parametrize(("until_s", "busy"), [(10.0, True), (2.5, False)])
+def test_a_busy_machine_is_blamed_only_if_it_delayed_nearly_all_lines(until_s: float, *, busy: bool) -> None:
+    reported = about(LOG_POSITION, logged(truth(), stalls=((0.0, until_s),)))
+    assert ("The machine was too busy to judge the check in wall time." in reported) == busy
+
+
+@pytest.mark.parametrize(("amount", "few"), [(2, True), (3, False)])
+def test_too_few_lines_are_told(amount: int, *, few: bool) -> None:
+    reported = about(LOG_POSITION, recording(WAY, log=logged(truth()).log[:amount]))
+    assert ("There are too few lines to compare." in reported) == few
+    assert ("The log has at least 3 lines in this format." in reported) == few
+
+
+FIRST = "def heard(self, pose):\n            self.x = pose.x\n            self.d += pose.x - self.x"
+LAST = "def heard(self, pose):\n            self.d += pose.x - self.x\n            self.x = pose.x"
+
+
+@pytest.mark.parametrize(("source", "found"), [(FIRST, True), (LAST, False)])
+def test_a_pose_that_is_replaced_too_early_is_told(source: str, *, found: bool) -> None:
+    reported = about(LOG_DISTANCE, logged(ZERO), source)
+    assert ("Line 14 replaces self.x before the step from the old value is calculated." in reported) == found
+    assert ("The distance stays 0." in reported) != found

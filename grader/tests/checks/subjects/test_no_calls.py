@@ -8,6 +8,7 @@ from grader.checks.outcome import Status
 from grader.checks.subjects.advice import USES_TIMER
 from grader.checks.subjects.no_calls import NO_CALLS
 from grader.tests.checks.made import NODE, NODE_FILE, evidence, found, submission
+from grader.tests.checks.told import told
 
 NAMES = ("teleport", "create_client")
 
@@ -151,3 +152,30 @@ def test_no_advice_is_given_on_a_file_that_is_not_there_or_cannot_be_read(text: 
     finding = found(USES_TIMER, evidence(package=package, build=None))
     assert finding.status is Status.SKIPPED
     assert words in finding.observed
+
+
+TIMER = "self.create_timer(0.5, self.send)"
+LOOP = "\nwhile True:\n    pass\n"
+SPINNING_LOOP = "\nwhile True:\n    rclpy.spin_once(node)\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("The node uses a timer.", NODE, NODE.replace(TIMER, "None")),
+        ("A node that runs its own loop receives no messages.", NODE.replace(TIMER, "None") + LOOP, NODE),
+        (
+            "A node that runs its own loop receives no messages.",
+            NODE.replace(TIMER, "None") + LOOP,
+            NODE.replace(TIMER, "None") + SPINNING_LOOP,
+        ),
+        (
+            "A rate from create_rate works only while another thread spins the node. A timer needs no thread.",
+            NODE.replace(TIMER, "self.create_rate(2)"),
+            NODE.replace(TIMER, "None"),
+        ),
+    ],
+)
+def test_a_sentence_about_timers_is_true(words: str, true: str, near: str) -> None:
+    assert words in told(found(USES_TIMER, evidence(package=submission({NODE_FILE: true}))))
+    assert words not in told(found(USES_TIMER, evidence(package=submission({NODE_FILE: near}))))

@@ -13,6 +13,7 @@ from grader.checks.subjects.own import CIRCLE, NUMBERS, RATE
 from grader.evidence.evidence import Run
 from grader.exercise.own_numbers import draw_numbers, to_toml
 from grader.tests.checks.made import every, evidence, exercise, found, recording, submission
+from grader.tests.checks.told import told
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -111,3 +112,26 @@ def test_the_first_command_may_come_three_seconds_late(first_s: float, diagnosis
 
 def test_without_numbers_there_is_nothing_to_judge_the_trajectory_by() -> None:
     assert [found(kind, given(None)).diagnosis for kind in (CIRCLE, RATE)] == ["no-numbers"] * 2
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("Every student has their own numbers.", (ALICE, "bob"), (ALICE, "alice")),
+        (
+            "`grader start 07 --student bob --fresh` draws your numbers and keeps a copy of your work.",
+            (ALICE, "bob"),
+            (changed(radius_m=RADIUS_M + 0.2), "alice"),
+        ),
+        (
+            "Do not change the file. Use the file's numbers in your node.",
+            (changed(radius_m=RADIUS_M + 0.2), "alice"),
+            (ALICE, "bob"),
+        ),
+    ],
+)
+def test_a_sentence_about_the_numbers_is_true(
+    words: str, true: tuple[OwnNumbers, str], near: tuple[OwnNumbers, str]
+) -> None:
+    assert words in told(found(NUMBERS, given(*true)))
+    assert words not in told(found(NUMBERS, given(*near)))

@@ -15,6 +15,7 @@ from grader.submission.tree import read_folder
 from grader.tests.case import ROOT
 from grader.tests.checks.changed import INIT, LINKED, of, setup_py, xml
 from grader.tests.checks.made import BUILD, NODE_FILE, PACKAGE_XML, evidence, finding, submission
+from grader.tests.checks.told import told
 
 if TYPE_CHECKING:
     from grader.colcon.build import Build
@@ -149,6 +150,12 @@ def test_what_was_left_out_of_the_submission_is_reported(more: tuple[str, ...], 
             xml("MIT", "M & T"),
             "xml-malformed",
             "package.xml:7",
+            "In XML, & begins the name of a character. Write &amp; for the character & itself.",
+        ),
+        (
+            xml("<depend>rclpy", "<depend a=1>rclpy"),
+            "xml-malformed",
+            "package.xml:8",
             "Each <tag> needs a closing </tag> with the same name. Close the inner tag before the outer tag.",
         ),
         (
@@ -191,3 +198,48 @@ def test_another_name_is_explained(files: Files, cause: str) -> None:
 def test_a_setup_py_that_says_no_name_contradicts_nobody() -> None:
     for text in (None, "setup()\n", "setup(\n"):
         assert of("package-name", {"setup.py": text}).status is Status.PASSED
+
+
+MISSING = xml("  <depend>geometry_msgs</depend>\n")
+COMMENT = xml("  <depend>geometry_msgs</depend>\n", "  <!-- <depend>geometry_msgs</depend> -->\n")
+PROSE = xml("  <depend>geometry_msgs</depend>\n", "  <!-- The node sends geometry_msgs. -->\n")
+ONLY_TESTS = xml("depend>rclpy</depend", "test_depend>rclpy</test_depend")
+NAMED = xml("my_robot_controller", "my_robot")
+SETUP_NAMED = setup_py('"my_robot_controller"', '"my_robot"')
+FOR_PIP = {**MISSING, **setup_py("    packages=", "    install_requires=['geometry_msgs'],\n    packages=")}
+
+
+@pytest.mark.parametrize(
+    ("words", "check", "true", "near"),
+    [
+        ("package.xml is valid.", "package-xml", {}, xml("</package>")),
+        ("The build type is ament_cmake.", "package-xml", xml("ament_python", "ament_cmake"), {}),
+        (
+            "The build type is missing.",
+            "package-xml",
+            xml("    <build_type>ament_python</build_type>\n"),
+            xml("ament_python", "ament_cmake"),
+        ),
+        (
+            "Without <build_type>ament_python</build_type> in <export>, colcon does not treat the folder as a Python",
+            "package-xml",
+            xml("ament_python", "ament_cmake"),
+            xml("</package>"),
+        ),
+        ("package.xml names the package my_robot.", "package-name", NAMED, SETUP_NAMED),
+        ("setup.py names the package my_robot.", "package-name", SETUP_NAMED, NAMED),
+        ("package.xml declares rclpy only for building or testing.", "dependencies", ONLY_TESTS, MISSING),
+        ("<build_depend> and <test_depend> do not count when the node runs.", "dependencies", ONLY_TESTS, MISSING),
+        ("On another computer, rosdep installs only the packages that", "dependencies", MISSING, ONLY_TESTS),
+        ("The line is inside a comment, between <!-- and -->", "dependencies", COMMENT, PROSE),
+        (
+            "install_requires in setup.py is for pip packages. ROS 2 reads package.xml.",
+            "dependencies",
+            FOR_PIP,
+            MISSING,
+        ),
+    ],
+)
+def test_a_sentence_about_package_xml_is_true(words: str, check: str, true: Files, near: Files) -> None:
+    assert words in told(of(check, true))
+    assert words not in told(of(check, near))

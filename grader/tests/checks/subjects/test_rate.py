@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from itertools import accumulate
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import given
@@ -11,8 +12,12 @@ from grader.checks.subjects.log import LOG_RATE
 from grader.checks.subjects.rate import RATE
 from grader.tests.checks.made import NODE_FILE, every, evidence, finding, node, recording
 from grader.tests.checks.made import found as found_by
-from grader.tests.checks.shapes import SHAPES
+from grader.tests.checks.shapes import SHAPES, uneven
+from grader.tests.checks.told import told
 from grader.trial.recording import ClockName, LogLine
+
+if TYPE_CHECKING:
+    from grader.tests.checks.made import Timed
 
 TIMER = "self.create_timer(0.5, self.send)"
 
@@ -208,3 +213,20 @@ def test_what_was_only_sent_before_the_two_sides_found_each_other_is_as_if_it_ha
     assert finding("topic", heard).diagnosis == "never-publishes"
     assert heard.commands == ()
     assert finding("topic", evidence(recording([(0.0, 2.0, 1.0), (0.5, 2.0, 1.0)]))).status is Status.PASSED
+
+
+EVEN, UNEVEN = every(0.5, 2.0, 1.0), uneven()
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("Commands arrive every 0.50 s, and each interval is from 0.4", UNEVEN, EVEN),
+        ("Commands arrived at uneven intervals: 0.71 s passed between two of them", UNEVEN, EVEN),
+        ("Commands arrive every 0.50 s (2.0 Hz).", EVEN, UNEVEN),
+        ("The first command arrives within", every(0.5, 2.0, 1.0, first_s=3.7), EVEN),
+    ],
+)
+def test_a_sentence_about_the_rate_is_true(words: str, true: list[Timed], near: list[Timed]) -> None:
+    assert words in told(finding("rate", evidence(recording(true))))
+    assert words not in told(finding("rate", evidence(recording(near))))

@@ -12,7 +12,6 @@ from grader.checks.outcome import Status
 from grader.tests.checks.made import (
     NODE_FILE,
     TOPIC,
-    every,
     evidence,
     finding,
     good,
@@ -21,12 +20,13 @@ from grader.tests.checks.made import (
     recording,
     submission,
 )
-from grader.tests.checks.shapes import SHAPES, crashed
+from grader.tests.checks.shapes import SHAPES, TRACEBACK, crashed
+from grader.tests.checks.told import told
 from grader.trial.recording import Endpoint, Message, Output, ProcessEnd
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
-    from grader.trial.recording import ClockName
+    from grader.trial.recording import ClockName, Recording
 
 OTHER = "geometry_msgs/msg/TwistStamped"
 
@@ -76,7 +76,10 @@ def test_a_program_that_crashed_while_its_node_was_waited_for_is_reported_to_hav
     late = replace(SHAPES["crash at the start"](), end=crashed(5.0), graphs=(graph((), topic=None),))
     found = finding("start", evidence(late))
     assert found.diagnosis == "crash"
-    assert found.observed == "draw_circle crashed before it created a node: ZeroDivisionError: division by zero."
+    assert (
+        found.observed
+        == "draw_circle crashed, and no node had appeared in the ROS graph: ZeroDivisionError: division by zero."
+    )
 
 
 def test_a_node_that_crashed_while_it_ran_did_start() -> None:
@@ -203,34 +206,6 @@ def test_messages_forged_for_the_recorder_are_not_commands() -> None:
     assert finding("topic", evidence(forged)).status is Status.FAILED
 
 
-@pytest.mark.parametrize("exit_code", [0, 1, -2, 130])
-def test_how_a_node_ends_after_ctrl_c_does_not_matter(exit_code: int) -> None:
-    text = "Traceback (most recent call last):\nrclpy._rclpy_pybind11.RCLError: failed to shutdown\n"
-    end = ProcessEnd(by="SIGINT", exit_code=exit_code, t_s=10.0, stop_s=0.3)
-    found = finding("stop", evidence(recording(every(0.5, 2.0, 1.0), end=end, stderr=Output(text))))
-    assert found.status is Status.PASSED
-
-
-@pytest.mark.parametrize(
-    ("stop_s", "near", "status"), [(0.5, False, "passed"), (2.5, True, "passed"), (3.4, True, "failed")]
-)
-def test_a_slow_stop_is_for_wall_time_to_judge(stop_s: float, near: bool, status: str) -> None:
-    end = ProcessEnd(by="SIGINT", exit_code=0, t_s=10.0, stop_s=stop_s)
-    found = finding("stop", evidence(recording([], end=end)))
-    assert (found.near_edge, found.status.value) == (near, status)
-
-
-def test_a_node_that_did_not_stop_is_for_wall_time_to_judge() -> None:
-    assert finding("stop", of("ignores Ctrl-C")).near_edge
-
-
-def test_what_it_took_to_stop_a_node_is_reported() -> None:
-    killed = SHAPES["ignores Ctrl-C"]()
-    terminated = replace(killed, end=replace(killed.end, by="SIGTERM"))
-    assert finding("stop", evidence(killed)).observed == "The node ignored Ctrl-C: it had to be killed."
-    assert finding("stop", evidence(terminated)).observed == "The node ignored Ctrl-C: only SIGTERM ended it."
-
-
 def test_a_missing_spin_is_reported_where_the_node_ends_early() -> None:
     without = finding("stop", of("ends early", ("rclpy.spin(DrawCircleNode())", "DrawCircleNode()")))
     assert without.cause == "rclpy.spin keeps a node running, but it is never called."
@@ -264,3 +239,25 @@ def test_a_timer_beside_a_loop_that_sends_gives_no_rhythm(loop: str, *, advised:
 def test_what_setup_py_and_tests_call_is_not_the_nodes() -> None:
     files = {NODE_FILE: "pass\n", "test/test_node.py": "node.create_timer(1, f)\n"}
     assert finding("timer", evidence(good(), submission(files))).diagnosis == "no-timer"
+
+
+SILENT = SHAPES["no node"]()
+LATER = replace(SILENT, end=crashed(4.5), stderr=Output(TRACEBACK.partition('  File "/opt')[0] + "ValueError: no\n"))
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("draw_circle ran, but no node appeared in the ROS graph.", SILENT, good()),
+        ("The program creates a node and spins it.", SILENT, good()),
+        ("draw_circle crashed, and no node had appeared in the ROS graph: ValueError: no.", LATER, SILENT),
+    ],
+)
+def test_a_sentence_about_the_start_is_true(words: str, true: Recording, near: Recording) -> None:
+    assert words in told(finding("start", evidence(true)))
+    assert words not in told(finding("start", evidence(near)))
+
+
+@pytest.mark.parametrize(("trial", "found"), [(SILENT, True), (SHAPES["other name"](), False)])
+def test_a_node_that_did_not_appear_has_no_name(trial: Recording, *, found: bool) -> None:
+    assert ("No node appeared in the ROS graph." in told(finding("node-name", evidence(trial)))) == found

@@ -11,8 +11,7 @@ from grader.checks.exercises import find_exercise, load_exercise
 from grader.checks.judge import judge
 from grader.checks.kind import NoParams
 from grader.checks.outcome import Status
-from grader.checks.subjects.tests_run import CATCHES, PASS
-from grader.checks.subjects.tests_written import ASSERTS, OUTSIDE
+from grader.checks.subjects.tests_run import CATCHES, FOUND, PASS
 from grader.errors import UsageError
 from grader.evidence.evidence import Evidence, Run
 from grader.evidence.recording_format import load, save
@@ -21,6 +20,8 @@ from grader.report.report import report_of
 from grader.report.scene import scene_of
 from grader.testbench.result import BenchResult, Ended, NodeRun, run_of
 from grader.tests.checks import made
+from grader.tests.checks.made import found
+from grader.tests.checks.told import told
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -48,9 +49,9 @@ def test_tests_that_pass_each_time_pass() -> None:
 
 @pytest.mark.parametrize("order", [(GOOD, BAD, GOOD), (BAD, GOOD, GOOD), (BAD, BAD, GOOD)])
 def test_tests_that_pass_only_sometimes_are_named(order: tuple[NodeRun, ...]) -> None:
-    found = passes(*order)
-    assert (found.status, found.diagnosis) == (Status.FAILED, "unsteady-tests")
-    assert f"in {order.count(GOOD)} of 3 runs" in found.observed
+    finding = passes(*order)
+    assert (finding.status, finding.diagnosis) == (Status.FAILED, "unsteady-tests")
+    assert f"in {order.count(GOOD)} of 3 runs" in finding.observed
 
 
 def test_a_missing_run_on_the_right_node_is_no_pass() -> None:
@@ -109,34 +110,87 @@ def test_tests_that_end_without_a_passed_test_do_not_pass() -> None:
     assert (passes(*[ended] * 3).diagnosis, "setup.cfg" in passes(*[ended] * 3).cause) == ("all-skipped", True)
 
 
-@pytest.mark.parametrize(
-    ("code", "diagnosis"),
-    [
-        ("import platform\nassert platform.system()\n", None),
-        ("from unittest import mock\n", None),
-        ("import inspect\n", "looks-at-source"),
-        ("import ast as tree\n", "looks-at-source"),
-        ("def test_it(guard):\n    assert guard.send.__code__\n", "looks-at-source"),
-        ("from pathlib import Path\ntext = Path('x').read_text()\n", "looks-at-source"),
-        ("from subprocess import Popen\n", "starts-a-process"),
-        ("import launch_testing.actions\n", "starts-a-process"),
-    ],
-)
-def test_what_looks_at_the_source_is_found_by_what_it_uses(code: str, diagnosis: str | None) -> None:
-    assert OUTSIDE.check(given(source=code), NoParams()).diagnosis == diagnosis
+def about_pass(*runs: NodeRun, source: str = SOURCE) -> str:
+    return told(PASS.check(given(*runs, source=source), NoParams()))
+
+
+SKIPPED = dataclasses.replace(GOOD, passed=0, skipped=3)
+HUNG = NodeRun("stop", None, over=True)
+PARTLY = dataclasses.replace(GOOD, passed=0, skipped=1)
 
 
 @pytest.mark.parametrize(
-    ("body", "diagnosis"),
+    ("words", "true", "near"),
     [
-        ("    check(bench)\n\ndef check(bench):\n    assert bench\n", None),
-        ("    with pytest.raises(ValueError):\n        bench()\n", None),
-        ("    bench.guard.publish.assert_called_once()\n", None),
-        ("    return bench.count() == 10\n", "compares-only"),
-        ("    bench.count() == 10\n", "compares-only"),
-        ("    assert (bench.count() == 10, 'ten')\n", "assert-tuple"),
-        ("    print(bench.count())\n", "no-assert"),
+        ("All tests pass on the correct node (3 runs).", [GOOD] * 3, [BAD, GOOD, GOOD]),
+        ("All tests pass on the correct node in every run.", [BAD] * 3, [GOOD] * 3),
+        ("test_it fails on the correct node: assert 9 == 10.", [BAD] * 3, [GOOD] * 3),
+        ("The tests pass on the correct node in 2 of 3 runs.", [BAD, GOOD, GOOD], [BAD] * 3),
+        ("The tests depend on timing, on random numbers, or on the state", [BAD, GOOD, GOOD], [BAD] * 3),
+        ("No test ran to completion.", [SKIPPED] * 3, [GOOD] * 3),
+        ("Every test is skipped, and a skipped test tests nothing.", [SKIPPED] * 3, [PARTLY] * 3),
+        ("Options in setup.cfg or pytest.ini can exclude tests, and a test can end", [PARTLY] * 3, [SKIPPED] * 3),
+        ("The tests did not finish in time.", [GOOD, HUNG], [GOOD] * 3),
+        ("The tests did not finish in time on other nodes.", [GOOD], [GOOD, HUNG]),
+        ("A test that waits for a message that never arrives must give up", [GOOD, HUNG], [BAD] * 3),
+        (
+            "The tests did not finish in time on the correct node.",
+            [dataclasses.replace(HUNG, node="")] * 3,
+            [dataclasses.replace(BAD, test="", exit_code=4)] * 3,
+        ),
+        (
+            "The tests on the correct node ended with exit code 4.",
+            [dataclasses.replace(BAD, test="", exit_code=4)] * 3,
+            [BAD] * 3,
+        ),
     ],
 )
-def test_a_test_needs_an_assert_that_can_fail(body: str, diagnosis: str | None) -> None:
-    assert ASSERTS.check(given(source=f"def test_it(bench):\n{body}"), NoParams()).diagnosis == diagnosis
+def test_a_sentence_about_the_correct_node_is_true(words: str, true: list[NodeRun], near: list[NodeRun]) -> None:
+    assert words in about_pass(*true)
+    assert words not in about_pass(*near)
+
+
+STOP = dataclasses.replace(BAD, node="stop")
+DOES = "a node that never stops"
+
+
+def about_stop(*runs: NodeRun) -> str:
+    return told(found(CATCHES, given(*runs), broken="stop", does=DOES, cause="Publish after the wall."))
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        (f"test_it fails on {DOES}, as it should.", [GOOD, STOP], [GOOD, dataclasses.replace(GOOD, node="stop")]),
+        (f"No test fails on {DOES}.", [GOOD, dataclasses.replace(GOOD, node="stop")], [GOOD, STOP]),
+        (f"At least one test fails on {DOES}.", [GOOD, dataclasses.replace(GOOD, node="stop")], [GOOD, STOP]),
+        ("At least one test fails on", [GOOD, HUNG], [GOOD, STOP]),
+        ("No test fails on", [GOOD, dataclasses.replace(SKIPPED, node="stop")], [GOOD, HUNG]),
+        ("The tests did not finish in time.", [GOOD, HUNG], [GOOD, STOP]),
+    ],
+)
+def test_a_sentence_about_a_broken_node_is_true(words: str, true: list[NodeRun], near: list[NodeRun]) -> None:
+    assert words in about_stop(*true)
+    assert words not in about_stop(*near)
+
+
+NONE_FOUND = NodeRun("", 5)
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("pytest finds 3 tests.", (GOOD, SOURCE), (NONE_FOUND, SOURCE)),
+        ("The files contain 1 test.", (NONE_FOUND, SOURCE), (GOOD, SOURCE)),
+        ("pytest finds the files.", (dataclasses.replace(NONE_FOUND, outcome="import"), ""), (NONE_FOUND, "")),
+        ("pytest finds no test.", (NONE_FOUND, "def it():\n    pass\n"), (NONE_FOUND, SOURCE)),
+        (
+            "pytest finds tests: functions named test_SOMETHING in files named test_SOMETHING.py.",
+            (NONE_FOUND, "def it():\n    pass\n"),
+            (GOOD, SOURCE),
+        ),
+    ],
+)
+def test_a_sentence_about_found_tests_is_true(words: str, true: tuple[NodeRun, str], near: tuple[NodeRun, str]) -> None:
+    assert words in told(FOUND.check(given(true[0], source=true[1]), NoParams()))
+    assert words not in told(FOUND.check(given(near[0], source=near[1]), NoParams()))

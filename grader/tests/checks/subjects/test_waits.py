@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
 import pytest
 
 from grader.checks.outcome import Finding, Status
 from grader.checks.subjects.waits import NEVER_WAITS
 from grader.tests.checks.made import NODE, NODE_FILE, every, evidence, found, recording, submission
+from grader.tests.checks.told import told
 from grader.trial.observed import Call
+from grader.trial.recording import LogLine
+
+if TYPE_CHECKING:
+    from grader.trial.recording import Recording
 
 WAITS = "        self.pen.call(request)"
 THREADS = "\nexecutor = MultiThreadedExecutor(4)\n"
@@ -55,3 +63,23 @@ def test_with_threads_in_one_group_the_node_hangs() -> None:
 
 def test_a_node_without_a_wait_passes() -> None:
     assert judged("        pass").status is Status.PASSED
+
+
+SILENT = recording(every(0.5, 2.0, 1.0, 1.2), calls=(PEN,))
+LOGGING = replace(SILENT, log=(LogLine(5.0, "INFO", "draw_circle", "I go on."),))
+DRIVING = recording(every(0.5, 2.0, 1.0), calls=(PEN,))
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("After a response, the node did nothing more.", SILENT, LOGGING),
+        ("Several threads do not help here", SILENT, LOGGING),
+        ("Other threads receive the responses for which a callback waits.", DRIVING, SILENT),
+    ],
+)
+def test_a_sentence_about_a_node_with_threads_is_true(words: str, true: Recording, near: Recording) -> None:
+    source = NODE.replace("        msg = Twist()", f"{WAITS}\n        msg = Twist()") + THREADS
+    package = submission({NODE_FILE: source})
+    assert words in told(found(NEVER_WAITS, evidence(true, package)))
+    assert words not in told(found(NEVER_WAITS, evidence(near, package)))
