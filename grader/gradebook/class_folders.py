@@ -58,7 +58,7 @@ class ClassFolders:
                 with Gradebook(self.course.db_url, self.course.course_id) as opened:
                     yield opened
             except OperationalError as error:
-                message = f"The gradebook {self.course.db_url} could not be read or written: {error.orig}."
+                message = f"The gradebook of {self.course.root} could not be read or written: {error.orig}."
                 raise MachineError(message) from error
 
     def submitted(self, student: str, step: str) -> Path:

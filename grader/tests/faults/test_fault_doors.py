@@ -26,6 +26,8 @@ EVERY_DAY = [
     ("own run", "write", errno.ENOSPC, 1),
     ("new", "open", errno.EMFILE, 5),
     ("new", "mkdir", errno.ENOSPC, 40),
+    ("sync", "fork", errno.EAGAIN, 1),
+    ("compare", "open", errno.EMFILE, 1),
     ("env", "open", errno.EMFILE, 1),
     ("list", "open", errno.EMFILE, 1),
     ("list", "thread", errno.EAGAIN, 1),

@@ -1,10 +1,12 @@
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING
 
 import pytest
+from sqlalchemy.exc import SAWarning
 
-from grader.errors import UsageError
+from grader.errors import MachineError, UsageError
 from grader.gradebook.class_folders import CONFIG, open_class, remember
 from grader.gradebook.new_class import make_class, read_students
 
@@ -90,3 +92,18 @@ def test_a_configuration_runs_if_the_instructor_names_or_made_the_folder(clone: 
     remember(clone)
     open_class(None)
     assert (clone.parent / "touched").exists()
+
+
+def test_a_gradebook_without_noise_or_the_reason_why_there_is_none(tmp_path: Path) -> None:
+    make_class(tmp_path / "new", None)
+    folders = open_class(tmp_path / "new")
+    with warnings.catch_warnings(record=True) as shown:
+        warnings.simplefilter("always")
+        with folders.gradebook():
+            warnings.warn("nbgrader's session", SAWarning, stacklevel=1)
+    assert [warning for warning in shown if warning.category is SAWarning] == []
+
+    (tmp_path / "new/class/gradebook.db").unlink()
+    (tmp_path / "new/class/gradebook.db").mkdir()
+    with pytest.raises(MachineError, match="could not be read or written: unable to open database file"):
+        folders.gradebook().__enter__()
