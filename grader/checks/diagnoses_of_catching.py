@@ -23,6 +23,7 @@ OF_CATCHING: dict[str, dict[Diagnosis, str]] = {
         "too-slow": "the turtle drives until the end of the trial but does not reach all targets",
         "other-order": "a target is caught although another one is nearer",
         "from-afar": "a target is caught from too far away",
+        "drives-before-pose": "turtle1 is driven before its first pose has arrived",
         "catch-again": "the removal of the same target is requested repeatedly",
         "not-driven": "the turtle is moved, or a target is removed, by a call that is not allowed",
         "other-node-ended": "the trial ended because the other node ended",

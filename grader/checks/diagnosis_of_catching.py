@@ -19,6 +19,7 @@ DiagnosisOfCatching = Literal[
     "too-slow",
     "other-order",
     "from-afar",
+    "drives-before-pose",
     "catch-again",
     "not-driven",
     "other-node-ended",

@@ -106,6 +106,7 @@ KINDS: Mapping[str, Kind[Any]] = {
         catching.CATCHES,
         catching.NEAREST_FIRST,
         catching.WITHIN_REACH,
+        catching.WAITS_FOR_POSE,
         recorded_bag.READABLE,
         recorded_bag.TOPIC,
         recorded_bag.CIRCLE,

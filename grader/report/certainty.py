@@ -52,6 +52,7 @@ OF_RECORDINGS = frozenset(
         "goal-aborted-by-command",
         "not-driven",
         "catch-again",
+        "drives-before-pose",
         # Log lines and their numbers.
         "before-first-pose",
         "log-format",

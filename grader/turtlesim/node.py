@@ -62,9 +62,9 @@ class TurtlesimNode(Node):
     ) -> None:
         """Create the node. turtle1 starts at `start` (m, m, rad), also after a reset.
 
-        `Hooks` describes the callbacks. A pose is published every `pose_every` frames, starting at `pose_from_s` (s).
-        The real turtlesim publishes a pose in each frame. Services respond `answers_after_s` (s) late. The turtles draw
-        on `canvas`.
+        `Hooks` describes the callbacks. A pose is published every `pose_every` frames, for turtle1 starting at
+        `pose_from_s` (s). The real turtlesim publishes a pose in each frame. Services respond `answers_after_s` (s)
+        late. The turtles draw on `canvas`.
         """
         self._pose_every, self._pose_from_s = pose_every, pose_from_s
         self._late = LateAnswers(answers_after_s) if answers_after_s else None
@@ -126,9 +126,8 @@ class TurtlesimNode(Node):
                 self._leaving.remove(waiting)
                 self._interfaces[name] = waiting[1]
                 return
-        self._interfaces[name] = TurtleInterface(
-            self, name, self.world, self._hooks, self._pose_every, self._pose_from_s
-        )
+        from_s = self._pose_from_s if name == "turtle1" else 0.0
+        self._interfaces[name] = TurtleInterface(self, name, self.world, self._hooks, self._pose_every, from_s)
 
     def _hide(self, name: str) -> None:
         # Remove the entities later, since this runs in a callback, and the executor may still call others of this

@@ -7,7 +7,7 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.common.words import shorten
+from grader.common.words import a_list, shorten
 from grader.submission.constants import dotted
 
 if TYPE_CHECKING:
@@ -24,10 +24,13 @@ def why_none(scene: CrashScene) -> Cause | None:
     """Return the cause if a side of an operator is None, else None."""
     if not WITH_NONE.search(scene.crash.message):
         return None
-    names = {name for node in scene.on_line for name in map(dotted, _sides(node)) if name}
-    empty = [name for name in names if _is_none_at_first(scene, name)]
+    names = dict.fromkeys(name for node in scene.on_line for name in map(dotted, _sides(node)) if name)
+    empty = [shorten(name) for name in names if _is_none_at_first(scene, name)]
     if len(empty) == 1:
-        text = f"{shorten(empty[0])} is None until it gets a value. Check for None before you compute with it."
+        text = f"{empty[0]} is None until it gets a value. Check for None before you compute with it."
+        return Cause("none-before-message", text)
+    if empty:
+        text = f"{a_list(empty)} are None until they get a value. Check for None before you compute with them."
         return Cause("none-before-message", text)
     return Cause("crash", "One side of the operator is None, which is not a number.")
 

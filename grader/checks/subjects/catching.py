@@ -218,6 +218,18 @@ def _near(away_m: float, params: WithinReach) -> bool:
     return math.isclose(away_m, params.reach_m + SLACK_M, abs_tol=0.02)
 
 
+def waits_for_pose(evidence: Evidence, _: NoParams) -> Finding:
+    """The node gave turtle1 no velocity before the first pose of turtle1."""
+    first_s = evidence.trial.scenario.pose_from_s
+    expected = "Until the first pose of turtle1 arrives, the turtle stands still."
+    early = next((c for c in activity.commands(evidence.recording) if c.t_s < first_s and any(c.values)), None)
+    if early is None:
+        return passed("The turtle stood still until its first pose arrived.")
+    observed = f"The node drove the turtle at {early.t_s:.1f} s. The first pose of turtle1 came at {first_s:.1f} s."
+    text = "Before the first pose, the position of turtle1 is unknown. Store None until the first pose arrives."
+    return failed(observed, expected, Cause("drives-before-pose", text, evidence.place("Pose", "publish")))
+
+
 CATCHES = Kind(
     "catches_all",
     "trial",
@@ -242,4 +254,13 @@ WITHIN_REACH = Kind(
     WithinReach,
     within_reach,
     about="When turtle1 is near enough to a target, and only then, the node calls the service that removes the target.",
+)
+WAITS_FOR_POSE = Kind(
+    "waits_for_pose",
+    "trial",
+    "The node waits for the first pose",
+    NoParams,
+    waits_for_pose,
+    about="The node gives turtle1 no velocity before the first pose of turtle1, which the simulator publishes at "
+    "`pose_from_s`.",
 )

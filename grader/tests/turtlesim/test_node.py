@@ -217,6 +217,10 @@ def test_a_late_frame_is_caught_up_and_none_left_out(in_ros: InRos) -> None:
     assert times == pytest.approx([frame * FRAME_S for frame in range(30)])
 
 
+def test_only_the_first_pose_of_turtle1_is_late(in_ros: InRos) -> None:
+    assert in_ros.run("turtlesim.scenarios:first_poses").result == {"/turtle1/pose": 0.8, "/berta/pose": 0.0}
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_the_executable_runs_until_ctrl_c_and_leaves_a_picture(
     in_ros: InRos, tmp_path: Path, number: signal.Signals

@@ -22,16 +22,18 @@ class Driver(Node):
         {line}  # crashed
 """
 FIRST = "self.x is None until it gets a value. Check for None before you compute with it."
+BOTH = "self.x and self.y are None until they get a value. Check for None before you compute with them."
+MINUS_NONE = "unsupported operand type(s) for -: 'float' and 'NoneType'"
 ONE_SIDE = "One side of the operator is None, which is not a number."
 
 
 @pytest.mark.parametrize(
     ("line", "error"),
     [
-        ("dx = place.x - self.x", "unsupported operand type(s) for -: 'float' and 'NoneType'"),
+        ("dx = place.x - self.x", MINUS_NONE),
         ("dx = self.x + 1.0", "unsupported operand type(s) for +: 'NoneType' and 'float'"),
         ("self.x += 1.0", "unsupported operand type(s) for +=: 'NoneType' and 'float'"),
-        ("dx = self.old.x - self.x", "unsupported operand type(s) for -: 'float' and 'NoneType'"),
+        ("dx = self.old.x - self.x", MINUS_NONE),
         ("dx = -self.x", "bad operand type for unary -: 'NoneType'"),
         ("near = self.x < 3.0", "'<' not supported between instances of 'NoneType' and 'float'"),
     ],
@@ -39,6 +41,13 @@ ONE_SIDE = "One side of the operator is None, which is not a number."
 def test_an_attribute_that_is_none_at_first_is_named(line: str, error: str) -> None:
     found = reported(NODE.format(first="None", line=line), f"TypeError: {error}")
     assert (found.diagnosis, found.cause) == ("none-before-message", FIRST)
+
+
+def test_every_attribute_of_the_line_that_is_none_at_first_is_named() -> None:
+    node = NODE.replace("self.old = pose", "self.y = pose.y").replace("self.old", "self.y")
+    line = "away = math.hypot(place.x - self.x, place.y - self.y)"
+    found = reported(node.format(first="None", line=line), f"TypeError: {MINUS_NONE}")
+    assert (found.diagnosis, found.cause) == ("none-before-message", BOTH)
 
 
 @pytest.mark.parametrize(("first", "line"), [("0.0", "dx = self.x + 1.0"), ("None", "dx = self.step + 1.0")])

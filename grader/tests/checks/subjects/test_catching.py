@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from grader.checks.outcome import Status
-from grader.checks.subjects.catching import CATCHES, NEAREST_FIRST, WITHIN_REACH
+from grader.checks.subjects.catching import CATCHES, NEAREST_FIRST, WAITS_FOR_POSE, WITHIN_REACH
 from grader.tests.checks.made import DURATION_S, NODE, NODE_FILE, evidence, found, recording, submission
 from grader.tests.checks.told import told
 from grader.trial.observed import Call, Track
@@ -299,3 +299,19 @@ def test_a_turtle_that_is_gone_is_not_far_away() -> None:
     late = (*CALLS, catch(9.0, "near"))
     assert "this turtle was" not in about_reach(*late)
     assert "this turtle was 3.8" in about_reach(*late, tracks=(at("near", 6.2, None), FAR))
+
+
+@pytest.mark.parametrize(
+    ("commands", "expected"),
+    [
+        (AHEAD, "drives-before-pose"),
+        ([(1.9, 0.0, -0.5), *AHEAD[25:]], "drives-before-pose"),
+        ([(0.1, 0.0, 0.0), *AHEAD[25:]], None),
+    ],
+)
+def test_turtle1_stands_still_until_its_first_pose(commands: list[tuple[float, ...]], expected: str | None) -> None:
+    made = given(commands=commands)
+    late = replace(made.trial, scenario=replace(made.trial.scenario, pose_from_s=2.0))
+    exercise = replace(made.exercise, trials=(late,))
+    finding = found(WAITS_FOR_POSE, replace(made, exercise=exercise))
+    assert diagnosis(finding) == expected
