@@ -31,6 +31,8 @@ ROOT = Path(__file__).parent.parent.parent
 CASES = Path(__file__).parent / "cases"
 BASES = Path(__file__).parent / "bases"
 """Packages as learners write them. Several cases change these packages in a few places."""
+EXERCISE_OF_BASES = "03-circle-publisher"
+"""The exercise of the packages in bases/, and of cases without a base."""
 EXIT_CODES = {"passed": 0, "failed": 1, "usage": 2, "error": 3}
 
 
@@ -103,6 +105,11 @@ def base_of(case: Case) -> Path | None:
     if not case.base:
         return None
     return BASES / case.base if (BASES / case.base).is_dir() else ROOT / "solutions" / case.base
+
+
+def exercise_of(case: Case) -> str:
+    """Return the id of the exercise that grades the case."""
+    return case.exercise or (EXERCISE_OF_BASES if (BASES / case.base).is_dir() else case.base)
 
 
 def make_submission(case: Case, to: Path) -> Path:

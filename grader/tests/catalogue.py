@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.checks.diagnoses import GROUPS
-from grader.tests.case import CASES, read_cases
+from grader.exercise.model import catalogue
+from grader.tests.case import CASES, exercise_of, read_cases
 
 if TYPE_CHECKING:
     from grader.tests.case import Case
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 TESTS = Path(__file__).parent
 PAGE = TESTS.parent / "checks" / "README.md"
 MISTAKES = CASES.parent / "mistakes"
+UNUSUAL = CASES.parent / "unusual"
 SHOWN_BY_TESTS = {
     "action-type": "checks/subjects/test_goals.py",
     "goal-aborted": "checks/subjects/test_goals.py",
@@ -81,13 +83,39 @@ def page() -> str:
     for case in cases():
         for id_ in dict.fromkeys(case.diagnosis.values()):
             shown.setdefault(id_, []).append(_number(case))
-    parts = [HEAD]
+    parts = [HEAD, _amounts()]
     for group, diagnoses in GROUPS.items():
         rows = [f"| `{id_}` | {meaning} | {_shown(id_, shown)} |" for id_, meaning in diagnoses.items()]
         parts.append(
             "\n".join([f"## {group}", "", "| id | what it means | shown by |", "| --- | --- | --- |", *rows, ""])
         )
     return "\n".join(parts)
+
+
+def amounts() -> dict[str, tuple[int, int, int]]:
+    """Return the amounts of cases of each exercise.
+
+    For each exercise, these are its mistakes that a report names, the diagnoses that they show, and its correct
+    submissions that differ from our solution.
+    """
+    found = {}
+    mistakes, unusual = read_cases(MISTAKES), read_cases(UNUSUAL)
+    for exercise in catalogue():
+        named = [case for case in mistakes if exercise_of(case) == exercise and case.diagnosis]
+        shown = {id_ for case in named for id_ in case.diagnosis.values()}
+        found[exercise] = (len(named), len(shown), sum(exercise_of(case) == exercise for case in unusual))
+    return found
+
+
+def _amounts() -> str:
+    head = [
+        "## Cases of each step",
+        "",
+        "| step | mistakes | diagnoses | unusual but correct |",
+        "| --- | --- | --- | --- |",
+    ]
+    rows = [f"| {exercise} | {' | '.join(map(str, of_it))} |" for exercise, of_it in amounts().items()]
+    return "\n".join([*head, *rows, ""])
 
 
 def _number(case: Case) -> str:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.diagnoses import GROUPS
 from grader.checks.diagnoses_of_files import OF_FILES
-from grader.tests.case import BASES
+from grader.tests.case import BASES, exercise_of
 from grader.tests.catalogue import SHOWN_BY_TESTS
 
 if TYPE_CHECKING:
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
     from grader.tests.case import Case
 
-OF_BASES = "03-circle-publisher"
-"""The exercise of the packages in bases/."""
 MOST_OF_GROUP = 1
 """The number of diagnoses of a group that the sample includes because no test of the checks expects them."""
 WALL = re.compile(r"\btime\b|spin_once|sleep|thread|asyncio|datetime|subprocess")
@@ -52,7 +50,7 @@ def shows(case: Case) -> frozenset[object]:
     The result contains the groups of the case's diagnoses, its exercise with the place that shows the mistake ("files"
     or "behaviour"), and its diagnoses that are in `without_test()`.
     """
-    exercise = case.exercise or (OF_BASES if (BASES / case.base).is_dir() else case.base)
+    exercise = exercise_of(case)
     diagnoses = frozenset(case.diagnosis.values())
     groups = {group for group, of_group in GROUPS.items() if diagnoses & of_group.keys()}
     places = {(exercise, "files" if group in OF_FILES else "behaviour") for group in groups}

@@ -16,7 +16,7 @@ from grader.evidence.evidence import Evidence
 from grader.exercise.model import catalogue
 from grader.submission.package import open_submission
 from grader.tests.case import BASES, ROOT, Case, base_of, make_submission, read_cases
-from grader.tests.catalogue import MISTAKES, PAGE, SHOWN_BY_TESTS, TESTS, cases, page
+from grader.tests.catalogue import MISTAKES, PAGE, SHOWN_BY_TESTS, TESTS, amounts, cases, page
 from grader.tests.grading_here import all_graded_here
 from grader.tests.gradings import Graded, check_clocks_agree, check_report, each, place_of
 from grader.tests.sample import sample, shows, without_test
@@ -34,6 +34,9 @@ JUDGED = [case for case in CASES if case.result != "usage"]
 MOST_SAMPLE = 40
 """The maximum number of cases in the sample. With more cases, `make test` would take too long."""
 MOST_WORDS = 60
+FEWEST = 15
+"""The minimum number of mistakes of a step that a report names."""
+FEWEST_UNUSUAL = 3
 MOST_CASES = 12
 """The maximum number of cases for one diagnosis. Some rules can be broken in many ways."""
 SAID_BY_RCLPY = "rclpy.init() has not been called"
@@ -94,6 +97,11 @@ def test_there_is_enough_to_learn_from() -> None:
     assert len(CASES) >= 120
     assert len([case for case in CASES if (base := base_of(case)) is None or base.parent == BASES]) >= 40
     assert {find_exercise(case.exercise or case.base).id for case in CASES} >= set(catalogue())
+
+
+def test_each_step_has_enough_cases() -> None:
+    few = {id_ for id_, (mistakes, _, unusual) in amounts().items() if mistakes < FEWEST or unusual < FEWEST_UNUSUAL}
+    assert few == set()
 
 
 def test_every_diagnosis_is_shown_by_a_case_or_a_test() -> None:

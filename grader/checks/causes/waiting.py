@@ -21,6 +21,8 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 
 RESPONSES = ("call", "send_goal", "cancel_goal", "get_result")
 """Methods of service and action clients that wait for the response. Each of them also exists with the ending _async."""
+CREATE = ("create_client", "ActionClient")
+"""Functions that return a client of a service or of an action."""
 SPINS = ("spin", "spin_once", "spin_until_future_complete")
 SERVERS = ("wait_for_service", "wait_for_server")
 SLEEPS = ("sleep", "sleep_for", "sleep_until")
@@ -93,7 +95,8 @@ def waits_in_callbacks(evidence: Evidence) -> list[Wait]:
     """Return the waits in callbacks and in the functions that callbacks call, in the order of the source."""
     modules = evidence.code.modules
     aliases = _aliases(modules)
-    own = {node.name for module in modules for node in module.nodes if isinstance(node, ast.FunctionDef)}
+    own = {node.name for module in modules for node in module.nodes if isinstance(node, ast.FunctionDef)} & set(WAITS)
+    clients = _clients(modules)
     found: list[Wait] = []
     for module, function in _in_callbacks(modules):
         looped = {id(each) for node in inside(function) if isinstance(node, ast.While) for each in ast.walk(node.test)}
@@ -103,7 +106,7 @@ def waits_in_callbacks(evidence: Evidence) -> list[Wait]:
                 found.append(Wait(LOOP, LOOP, where))
             elif isinstance(node, ast.Call):
                 written = _last(node)
-                name = aliases.get(written, "") if written not in own & set(WAITS) else ""
+                name = aliases.get(written, "") if written not in own or _of_client(node, clients) else ""
                 if isinstance(node.func, ast.Call):
                     name, written = _function_named(node.func, module), _last(node.func)
                 if name and _really_waits(node, name, written, in_loop=id(node) in looped):
@@ -132,7 +135,28 @@ def _really_waits(call: ast.Call, name: str, written: str, *, in_loop: bool) -> 
     if written != "call":
         return True
     owner = getattr(call.func, "value", None)
-    return isinstance(owner, ast.expr) and not isinstance(owner, ast.Call) and dotted(owner) not in OTHER_CALLS
+    if isinstance(owner, ast.Call):
+        return _last(owner) in CREATE
+    return isinstance(owner, ast.expr) and dotted(owner) not in OTHER_CALLS
+
+
+def _of_client(call: ast.Call, clients: frozenset[str]) -> bool:
+    """Return whether the function is a method of a client, and not the node's own function of the same name."""
+    owner = getattr(call.func, "value", None)
+    if isinstance(owner, ast.Call):
+        return _last(owner) in CREATE
+    return isinstance(owner, ast.expr) and dotted(owner) in clients
+
+
+def _clients(modules: Iterable[Module]) -> frozenset[str]:
+    """Return the names that hold a client of a service or of an action."""
+    return frozenset(
+        dotted(target) or ""
+        for module in modules
+        for node in module.nodes
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and _last(node.value) in CREATE
+        for target in node.targets
+    )
 
 
 def _has_timeout(call: ast.Call) -> bool:

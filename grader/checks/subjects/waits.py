@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.callback_groups import in_default_group
 from grader.checks.causes.waiting import has_threads, waits_in_callbacks
 from grader.checks.kind import Kind, NoParams
 from grader.checks.outcome import Finding, failed, passed
@@ -45,7 +46,13 @@ def _certain(evidence: Evidence, waits: list[Wait]) -> Finding | None:
     """Return a failed finding if the source alone shows a callback that waits too long, or None."""
     threads = has_threads(evidence)
     first = next((wait for wait in waits if not (threads and wait.deadlock)), None)
-    return None if first is None else failed(f"A callback {first.observed}.", EXPECTED, first.cause)
+    if first is not None:
+        return failed(f"A callback {first.observed}.", EXPECTED, first.cause)
+    blocked = next((wait for wait in waits if in_default_group(evidence, wait)), None)
+    if blocked is None:
+        return None
+    cause = Cause("waits-in-callback", SAME_GROUP, blocked.where)
+    return failed(f"A callback {blocked.observed}.", EXPECTED, cause)
 
 
 def _hangs(evidence: Evidence) -> bool:

@@ -280,7 +280,10 @@ def late_frames() -> list[float]:
 def first_poses() -> dict[str, float]:
     """Return the time of the first pose of each of two turtles (s), if the first pose of turtle1 is late."""
     found: dict[str, float] = {}
-    with Rig(pose_from_s=0.8, on_publish=lambda topic, *_: found.setdefault(topic, rig.frames * FRAME_S)) as rig:
+    now_s = 0.0
+    with Rig(pose_from_s=0.8, on_publish=lambda topic, *_: found.setdefault(topic, now_s)) as rig:
         rig.turtlesim.add_turtle("berta", Start(2.0, 2.0, 0.0))
-        rig.frame(100)
+        for frame in range(100):
+            now_s = frame * FRAME_S
+            rig.frame()
     return {topic: first_s for topic, first_s in found.items() if topic.endswith("/pose")}

@@ -83,3 +83,65 @@ def test_a_sentence_about_a_node_with_threads_is_true(words: str, true: Recordin
     package = submission({NODE_FILE: source})
     assert words in told(found(NEVER_WAITS, evidence(true, package)))
     assert words not in told(found(NEVER_WAITS, evidence(near, package)))
+
+
+CLIENT = "        self.timer = self.create_timer(0.5, self.send)"
+
+
+def of_node(client: str, timer: str, line: str = WAITS) -> Finding:
+    """Return the finding about a node of several threads that goes on, with this client, timer and wait."""
+    source = NODE.replace(CLIENT, f"        {client}\n        {timer}").replace("        msg = Twist()", line)
+    trial = recording(every(0.5, 2.0, 1.0, 10.0), calls=(PEN,))
+    return found(NEVER_WAITS, evidence(trial, submission({NODE_FILE: source + THREADS})))
+
+
+PLAIN = 'self.pen = self.create_client(SetPen, "/turtle1/set_pen")'
+TIMER = "self.create_timer(0.5, self.send)"
+
+
+@pytest.mark.parametrize(
+    ("client", "timer", "line"),
+    [
+        (PLAIN, TIMER, WAITS),
+        (PLAIN, TIMER, f"        self.ask()\n\n    def ask(self):\n{WAITS}"),
+        (PLAIN, 'self.create_service(Empty, "/go", callback=self.send)', WAITS),
+    ],
+)
+def test_a_wait_in_the_clients_group_is_a_deadlock_even_if_other_groups_go_on(
+    client: str, timer: str, line: str
+) -> None:
+    finding = of_node(client, timer, line)
+    assert finding.diagnosis == "waits-in-callback"
+    assert "callback group" in finding.cause
+
+
+@pytest.mark.parametrize(
+    ("client", "timer", "line"),
+    [
+        (PLAIN.replace('")', '", callback_group=self.other)'), TIMER, WAITS),
+        (PLAIN, TIMER.replace("send)", "send, self.other)"), WAITS),
+        (PLAIN, TIMER.replace("send)", "send, callback_group=self.other)"), WAITS),
+        (f"self._default_callback_group = ReentrantCallbackGroup()\n        {PLAIN}", TIMER, WAITS),
+        (PLAIN, "self.future.add_done_callback(self.send)", WAITS),
+        (PLAIN.replace("self.create", "helper.create"), TIMER, WAITS),
+    ],
+)
+def test_a_wait_for_a_client_of_another_group_is_allowed(client: str, timer: str, line: str) -> None:
+    assert of_node(client, timer, line).status is Status.PASSED
+
+
+@pytest.mark.parametrize(
+    ("line", "diagnosis"),
+    [
+        ("        self.pen.call(request)", "waits-in-callback"),
+        ('        self.create_client(SetPen, "/turtle1/set_pen").call(request)', "waits-in-callback"),
+        ("        self.helper.call(request)", None),
+        ("        self.call(request)", None),
+        ("        super().call(request)", None),
+    ],
+)
+def test_a_function_of_ones_own_that_is_named_call_hides_no_wait(line: str, diagnosis: str | None) -> None:
+    own = f"    def call(self, request):\n        pass\n\n    def prepare(self):\n        {PLAIN}\n\n    def send"
+    source = NODE.replace("        msg = Twist()", line).replace("    def send", own)
+    finding = found(NEVER_WAITS, evidence(recording(every(0.5, 2.0, 1.0)), submission({NODE_FILE: source})))
+    assert finding.diagnosis == diagnosis
