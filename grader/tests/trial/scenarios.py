@@ -140,6 +140,34 @@ def a_call_between_two_nodes() -> dict[str, Any]:
     return {"recorded": recorded, "again": silent.follow(), "name": response and response.name}
 
 
+def graphs_of_two_nodes() -> dict[str, Any]:
+    """Return the publishers on /x in each snapshot, and the number of queries that a snapshot without news makes."""
+    stage = _stage()
+    first, second = rclpy.create_node("first"), rclpy.create_node("second")
+    recorder = stage.recorder
+    asked: list[str] = []
+
+    def publishers() -> list[str]:
+        recorder.snapshot()
+        return [end.node for end in recorder.graphs[-1].endpoints if (end.kind, end.topic) == ("publisher", "/x")]
+
+    found = {}
+    of_first = first.create_publisher(Twist, "/x", 10)
+    until(lambda: publishers() == ["/first"] and {"/first", "/second"} <= set(recorder.nodes()))
+    publishers()
+    query = recorder.get_publishers_info_by_topic
+    recorder.get_publishers_info_by_topic = lambda topic: asked.append(topic) or query(topic)
+    found["without news"] = publishers()
+    found["queries"] = len(asked)
+    second.create_publisher(Twist, "/x", 10)
+    until(lambda: recorder.count_publishers("/x") == 2)
+    found["another"] = publishers()
+    first.destroy_publisher(of_first)
+    until(lambda: recorder.count_publishers("/x") == 1)
+    found["one less"] = publishers()
+    return found
+
+
 def quiet_s() -> float:
     """Return how long discovery must be silent before it counts as finished (s)."""
     return QUIET_S

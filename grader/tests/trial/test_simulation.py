@@ -28,3 +28,9 @@ def test_a_request_is_answered_and_recorded_without_an_executor(in_ros: InRos) -
 def test_a_call_between_two_nodes_is_recorded_and_answered_by_its_server_alone(in_ros: InRos) -> None:
     overheard = in_ros.run("trial.scenarios:a_call_between_two_nodes").result
     assert overheard == {"recorded": [["/lay", "turtlesim/srv/Spawn", "egg"]], "again": False, "name": "EGG"}
+
+
+def test_a_snapshot_queries_only_the_topics_whose_endpoints_have_changed(in_ros: InRos) -> None:
+    found = in_ros.run("trial.scenarios:graphs_of_two_nodes").result
+    assert (found["without news"], found["queries"]) == (["/first"], 0)
+    assert (found["another"], found["one less"]) == (["/first", "/second"], ["/second"])
