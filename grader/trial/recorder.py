@@ -161,7 +161,7 @@ class Recorder(Node):
             self._endpoints_before.clear()
         for topic in shown:
             for kind in ("publisher", "subscription"):
-                every = self._endpoints(kind, topic, (types[topic], nodes))  # type: ignore[arg-type]
+                every = self._endpoints(kind, topic, (types[topic], nodes))
                 kept = _each_type_first(every)[:MOST_NODES]
                 left_out += len(every) - len(kept)
                 endpoints.update(kept)

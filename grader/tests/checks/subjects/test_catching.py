@@ -302,16 +302,22 @@ def test_a_turtle_that_is_gone_is_not_far_away() -> None:
 
 
 @pytest.mark.parametrize(
-    ("commands", "expected"),
+    ("commands", "early_s"),
     [
-        (AHEAD, "drives-before-pose"),
-        ([(1.9, 0.0, -0.5), *AHEAD[25:]], "drives-before-pose"),
+        (AHEAD, 0.1),
+        ([(1.9, 0.0, -0.5), *AHEAD[25:]], 1.9),
         ([(0.1, 0.0, 0.0), *AHEAD[25:]], None),
     ],
 )
-def test_turtle1_stands_still_until_its_first_pose(commands: list[tuple[float, ...]], expected: str | None) -> None:
+def test_turtle1_stands_still_until_its_first_pose(commands: list[tuple[float, ...]], early_s: float | None) -> None:
     made = given(commands=commands)
     late = replace(made.trial, scenario=replace(made.trial.scenario, pose_from_s=2.0))
-    exercise = replace(made.exercise, trials=(late,))
-    finding = found(WAITS_FOR_POSE, replace(made, exercise=exercise))
-    assert diagnosis(finding) == expected
+    finding = found(WAITS_FOR_POSE, replace(made, exercise=replace(made.exercise, trials=(late,))))
+    reported, fails = told(finding), early_s is not None
+    assert diagnosis(finding) == ("drives-before-pose" if fails else None)
+    assert ("The turtle stood still until its first pose arrived." in reported) == (not fails)
+    drove = f"The node drove the turtle at {early_s} s. The first pose of turtle1 came at 2.0 s."
+    assert (drove in reported) == fails
+    assert ("Until the first pose of turtle1 arrives, the turtle stands still." in reported) == fails
+    unknown = "Before the first pose, the position of turtle1 is unknown. Store None until the first pose arrives."
+    assert (unknown in reported) == fails
