@@ -143,8 +143,10 @@ class TurtleInterface:
             color.r, color.g, color.b = turtle.color
             self._color.serialize()
         self._frames += 1
-        due = self._frames % self._pose_every == 0 and max(now_s, 0.0) >= self._pose_from_s
-        for sender in (self._pose, self._color) if due else (self._color,):
+        if self._frames % self._pose_every:
+            return
+        late = max(now_s, 0.0) < self._pose_from_s
+        for sender in (self._color,) if late else (self._pose, self._color):
             sender.publish(sender.data)
             self._hooks.on_publish(sender.topic, sender.type_name, sender.data)
 

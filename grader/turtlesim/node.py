@@ -62,9 +62,9 @@ class TurtlesimNode(Node):
     ) -> None:
         """Create the node. turtle1 starts at `start` (m, m, rad), also after a reset.
 
-        `Hooks` describes the callbacks. A pose is published every `pose_every` frames, for turtle1 starting at
-        `pose_from_s` (s). The real turtlesim publishes a pose in each frame. Services respond `answers_after_s` (s)
-        late. The turtles draw on `canvas`.
+        `Hooks` describes the callbacks. Pose and colour are published every `pose_every` frames, the pose of turtle1
+        from `pose_from_s` (s) on. The real turtlesim publishes both in each frame. Services respond `answers_after_s`
+        (s) late. The turtles draw on `canvas`.
         """
         self._pose_every, self._pose_from_s = pose_every, pose_from_s
         self._late = LateAnswers(answers_after_s) if answers_after_s else None

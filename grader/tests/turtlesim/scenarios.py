@@ -277,6 +277,14 @@ def late_frames() -> list[float]:
     return times
 
 
+def every_fourth_frame() -> list[str]:
+    """Return the topics on which a turtle publishes in eight frames, if it publishes in every fourth frame."""
+    published: list[str] = []
+    with Rig(pose_every=4, on_publish=lambda topic, *_: published.append(topic)) as rig:
+        rig.frame(8)
+    return published
+
+
 def first_poses() -> dict[str, float]:
     """Return the time of the first pose of each of two turtles (s), if the first pose of turtle1 is late."""
     found: dict[str, float] = {}

@@ -217,6 +217,10 @@ def test_a_late_frame_is_caught_up_and_none_left_out(in_ros: InRos) -> None:
     assert times == pytest.approx([frame * FRAME_S for frame in range(30)])
 
 
+def test_pose_and_colour_may_be_published_less_often(in_ros: InRos) -> None:
+    assert in_ros.run("turtlesim.scenarios:every_fourth_frame").result == ["/turtle1/pose", "/turtle1/color_sensor"] * 2
+
+
 def test_only_the_first_pose_of_turtle1_is_late(in_ros: InRos) -> None:
     assert in_ros.run("turtlesim.scenarios:first_poses").result == {"/turtle1/pose": 0.8, "/berta/pose": 0.0}
 
