@@ -44,10 +44,16 @@ def test_an_attribute_that_is_none_at_first_is_named(line: str, error: str) -> N
 
 
 def test_every_attribute_of_the_line_that_is_none_at_first_is_named() -> None:
-    node = NODE.replace("self.old = pose", "self.y = pose.y").replace("self.old", "self.y")
-    line = "away = math.hypot(place.x - self.x, place.y - self.y)"
-    found = reported(node.format(first="None", line=line), f"TypeError: {MINUS_NONE}")
+    node = (
+        NODE.replace("self.old = pose", "self.y = pose.y")
+        .replace("self.old", "self.y")
+        .format(first="None", line="away = math.hypot(place.x - self.x, place.y - self.y)")
+    )
+    found = reported(node, f"TypeError: {MINUS_NONE}")
     assert (found.diagnosis, found.cause) == ("none-before-message", BOTH)
+    known = reported(node.replace("self.y = None", "self.y = 0.0"), f"TypeError: {MINUS_NONE}")
+    assert "are None until they get a value" not in known.cause
+    assert known.cause == FIRST
 
 
 @pytest.mark.parametrize(("first", "line"), [("0.0", "dx = self.x + 1.0"), ("None", "dx = self.step + 1.0")])
