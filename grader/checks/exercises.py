@@ -62,7 +62,7 @@ def load_exercise(path: Path) -> Exercise:
 
     Raises UsageError, which lists every problem in the file: the key, its value, and the allowed values.
     """
-    from grader.checks.kinds import KINDS  # imported here because this module imports all checks
+    from grader.checks.kinds import KINDS  # imported here because few commands need it
 
     file = path / FILE_NAME if path.is_dir() else path
     try:

@@ -133,7 +133,7 @@ def keep_picture(evidence: Evidence, report: Report, folder: Path | None = None)
 
     The message is empty if no image was saved. An image that cannot be written is not an error.
     """
-    from grader.checks.kinds import KINDS  # imports all checks
+    from grader.checks.kinds import KINDS
 
     exercise = evidence.exercise
     if report.exit_code != 0 or not any(KINDS[check.kind].drives for check in exercise.checks):
