@@ -153,10 +153,15 @@ def only_type(evidence: Evidence, params: Topic) -> Finding:
     types = {publisher.type for publisher in found if publisher.topic == params.topic}
     types |= {message.type for message in evidence.recording.messages if message.topic == params.topic}
     others = sorted(types - {params.type})
-    if others:
-        observed = f"{params.topic} also receives messages of type {a_list([shorten(other) for other in others])}."
+    where = _publisher_line(evidence, params.topic)
+    listed = a_list([shorten(other) for other in others])
+    if others and params.type in types:
+        observed = f"{params.topic} also receives messages of type {listed}."
         cause = "A topic has one type. Two publishers with different types cannot use the same topic name."
-        return failed(observed, expected, Cause("second-type", cause, _publisher_line(evidence, params.topic)))
+        return failed(observed, expected, Cause("second-type", cause, where))
+    if others:
+        cause = "The message type is the first argument of create_publisher."
+        return failed(f"{params.topic} has the type {listed}.", expected, Cause("wrong-type", cause, where))
     return passed(expected)
 
 

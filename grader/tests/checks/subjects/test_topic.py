@@ -274,3 +274,12 @@ def test_the_sentences_about_types_are_told_only_for_a_wrong_type() -> None:
     assert second.cause.startswith("A topic has one type. Two publishers with different types")
     assert (one.status, one.cause) == (Status.PASSED, "")
     assert one.observed == f"Only {TWIST} messages are published on {TOPIC}."
+
+
+@pytest.mark.parametrize(("types", "two"), [((TWIST, TEXT), True), ((TEXT,), False)])
+def test_a_single_type_is_no_second_type(types: tuple[str, ...], *, two: bool) -> None:
+    trial = observed(*(("publisher", TOPIC, each) for each in types))
+    finding = found(ONLY_TYPE, evidence(trial), topic=TOPIC, type=TWIST)
+    assert (finding.observed == f"{TOPIC} also receives messages of type {TEXT}.") == two
+    assert (finding.observed == f"{TOPIC} has the type {TEXT}.") != two
+    assert finding.diagnosis == ("second-type" if two else "wrong-type")
