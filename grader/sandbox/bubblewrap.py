@@ -115,6 +115,8 @@ def cell(
     # /tmp comes first, because folders of the view may be inside it.
     command += ["--size", str(limits.disk), "--tmpfs", "/tmp", "--dir", str(HOME)]
     command += ["--size", str(limits.disk), "--tmpfs", str(WORKSPACE), *_disk(view), "--proc", "/proc"]
+    # A shared mapping of /dev/zero is memory that no limit counts.
+    command += ["--ro-bind", "/dev/null", "/dev/zero"]
     # --dev makes /dev and /dev/shm writable and large.
     command += ["--size", str(limits.disk), "--tmpfs", "/dev/shm", "--remount-ro", "/dev", "--remount-ro", "/"]
     command += [] if info_fd is None else ["--info-fd", str(info_fd)]

@@ -54,7 +54,12 @@ DENIED = {
         "setdomainname": 171, "iopl": 172, "ioperm": 173, "vhangup": 153,
     },
 }  # fmt: skip
-_SOCKET, _SOCKETPAIR, _CLONE, _CLONE3, _FCNTL = 41, 53, 56, 435, 72
+_MMAP, _SOCKET, _SOCKETPAIR, _CLONE, _CLONE3, _FCNTL = 9, 41, 53, 56, 435, 72
+_SHARED_MEMORY = 0x21
+"""MAP_SHARED and MAP_ANONYMOUS of mmap(2), which are forbidden together.
+
+A process can empty its page tables with madvise. Then this memory counts towards neither a tmpfs nor a process.
+"""
 _SET_PIPE_SIZE = 1031
 """F_SETPIPE_SZ of fcntl(2).
 
@@ -100,6 +105,8 @@ def program() -> bytes:
     lines += [(bpf.ANY_BIT, 0, 1, _NEW_NAMESPACE), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
     lines += [(bpf.EQUAL, 0, 4, _FCNTL), (bpf.LOAD, 0, 0, bpf.argument(1))]
     lines += [(bpf.EQUAL, 0, 1, _SET_PIPE_SIZE), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
+    lines += [(bpf.EQUAL, 0, 5, _MMAP), (bpf.LOAD, 0, 0, bpf.argument(3)), (bpf.AND, 0, 0, _SHARED_MEMORY)]
+    lines += [(bpf.EQUAL, 0, 1, _SHARED_MEMORY), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
     sockets = _usual_socket()
     lines += [(bpf.EQUAL, 1, 0, _SOCKET), (bpf.EQUAL, 0, len(sockets), _SOCKETPAIR), *sockets]
     lines += [(bpf.RETURN, 0, 0, bpf.ALLOW)]

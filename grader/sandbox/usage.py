@@ -8,6 +8,7 @@ everywhere.
 from __future__ import annotations
 
 import os
+import re
 import sys
 import time
 from pathlib import Path
@@ -29,7 +30,9 @@ _DISKS = ("ws", "tmp", "dev/shm")
 _SOCKETS = ("udp", "udp6", "tcp", "tcp6")
 _MOST_LISTED = 4 * 1024 * 1024
 """A list of sockets that is longer than this (bytes) has more than 25,000 lines, which only an attack has."""
-_PAGE = os.sysconf("SC_PAGE_SIZE")
+_MEMORY = re.compile(r"^(?:RssAnon|RssShmem|VmSwap|VmPTE):\s*(\d+) kB", re.MULTILINE)
+"""The memory of a process in /proc/PID/status without mapped files: its own pages, shared pages and page tables."""
+_THREADS = re.compile(r"^Threads:\s*(\d+)", re.MULTILINE)
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
 
@@ -40,8 +43,9 @@ def exceeded(pid: int, limits: Limits) -> str | None:
     disks: dict[int, tuple[int, int]] = {}
     networks = {_network(os.getpid()): 0}
     for process in family(pid):
-        memory += _own_bytes(process)
-        processes += _threads(process)
+        own, threads = _own_bytes_and_threads(process)
+        memory += own
+        processes += threads
         networks.setdefault(_network(process), process)
         if not disks:
             disks = _disks(process)
@@ -111,13 +115,17 @@ def family(pid: int) -> Iterator[int]:
             continue
 
 
-def _own_bytes(pid: int) -> int:
-    """Return the memory of the process (bytes) without mapped files."""
+def _own_bytes_and_threads(pid: int) -> tuple[int, int]:
+    """Return the memory of the process (bytes) without mapped files, and the number of its threads.
+
+    Shared memory counts for each process that uses it.
+    """
     try:
-        _, resident, shared, *_ = _read(f"/proc/{pid}/statm").split()
-    except (OSError, ValueError):
-        return 0
-    return (int(resident) - int(shared)) * _PAGE
+        status = _read(f"/proc/{pid}/status")
+    except OSError:
+        return 0, 0
+    threads = _THREADS.search(status)
+    return 1024 * sum(map(int, _MEMORY.findall(status))), int(threads[1]) if threads is not None else 0
 
 
 def _network(pid: int) -> str:
@@ -147,14 +155,6 @@ def _waiting_bytes(pid: int) -> int:
             sends, _, receives = line.split(maxsplit=5)[4].partition(b":")
             total += int(sends, 16) + int(receives, 16)
     return total
-
-
-def _threads(pid: int) -> int:
-    """Return the number of threads of the process."""
-    try:
-        return len(os.listdir(f"/proc/{pid}/task"))  # noqa: PTH208 - many, often
-    except OSError:
-        return 0
 
 
 def _cpu_s(pid: int) -> float:

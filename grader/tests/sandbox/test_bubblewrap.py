@@ -125,6 +125,34 @@ time.sleep(1.0 + 20.0 * sends)
     assert [run(f"sends = {sends}{code}", limits).out_of for sends in (0, 1)] == [None, "memory"]
 
 
+def test_shared_memory_without_a_file_is_refused() -> None:
+    code = """
+import mmap
+for target in ("shared", "zero"):
+    try:
+        mmap.mmap(-1 if target == "shared" else open("/dev/zero", "r+b").fileno(), 4096)
+    except PermissionError:
+        print(target)
+mmap.mmap(-1, 4096, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
+with open("file", "w+b") as file:
+    file.write(bytes(4096))
+    mmap.mmap(file.fileno(), 4096)
+"""
+    assert run(code).stdout == b"shared\nzero\n"
+
+
+def test_shared_memory_of_a_file_counts_as_memory() -> None:
+    code = """
+import mmap, time
+with open("file", "w+b") as file:
+    file.truncate(30_000_000)
+    shared = mmap.mmap(file.fileno(), 30_000_000)
+    shared[:] = bytes(len(shared))
+time.sleep(10)
+"""
+    assert run(code, Limits(total_memory=48 * MIB)).out_of == "memory"
+
+
 def test_only_forbidden_calls_are_refused() -> None:
     numbers = sorted(number for group in DENIED.values() for number in group.values())
     code = f"""
