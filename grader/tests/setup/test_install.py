@@ -161,3 +161,21 @@ def test_a_course_in_any_folder_is_found_in_every_locale(tmp_path: Path, name: s
     env = {"LC_ALL": "C"}
     said = subprocess.run([sys.executable, "-I", "-c", code], env=env, capture_output=True, text=True, check=False)
     assert said.stdout == f"{str(packages)!a}\n", said.stderr
+
+
+@pytest.mark.parametrize(("env", "imported"), [({}, True), ({"_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}, False)])
+def test_the_bootstrapper_of_the_wheels_is_imported_only_if_it_has_not_run(
+    tmp_path: Path, env: dict[str, str], *, imported: bool
+) -> None:
+    cached, folder = tmp_path / "cache.pth", tmp_path / "site-packages"
+    folder.mkdir()
+    cached.write_text("import ros_wheels_bootstrapper\n")
+    (folder / "ros_wheels_bootstrapper.pth").hardlink_to(cached)
+    (folder / "ros_wheels_bootstrapper.py").write_text("print('imported')\n")
+    install.start_fast(folder)
+    assert cached.read_text() == "import ros_wheels_bootstrapper\n"
+    code = f"import site; site.addsitedir({str(folder)!r})"
+    said = subprocess.run(
+        [sys.executable, "-I", "-S", "-c", code], env=env, capture_output=True, text=True, check=False
+    )
+    assert said.stdout == "imported\n" * imported, said.stderr
