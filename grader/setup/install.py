@@ -37,7 +37,7 @@ _OLDEST_NUMPY = (1, 25)
 _NUMPY = Path(__file__).with_name("numpy.txt")
 """The last version of numpy 1, in pip's format. Extensions that were built for an older numpy 1 cannot use numpy 2."""
 _BOOTSTRAPPER, _BOOTSTRAPPED = "ros_wheels_bootstrapper", "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
-"""The module that each interpreter imports if the ROS wheels are installed, and the variable that says that it has run."""
+"""The module that each interpreter with the ROS wheels imports, and the variable that is set once it has run."""
 _UNKNOWN = (
     "The packages could not be installed; the installer's messages are above. HTTPS_PROXY sets a proxy, and pip's "
     f"configuration sets a mirror; {setup_errors.AGAIN}."
