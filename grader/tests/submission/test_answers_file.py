@@ -29,6 +29,8 @@ def test_an_answer_is_a_text_a_number_or_a_list_of_texts(written: str, read: Ans
     found = read_answers(f"[answers]\nname = {written}\n".encode())
     assert found.problem is None
     assert found.given.get("name") == read
+    missing = written in ('""', '"  "', "0", "[]")
+    assert found.unusable == (frozenset() if missing or read is not None else {"name"})
 
 
 def test_lines_are_where_the_answers_stand() -> None:
