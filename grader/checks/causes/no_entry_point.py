@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import io
 import re
 import tokenize
@@ -18,6 +19,7 @@ from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
+    from grader.submission.code import Module
     from grader.submission.setup_py import EntryPoint, SetupPy
 
 FORM = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION in the list console_scripts of setup.py"
@@ -33,6 +35,16 @@ def line(evidence: Evidence) -> Where:
         return Where("setup.py", point.line)
     listed = line_of(evidence.submission.files.get("setup.py", b""), r"[\"']console_scripts\b")
     return Where("setup.py", listed or setup.setup_line)
+
+
+def indented(module: Module | None, name: str) -> Cause | None:
+    """Return the cause if the module has the function only inside a class or another function, else None."""
+    functions = [node for node in module.nodes if isinstance(node, ast.FunctionDef)] if module is not None else []
+    inside = next((node for node in functions if node.name == name and node.col_offset), None)
+    if module is None or inside is None:
+        return None
+    text = f"{shorten(name)} is indented, so it belongs to the class above it. Remove the indentation."
+    return Cause("main-in-class", text, Where(module.file, inside.lineno))
 
 
 def no_entry_point(evidence: Evidence) -> Finding:

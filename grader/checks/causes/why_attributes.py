@@ -10,10 +10,9 @@ import time
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes import ros_names
+from grader.checks.causes import no_entry_point, ros_names
 from grader.checks.causes.attribute_of_none import attribute_of_none
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
-from grader.checks.causes.no_entry_point import line as entry_point_line
 from grader.checks.causes.why_not_set import compared
 from grader.checks.causes.why_other_object import (
     CREATE_OBJECT,
@@ -133,7 +132,8 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
 def _of_module(scene: CrashScene, module: str, name: str) -> Cause | None:
     if scene.evidence.entry_point() == f"{module}:{name}":
         text = f"The entry point names {shorten(name)}, which the module {shorten(module)} does not contain."
-        return Cause("entry-point-function", text, entry_point_line(scene.evidence))
+        missing = Cause("entry-point-function", text, no_entry_point.line(scene.evidence))
+        return no_entry_point.indented(scene.module_of(f"{module.replace('.', '/')}.py"), name) or missing
     if module == "rclpy" and name in ros_names.MODULE_OF:
         return Cause("import-wrong-place", f"{name} is in the module {ros_names.MODULE_OF[name]}.")
     if module == "rclpy" and name in ros_names.OF_ROS_1:

@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.comma_for_dot import comma_for_dot
 
 if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
@@ -30,4 +31,6 @@ def why_operands(scene: CrashScene) -> Cause | None:
     if "list" in types and types & NUMBERS:
         text = "A list is not an array: Python cannot compute with a whole list. `np.array` turns a list into an array."
         return Cause("list-for-array", text)
+    if (comma := comma_for_dot(scene)) is not None:
+        return comma
     return Cause("crash", f"Python cannot do this with a value of type {left} and a value of type {right}.")

@@ -93,11 +93,17 @@ def why_publishers_grow(evidence: Evidence) -> Cause | None:
 
 
 def why_timers_grow(evidence: Evidence) -> Cause | None:
-    """Return the cause if a callback creates a timer, else None."""
+    """Return the cause if a callback creates a timer, else None.
+
+    A callback that also stops a timer may replace its own timer, so that it is not called again.
+    """
     found = _made_in_callback(evidence, "create_timer")
     if found is None:
         return None
     name, where = found
+    functions = [node for module in evidence.code.modules for node in module.nodes if isinstance(node, ast.FunctionDef)]
+    if any(_calls(node, stop) for node in functions if node.name == name for stop in ("cancel", "destroy_timer")):
+        return None
     text = f"{name} creates a new timer each time it is called. One timer is enough, because it repeats."
     return Cause("timer-in-callback", text, where)
 

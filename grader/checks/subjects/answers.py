@@ -173,6 +173,8 @@ def _why(answer: str, find: str, truth: Collection[str], others: Collection[str]
         )
     if any(each.lower() == answer.lower() for each in truth):
         return Cause("capitals", "Upper and lower case matter.")
+    if not truth:
+        return Cause("wrong-answer", f"During the trial, there was no {find} as the question describes it.")
     if answer in others:
         return Cause("answer-another", f"This {find} exists, but it is not the one that the question asks for.")
     return Cause("wrong-answer", KEEP_LOOKING)

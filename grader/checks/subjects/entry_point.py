@@ -6,7 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.no_entry_point import FORM, line, no_entry_point
+from grader.checks.causes.no_entry_point import FORM, indented, line, no_entry_point
 from grader.checks.causes.syntax import unreadable_finding
 from grader.checks.edit import at
 from grader.checks.kind import Kind, NoParams
@@ -148,10 +148,9 @@ def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
     if at_top is not None and not any(node.name == name for node in functions):
         cause = "The program is at the top level of the file. Move the program into a function with that name."
         return failed(observed, expected, Cause("top-level-code", cause, Where(module.file, at_top.lineno)))
-    inside = next((node for node in functions if node.name == name and node.col_offset), None)
+    inside = indented(module, name)
     if inside is not None:
-        cause = f"{name} is indented, so it belongs to the class above it. Remove the indentation."
-        return failed(observed, expected, Cause("main-in-class", cause, Where(module.file, inside.lineno)))
+        return failed(observed, expected, inside)
     guess = nearest(name, [node.name for node in functions if node.col_offset == 0])
     top = [node.name for node in functions if node.col_offset == 0]
     cause = "Nothing at the top level of the file has that name."

@@ -250,3 +250,26 @@ def test_a_property_of_the_students_own_is_not_one_of_every_node() -> None:
     assert (given.diagnosis, given.line) == ("name-used-twice", to_look_at(source))
     assert given.cause.startswith("speed is a property without a setter, so nothing can be assigned to it.")
     assert "Every node already has" not in given.cause
+
+
+MAIN = """\
+from geometry_msgs.msg import *
+from rclpy.node import Node
+
+class Driver(Node):
+    pass
+
+{indent}def main(): {mark}
+{indent}    pass
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "indent", "diagnosis"),
+    [("main", "    ", "main-in-class"), ("main", "", "entry-point-function"), ("run", "    ", "attribute-missing")],
+)
+def test_a_function_of_the_entry_point_may_be_inside_the_class(name: str, indent: str, diagnosis: str) -> None:
+    source = MAIN.format(indent=indent, mark="# look")
+    told = reported(source, f"AttributeError: module 'my_robot_controller.draw_circle' has no attribute '{name}'")
+    assert told.diagnosis == diagnosis
+    assert ("main is indented, so it belongs to the class above it." in told.cause) == (diagnosis == "main-in-class")

@@ -30,3 +30,17 @@ def test_the_types_of_both_values_decide(error: str, diagnosis: str, cause: str)
     assert told.diagnosis == diagnosis
     assert told.cause.startswith(cause)
     assert [text for text in (LISTS, STRINGS) if text != cause and text in told.cause] == []
+
+
+@pytest.mark.parametrize(
+    ("line", "diagnosis"),
+    [
+        ("both = max(step - self,count)", "comma-for-dot"),
+        ("both = max(step - self, count)", "crash"),
+        ("both = max(step - self.count, 1)", "crash"),
+    ],
+)
+def test_a_comma_for_a_dot_makes_an_object_the_side_of_an_operator(line: str, diagnosis: str) -> None:
+    told = reported(DRIVER.format(line=line), "TypeError: unsupported operand type(s) for -: 'float' and 'Driver'")
+    assert told.diagnosis == diagnosis
+    assert ("A comma separates self from count. Write a dot: self.count." in told.cause) == (diagnosis != "crash")

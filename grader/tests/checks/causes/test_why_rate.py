@@ -71,6 +71,9 @@ def test_a_method_that_each_message_calls_is_found(made: str, sent: str, mean_s:
     assert often(source, mean_s) == (("every-message", line_with(LOOK, source)) if found else None)
 
 
+ONCE = "self.timer = self.create_timer(0.5, self.send)"
+
+
 @pytest.mark.parametrize(
     ("made", "sent", "found"),
     [
@@ -79,6 +82,9 @@ def test_a_method_that_each_message_calls_is_found(made: str, sent: str, mean_s:
         (SUBSCRIBES, "self.create_timer(0.5, self.other)  # look", True),
         ("self.create_timer(0.5, self.other)", "self.create_timer(0.5, self.other)  # look", False),
         ("self.create_timer(0.5, self.send)", "self.destroy_timer(self.timer)", False),
+        (ONCE, "self.timer.cancel(); self.create_timer(0.5, self.other)  # look", False),
+        (ONCE, "self.destroy_timer(self.timer); self.create_timer(0.5, self.other)  # look", False),
+        (ONCE, "self.timer.reset(); self.create_timer(0.5, self.other)  # look", True),
         ("self.create_timer(0.5, self.send)", "make()()", False),
     ],
 )

@@ -130,14 +130,22 @@ def test_a_list_is_compared_whatever_its_order(answer: str, reported: str | None
         ('["/waiter", "/kitchen/cook"]', NODES, None),
         ('["/waiter"]', NODES, "list-incomplete"),
         ('"kitchen/cook"', {"find": "node", "among": "publisher", "type_ends": "/String"}, "no-slash"),
-        ('"/rosout"', {"find": "topic", "among": "publisher", "type_starts": "rcl_"}, "answer-another"),
+        ('"/rosout"', {"find": "topic", "among": "publisher", "type_starts": "rcl_"}, "wrong-answer"),
         ('"/waiter"', {"find": "node", "type_starts": "rcl_"}, None),
         ('"/cups"', {"find": "topic", "type_starts": "std_", "type_ends": "/Float32"}, "answer-another"),
         ('"/nowhere"', TOPIC, "wrong-answer"),
+        ('"/cups"', {"find": "topic", "among": "publisher", "connected_to": "/nobody"}, "wrong-answer"),
     ],
 )
 def test_the_truth_is_the_graph_as_it_was_recorded(answer: str, values: dict[str, str], diagnosis: str | None) -> None:
     assert judged(GRAPH, answer, **values).diagnosis == diagnosis
+
+
+@pytest.mark.parametrize(("node", "told"), [("/nobody", True), ("/waiter", False)])
+def test_no_answer_is_called_wrong_for_a_graph_without_a_right_one(node: str, *, told: bool) -> None:
+    finding = judged(GRAPH, '"/bills"', find="topic", among="publisher", connected_to=node)
+    assert ("During the trial, there was no topic as the question describes it." in finding.cause) == told
+    assert ("exists, but it is not the one" in finding.cause) != told
 
 
 def test_another_graph_has_other_right_answers() -> None:
