@@ -6,6 +6,7 @@ Like machine.py, this module runs under any Python 3 before anything is installe
 import errno
 import os
 import re
+import shlex
 import shutil
 import sys
 import tempfile
@@ -15,6 +16,7 @@ from typing import Callable, List, Optional
 
 from grader.common.system_errors import refusal, sentence
 
+ROOT = Path(__file__).resolve().parents[2]
 MACHINE_BROKEN = 3
 NEEDED_MB = 700
 """The disk space for a learner's .venv (MB), including a reserve."""
@@ -109,8 +111,17 @@ def _of_number(number: int, where: Optional[Path]) -> str:
         return sentence(number, str(where or ""), room)
     if number in _WRITE:
         reported = f"{where} cannot be written to ({os.strerror(number)})"
+        if where and _is_roots_in_my_course(where):
+            again = f"sudo chown -R {os.getuid()}:{os.getgid()} {shlex.quote(str(ROOT))}"
+            return f"{reported}: it belongs to root, as after `sudo make`. Type {again} and try again, without sudo."
         return f"{reported}: copy the course's folder to a writable folder, such as your home, and try again there."
     return sentence(number, str(where or ""))
+
+
+def _is_roots_in_my_course(where: Path) -> bool:
+    """Return whether root created this file or folder in a course folder that belongs to this user."""
+    there = next((above for above in [where, *where.parents] if above.exists()), ROOT)
+    return os.getuid() != 0 and there.stat().st_uid == 0 and ROOT.stat().st_uid == os.getuid() and ROOT in there.parents
 
 
 def _fullest(folders: List[Path]) -> Optional[Path]:

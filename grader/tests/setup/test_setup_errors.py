@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import errno
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -30,6 +31,20 @@ def test_what_an_installer_printed_is_one_sentence(said: str, reported: str) -> 
     assert reported in sentence
     assert sentence.endswith(".")
     assert "\n" not in sentence
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can give a folder to another user")
+@pytest.mark.parametrize(("owner", "reported"), [(0, "Type sudo chown -R 12345:"), (12345, "copy the course's folder")])
+def test_what_sudo_make_has_left_behind_is_given_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, owner: int, reported: str
+) -> None:
+    (tmp_path / ".venv").mkdir()
+    os.chown(tmp_path, 12345, -1)
+    os.chown(tmp_path / ".venv", owner, -1)
+    monkeypatch.setattr(setup_errors, "ROOT", tmp_path)
+    monkeypatch.setattr(os, "getuid", lambda: 12345)
+    said = "Error: [Errno 13] Permission denied: '/x'"
+    assert reported in str(setup_errors.of_output(said, tmp_path / ".venv/bin"))
 
 
 def test_a_disk_without_room_is_the_cause_whatever_was_printed(monkeypatch: pytest.MonkeyPatch) -> None:
