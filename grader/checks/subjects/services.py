@@ -142,9 +142,10 @@ def no_response(evidence: Evidence, service: str, type_: str, call: Call | None,
     if crash is not None:
         return crash_finding(evidence, crash, end_observed(evidence), expected)
     where = evidence.place("create_service")
-    if call is None:
-        return failed("The node had ended before the call.", expected, Cause("no-response", where=where))
     ended = end_observed(evidence)
+    if call is None:
+        observed = f"{'The node' if ended else 'The trial'} had ended before the call."
+        return failed(observed, expected, Cause("no-response", where=where))
     if not call.missing and ended:
         observed = f"The node did not answer the call to {service}. {ended}"
         return failed(observed, expected, Cause("no-response", where=where))

@@ -134,7 +134,6 @@ def about_answers(calls: list[Call], **changes: Any) -> str:  # noqa: ANN401
         ),
         ("The response took 2.5 s.", [paused(5.5, success=True)], [paused(3.9, success=True)]),
         ("A callback must not sleep or wait.", [paused(5.5, success=True)], [paused(success=False)]),
-        ("The node had ended before the call.", [], [paused(None, missing=True)]),
         ("The node received the call to /pause and never answered.", [paused(None)], [paused(None, missing=True)]),
         (BLOCKED, [paused(None)], [paused(None, missing=True)]),
         ("The node offers no service.", [paused(None, missing=True)], [paused(None)]),
@@ -143,6 +142,16 @@ def about_answers(calls: list[Call], **changes: Any) -> str:  # noqa: ANN401
 def test_a_sentence_about_a_response_is_true(words: str, true: list[Call], near: list[Call]) -> None:
     assert words in about_answers(true)
     assert words not in about_answers(near)
+
+
+@pytest.mark.parametrize(("changes", "found"), [({"end": ENDED}, True), ({}, False)])
+def test_a_call_that_was_not_made_is_told_from_a_call_without_a_response(
+    changes: dict[str, Any], *, found: bool
+) -> None:
+    missed = about_answers([], **changes)
+    assert ("The node had ended before the call." in missed) == found
+    assert ("The trial had ended before the call." in missed) != found
+    assert "had ended before the call." not in about_answers([paused(None, missing=True)], **changes)
 
 
 def test_a_node_that_ended_after_a_call_did_not_block_its_callbacks() -> None:

@@ -136,7 +136,7 @@ Gone = dict[str, float]
     ("words", "true", "near"),
     [
         ("A call to /catch removes the turtle.", ([catch(), kill()], CAUGHT), ([], {})),
-        ("The node had ended before the call.", ([], {}), ([catch()], {})),
+        ("had ended before the call.", ([], {}), ([catch()], {})),
         (
             "When /catch is called, the node removes the turtle that the request names, and no other turtle",
             ([catch()], {}),
