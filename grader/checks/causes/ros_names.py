@@ -126,6 +126,29 @@ OTHERS = {
 }
 """Maps each other class of objects, such as a logger, to the methods of this class."""
 
+CONSTANTS = {
+    "GoalStatus": (
+        "STATUS_UNKNOWN",
+        "STATUS_ACCEPTED",
+        "STATUS_EXECUTING",
+        "STATUS_CANCELING",
+        "STATUS_SUCCEEDED",
+        "STATUS_CANCELED",
+        "STATUS_ABORTED",
+    ),
+    "ReliabilityPolicy": ("RELIABLE", "BEST_EFFORT", "SYSTEM_DEFAULT"),
+    "DurabilityPolicy": ("VOLATILE", "TRANSIENT_LOCAL", "SYSTEM_DEFAULT"),
+    "HistoryPolicy": ("KEEP_LAST", "KEEP_ALL", "SYSTEM_DEFAULT"),
+    "ParameterType": (
+        "PARAMETER_NOT_SET",
+        "PARAMETER_BOOL",
+        "PARAMETER_INTEGER",
+        "PARAMETER_DOUBLE",
+        "PARAMETER_STRING",
+    ),
+}
+"""Maps a class to constants that are read from the class itself, without creating an object."""
+
 SERVICES = (
     "/spawn",
     "/kill",

@@ -75,7 +75,7 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
     if not match["type"] and scene.own_class is not None and _is_subclass_elsewhere(scene, owner, name):
         return _of_own_class(scene, scene.own_class.name, name)
     if match["type"] or owner.startswith("Metaclass_"):
-        return class_for_object(scene, owner.removeprefix("Metaclass_"), name)
+        return _of_class_elsewhere(scene, owner.removeprefix("Metaclass_"), name)
     return _of_another_object(scene, owner, name)
 
 
@@ -127,6 +127,14 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
     if owner in PLAIN:
         return Cause("attribute-missing", f"This value is {PLAIN[owner]}, which has no {shorten(name)}.")
     return None
+
+
+def _of_class_elsewhere(scene: CrashScene, owner: str, name: str) -> Cause:
+    """Return the cause if a class of ROS 2 has no such attribute. The fields of a message need an object."""
+    if owner in ros_names.FIELDS:
+        return class_for_object(scene, owner, name)
+    text = f"The class {shorten(owner)} has no constant or method with that name."
+    return _misspelt(scene, name, ros_names.CONSTANTS.get(owner, ())) or Cause("attribute-missing", text)
 
 
 def _of_module(scene: CrashScene, module: str, name: str) -> Cause | None:

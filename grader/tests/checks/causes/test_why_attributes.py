@@ -23,6 +23,16 @@ from grader.tests.checks.crashes import DRIVER, reported, to_look_at
         ("module 'time' has no attribute 'sleeep'", "attribute-misspelt", "A similar name exists: sleep."),
         ("module 'cv2' has no attribute 'imred'", "attribute-missing", "The module cv2 does not contain this name."),
         ("type object 'Twist' has no attribute 'linear'", "class-for-object", "Twist is a class."),
+        (
+            "type object 'GoalStatus' has no attribute 'STATUS_CANCELLED'",
+            "attribute-misspelt",
+            "A similar name exists: STATUS_CANCELED.",
+        ),
+        (
+            "type object 'Kill_Request' has no attribute 'turtle'",
+            "attribute-missing",
+            "The class Kill_Request has no constant or method with that name.",
+        ),
         ("'Metaclass_Twist' object has no attribute 'linear'", "class-for-object", "Twist is a class."),
         ("'function' object has no attribute 'now'", "not-called", "the parentheses are missing"),
         (
@@ -49,6 +59,7 @@ def test_an_unknown_attribute_is_explained_by_what_it_was_looked_for_in(error: s
     assert words in found.cause
     assert ("meant?" in found.cause) == ("meant?" in words)
     assert "Metaclass" not in found.cause
+    assert ("Add parentheses" in found.cause) == (diagnosis == "class-for-object")
 
 
 def test_a_message_made_without_parentheses_is_reported_where_it_was_made() -> None:
