@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.why_again import why_again
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_killed import SAME_TIME_S, why_killed
 from grader.checks.causes.why_not_caught import why_not_caught
@@ -202,8 +203,7 @@ def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
             return failed(observed, expected, Cause("from-afar", "", where), near_edge=_near(away_m, params))
     if often:
         observed = f"The node called {params.service} for {often[0]} repeatedly."
-        text = "Until the response arrives, store in an attribute that the node has called the service."
-        return failed(observed, f"{expected} One call is enough.", Cause("catch-again", text, where))
+        return failed(observed, f"{expected} One call is enough.", why_again(evidence))
     if not calls:
         return failed(f"The node never called {params.service}.", expected, why_unasked(evidence, params.service))
     unseen = _uncaught(recording, caught(recording), params.service)

@@ -1,0 +1,61 @@
+"""Explain why a node calls a service again and again for the same target, although it waits for the response."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.why_silent import methods_of
+from grader.submission.constants import dotted
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from grader.evidence.evidence import Evidence
+    from grader.submission.code import Module
+
+CALL = "call_async"
+NOTHING = (None, False)
+"""Values by which an attribute says that no call is under way."""
+
+
+def why_again(evidence: Evidence) -> Cause:
+    """Return the cause of repeated calls: the response is not awaited, or the target is not forgotten afterwards."""
+    where = evidence.place(CALL)
+    waiting = {name for _, method in methods_of(evidence) if _calls(method) for name, _ in _set(method, empty=False)}
+    ended = [
+        Where(module.file, line)
+        for module, method in methods_of(evidence)
+        if method.name != "__init__" and not _calls(method)
+        for name, line in _set(method, empty=True)
+        if name in waiting & _tested(module)
+    ]
+    if ended:
+        text = (
+            "The node already waits for the response. When the response has arrived, the node must forget the target "
+            "too, or else this target is still the nearest one."
+        )
+        return Cause("catch-again", text, ended[0])
+    text = "Until the response arrives, store in an attribute that the node has called the service."
+    return Cause("catch-again", text, where)
+
+
+def _calls(method: ast.FunctionDef) -> bool:
+    return any(isinstance(node, ast.Attribute) and node.attr == CALL for node in ast.walk(method))
+
+
+def _set(method: ast.FunctionDef, *, empty: bool) -> Iterator[tuple[str, int]]:
+    """Yield the attributes of self that the method sets to None or False, or else to another value, with the lines."""
+    for node in ast.walk(method):
+        if isinstance(node, ast.Assign):
+            nothing = isinstance(node.value, ast.Constant) and node.value.value in NOTHING
+            names = filter(None, map(dotted, node.targets))
+            yield from ((name, node.lineno) for name in names if name.startswith("self.") and nothing == empty)
+
+
+def _tested(module: Module) -> set[str | None]:
+    """Return the names that a condition of the module contains."""
+    tests = [node.test for node in module.nodes if isinstance(node, ast.If | ast.While | ast.IfExp)]
+    return {dotted(each) for test in tests for each in ast.walk(test) if isinstance(each, ast.Attribute)}
