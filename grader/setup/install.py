@@ -173,8 +173,7 @@ def _uv(*arguments: str) -> float | None:
 
 def _may_write(folder: Path) -> bool:
     """Return whether files can be created in a folder, even if the folder does not exist yet."""
-    there = next((above for above in [folder, *folder.parents] if above.exists()), folder)
-    return os.access(there, os.W_OK)
+    return os.access(setup_errors.nearest(folder), os.W_OK)
 
 
 def _run(command: list[str], env: dict[str, str]) -> Ran:

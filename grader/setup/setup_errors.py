@@ -118,16 +118,21 @@ def _of_number(number: int, where: Optional[Path]) -> str:
     return sentence(number, str(where or ""))
 
 
+def nearest(path: Path) -> Path:
+    """Return the path, or the nearest folder above it that exists and that this user can see."""
+    # Path.exists raises PermissionError below a folder of another user.
+    return next(above for above in [path, *path.parents] if os.path.exists(str(above)))  # noqa: PTH110
+
+
 def _is_roots_in_my_course(where: Path) -> bool:
     """Return whether root created this file or folder in a course folder that belongs to this user."""
-    there = next((above for above in [where, *where.parents] if above.exists()), ROOT)
+    there = nearest(where)
     return os.getuid() != 0 and there.stat().st_uid == 0 and ROOT.stat().st_uid == os.getuid() and ROOT in there.parents
 
 
 def _fullest(folders: List[Path]) -> Optional[Path]:
     """Return the first of the folders whose disk is nearly full, or None."""
     for folder in folders:
-        there = next((above for above in [folder, *folder.parents] if above.exists()), None)
-        if there and shutil.disk_usage(str(there)).free < _FULL_MB * 2**20:
+        if shutil.disk_usage(str(nearest(folder))).free < _FULL_MB * 2**20:
             return folder
     return None

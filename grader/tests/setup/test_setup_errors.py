@@ -47,6 +47,16 @@ def test_what_sudo_make_has_left_behind_is_given_back(
     assert reported in str(setup_errors.of_output(said, tmp_path / ".venv/bin"))
 
 
+def test_a_path_below_a_folder_of_another_user_is_looked_for_without_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuses(_: Path) -> NoReturn:
+        raise PermissionError(errno.EACCES, "Permission denied")
+
+    monkeypatch.setattr(Path, "exists", refuses)
+    assert setup_errors.nearest(tmp_path / "closed/demo") == tmp_path
+
+
 def test_a_disk_without_room_is_the_cause_whatever_was_printed(monkeypatch: pytest.MonkeyPatch) -> None:
     said = "Error: Command '[...]' returned non-zero exit status 1."
     assert setup_errors.of_output(said, HERE) is None
