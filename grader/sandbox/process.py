@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from grader.sandbox.limits import Limits
 
 _CHUNK = 1024 * 1024
+MOST_TIME = 3
+"""The maximum duration of a watched child, as a multiple of its time limit."""
 
 
 @dataclass(frozen=True)
@@ -87,14 +89,15 @@ class _Pump:
     def too_much(self) -> bool:
         return len(self.stdout) > self._most
 
-    def serve(self, deadline: float, stopped: Callable[[], bool]) -> bool:
-        """Serve until the child has closed its pipes or written too much. Return False at the deadline (monotonic, s).
+    def serve(self, left: Callable[[], float], stopped: Callable[[], bool]) -> bool:
+        """Serve until the child has closed its pipes or written too much. Return False when no time is left.
 
-        `stopped` is called several times per second. Serving also ends if `stopped` returns True.
+        `left` returns the rest of the time (s). `left` and `stopped` are called several times per second. Serving also
+        ends if `stopped` returns True.
         """
         with self._selector:
             while self._selector.get_map() and not self.too_much:
-                left_s = deadline - time.monotonic()
+                left_s = left()
                 if left_s <= 0 or stopped():
                     return False
                 for key, _ in self._selector.select(min(left_s, EVERY_S)):
@@ -135,7 +138,8 @@ def run(
 
     The beginning and the end of standard error are kept.
 
-    With `watch`, the child is killed when its processes exceed these limits together.
+    With `watch`, the child is killed when its processes exceed these limits together, and the time for which they wait
+    for a processor is not a part of `timeout_s`. The child of a crowded machine gets at most MOST_TIME times as long.
 
         done = run(["cat"], stdin=b"text", timeout_s=60.0, most_stdout=1000, most_stderr=1000)
     """
@@ -147,11 +151,16 @@ def run(
     ) as child:
         pump = _Pump(child, stdin, most_stdout, most_stderr)
         guard = Guard(child.pid, watch, over.append) if watch is not None else None
+
+        def left() -> float:
+            waited_s = guard.waited_s() if guard is not None else 0.0
+            return begun + timeout_s + min(waited_s, (MOST_TIME - 1) * timeout_s) - time.monotonic()
+
         in_time = False
         try:
-            in_time = pump.serve(begun + timeout_s, lambda: bool(over))
+            in_time = pump.serve(left, lambda: bool(over))
             if in_time and not pump.too_much:
-                child.wait(max(0.0, begun + timeout_s - time.monotonic()))
+                child.wait(max(0.0, left()))
         except subprocess.TimeoutExpired:
             in_time = False
         finally:

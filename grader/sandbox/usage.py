@@ -65,6 +65,7 @@ class Guard:
         self._pid, self._limits, self._over = pid, limits, over
         self._worked = [(time.monotonic(), self._worked_so_far_s())]
         self._ready: dict[int, float] = {}
+        self._waited: dict[int, float] = {}
         self._closed = Event()
         self._thread = Thread(target=self._run, name="guard", daemon=True)
         self._thread.start()
@@ -88,6 +89,13 @@ class Guard:
         """
         return sum(ready_s for pid, ready_s in self._ready.copy().items() if pid != but)
 
+    def waited_s(self) -> float:
+        """Return how long the processes of the cell have waited for a processor, in total (s).
+
+        Only the first thread of each process is counted.
+        """
+        return sum(self._waited.copy().values())
+
     def _worked_so_far_s(self) -> float:
         return sum(map(_cpu_s, family(self._pid)))
 
@@ -95,7 +103,10 @@ class Guard:
         while not self._closed.wait(EVERY_S):
             processes = list(family(self._pid))
             self._worked.append((time.monotonic(), sum(map(_cpu_s, processes))))
-            self._ready.update({pid: max(_ready_s(pid), self._ready.get(pid, 0.0)) for pid in processes})
+            for process in processes:
+                ran_s, waited_s = _ran_and_waited_s(process)
+                self._ready[process] = max(ran_s + waited_s, self._ready.get(process, 0.0))
+                self._waited[process] = max(waited_s, self._waited.get(process, 0.0))
             what = exceeded(self._pid, self._limits)
             if what is not None:
                 self._over(what)
@@ -167,13 +178,13 @@ def _cpu_s(pid: int) -> float:
     return sum(map(int, fields[11:15])) * _TICK_S
 
 
-def _ready_s(pid: int) -> float:
-    """Return how long the first thread of the process has run and waited for a processor (s)."""
+def _ran_and_waited_s(pid: int) -> tuple[float, float]:
+    """Return how long the first thread of the process has run, and how long it has waited for a processor (s)."""
     try:
         ran_ns, waited_ns, _ = _read(f"/proc/{pid}/schedstat").split()
     except (OSError, ValueError):
-        return 0.0
-    return (int(ran_ns) + int(waited_ns)) / 1e9
+        return 0.0, 0.0
+    return int(ran_ns) / 1e9, int(waited_ns) / 1e9
 
 
 def _disks(pid: int) -> dict[int, tuple[int, int]]:

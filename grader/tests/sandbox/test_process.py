@@ -1,8 +1,13 @@
 from __future__ import annotations
 
 import sys
+import time
 
+import pytest
+
+from grader.sandbox.limits import Limits
 from grader.sandbox.process import Finished, run
+from grader.sandbox.usage import Guard
 
 
 def python(code: str, *, stdin: bytes = b"", timeout_s: float = 60.0, most: int = 1_000_000) -> Finished:
@@ -47,3 +52,23 @@ def test_the_beginning_and_the_end_of_a_long_log_are_kept() -> None:
     assert done.stderr.endswith(b"end")
     assert b"998008 bytes left out" in done.stderr
     assert len(done.stderr) < 3_000
+
+
+@pytest.mark.parametrize(
+    ("waited_s", "timed_out"), [(0.0, True), (60.0, False)], ids=["the machine is idle", "the machine is crowded"]
+)
+def test_waiting_for_a_processor_does_not_count(
+    monkeypatch: pytest.MonkeyPatch, waited_s: float, *, timed_out: bool
+) -> None:
+    monkeypatch.setattr(Guard, "waited_s", lambda _: waited_s)
+    monkeypatch.setattr("grader.sandbox.process.MOST_TIME", 1000)
+    done = run(["sleep", "1"], timeout_s=0.3, most_stdout=100, most_stderr=100, watch=Limits())
+    assert done.timed_out == timed_out
+
+
+def test_a_child_on_a_crowded_machine_is_ended_after_three_times_its_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Guard, "waited_s", lambda _: 1e6)
+    begun = time.monotonic()
+    done = run(["sleep", "1000"], timeout_s=0.2, most_stdout=100, most_stderr=100, watch=Limits())
+    assert done.timed_out
+    assert time.monotonic() - begun >= 0.6

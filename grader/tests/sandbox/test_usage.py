@@ -41,5 +41,6 @@ def test_processes_that_share_a_processor_are_ready_for_as_long_as_with_one_each
         guard = Guard(process.pid, LIMITS, lambda _: None)
         lines(process, 2)
         until(lambda: guard.ready_s(but=process.pid) >= 2.5 * WORK_S)
+        until(lambda: guard.waited_s() >= 0.5 * WORK_S)
         guard.close()
     assert guard.ready_s(but=0) > guard.ready_s(but=process.pid)
