@@ -57,7 +57,7 @@ def announces(evidence: Evidence, params: Announces) -> Finding:
         why = why_nothing(evidence, ("publish",)) or Cause("never-publishes", "", where)
         return failed(f"No String arrived on {params.topic}.", expected, why)
     for message in heard:
-        finding = _wrong_names(evidence, message, expected)
+        finding = _wrong_names(evidence, message, heard, expected)
         if finding is not None:
             return finding
     times_s = [*(message.t_s for message in heard), activity.end_s(evidence.recording)]
@@ -79,7 +79,7 @@ def announces(evidence: Evidence, params: Announces) -> Finding:
     return passed("The node announces the remaining targets.", near_edge=most.near(longest_s))
 
 
-def _wrong_names(evidence: Evidence, message: Announcement, expected: str) -> Finding | None:
+def _wrong_names(evidence: Evidence, message: Announcement, heard: list[Announcement], expected: str) -> Finding | None:
     """Return a failed finding if the announcement was wrong for more than a second, or else None."""
     tracks = evidence.recording.tracks
     from_s, to_s = message.t_s - LATE_S, message.t_s
@@ -108,6 +108,11 @@ def _wrong_names(evidence: Evidence, message: Announcement, expected: str) -> Fi
         observed = f"{at} does not name {a_list([shorten(name) for name in missing])}."
         stuck = waits_in_callback(evidence)
         text = "Add the name of a turtle to the list in the callback that receives the response from /spawn."
+        if any(missing[0] in each.names for each in heard if each.t_s < message.t_s):
+            text = (
+                f"An earlier message named {shorten(missing[0])}, so the node has removed the name. Only a call to "
+                "/catch with this name removes it."
+            )
         return failed(observed, expected, stuck or Cause("target-unannounced", text, where))
     return None
 

@@ -70,6 +70,9 @@ def with_one(text: str, t_s: float = 2.1) -> tuple[Message, ...]:
     return (*(each for each in RIGHT if each.t_s < t_s), said(t_s, text), *(each for each in RIGHT if each.t_s > t_s))
 
 
+NEVER_NAMED = tuple(said(t_s, "target1") for t_s in TIMES)
+
+
 @pytest.mark.parametrize(
     ("words", "true", "near"),
     [
@@ -101,7 +104,12 @@ def with_one(text: str, t_s: float = 2.1) -> tuple[Message, ...]:
             with_one("target1 target2"),
             with_one("target1 target2 target3"),
         ),
-        ("Add the name of a turtle to the list in the callback", with_one("target1 target2"), with_one("mouse")),
+        ("Add the name of a turtle to the list in the callback", NEVER_NAMED, with_one("target1 target2")),
+        (
+            "An earlier message named target3, so the node has removed the name.",
+            with_one("target1 target2"),
+            NEVER_NAMED,
+        ),
         ("After the message at 1.0 s, no message arrived for 9.0 s.", RIGHT[:1], RIGHT),
         ("Publish each time the timer fires.", RIGHT[:1], ()),
         (
