@@ -28,6 +28,8 @@ TYPE = "turtlesim/action/RotateAbsolute"
 SAME_RAD = 0.02
 HALF_TURN_S = 3.2
 """The longest time that the turtle needs to reach a goal: it turns by at most pi rad, at 1 rad/s."""
+STILL_DRIVES_S = 0.5
+"""A node that drove in the last part of the trial, which is as long as this (s), has not ended its drive."""
 LARGE_RAD = 7.0
 """A larger angle than this is more than a full turn, so it may be in degrees."""
 
@@ -125,12 +127,23 @@ def _no_more(evidence: Evidence, goals: list[Goal], expected: str) -> Finding:
     if goals[-1].result_asked_s is None:
         return failed(observed, expected, waits_in_callback(evidence) or _no_result(evidence))
     text = "The callback that receives the result must send the next goal."
+    drove_s = _drove_until_s(evidence, goals[-1])
+    if drove_s is not None:
+        text = "The node drove after this goal. When the drive has ended, the node must send the next goal."
+        if drove_s > activity.end_s(evidence.recording) - STILL_DRIVES_S:
+            text = "After this goal, the node drove until the end of the trial. Which condition ends the drive?"
     cause = (
         waits_in_callback(evidence)
         or why_unread(evidence)
         or Cause("goal-not-sent", text, evidence.place("get_result_async", *SENDS))
     )
     return failed(observed, expected, cause)
+
+
+def _drove_until_s(evidence: Evidence, goal: Goal) -> float | None:
+    """Return the time of the last command that drove the turtle after the end of this goal (s), or None."""
+    ended_s = math.inf if goal.ended_s is None else goal.ended_s
+    return max((each.t_s for each in evidence.commands if each.t_s >= ended_s and any(each.linear)), default=None)
 
 
 def _no_result(evidence: Evidence) -> Cause:

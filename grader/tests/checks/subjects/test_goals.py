@@ -129,6 +129,22 @@ def test_a_sentence_about_goals_is_true(words: str, true: list[Goal], near: list
     assert words not in about(*near)
 
 
+RESULT = "The callback that receives the result must send the next goal."
+SIDE = "The node drove after this goal. When the drive has ended, the node must send the next goal."
+ON = "After this goal, the node drove until the end of the trial. Which condition ends the drive?"
+
+
+@pytest.mark.parametrize(
+    ("times", "speed", "words"),
+    [((), 1.0, RESULT), ((2.0,), 1.0, RESULT), ((5.0,), 0.0, RESULT), ((5.0,), 1.0, SIDE), ((5.0, 9.8), 1.0, ON)],
+)
+def test_a_goal_that_does_not_come_after_a_drive_is_not_sent_by_the_result(
+    times: tuple[float, ...], speed: float, words: str
+) -> None:
+    reported = about(FIRST, commands=[(t_s, speed, 0.0) for t_s in times])
+    assert [each for each in (RESULT, SIDE, ON) if each in reported] == [words]
+
+
 def test_a_goal_that_the_end_of_the_node_cut_short_did_not_start_too_late() -> None:
     goals = (FIRST, goal(9.7, 110.0, None, "executing"))
     ended = about(*goals, end=ProcessEnd(by="itself", exit_code=0, t_s=9.8, stop_s=None))
