@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -128,12 +129,35 @@ def says_whether_active(evidence: Evidence, params: SaysWhetherActive) -> Findin
         if active is not None and said is not active:
             was = "was" if active else "was not"
             observed = f"The turtle {was} following a goal at {call.t_s:.1f} s, but success was {str(said).lower()}."
-            text = (
-                "Set success in the callback of the service, before the goal is cancelled: it is true if "
-                "a goal was active."
-            )
-            return failed(observed, expected, Cause("wrong-response", text, evidence.place("create_service")))
+            return failed(observed, expected, _other_success(evidence, goals, call))
     return passed("success says whether a goal was active.")
+
+
+def _other_success(evidence: Evidence, goals: list[Goal], call: Call) -> Cause:
+    """Return the cause of a wrong `success`: a goal that has ended still counts, or `success` is set in a wrong way."""
+    ended = [goal for goal in goals if goal.ended_s is not None and goal.ended_s <= call.t_s]
+    others = [each for each in evidence.recording.calls if each.by_trial and each.service == call.service]
+    right = [each for each in others if each.t_s < call.t_s and (each.response or {}).get("success") is True]
+    said = call.response is not None and call.response.get("success") is True
+    if said and ended and right and not _always_true(evidence):
+        text = (
+            "The goal had ended before this call, and the node still counted it as active. When a goal has ended, "
+            "forget its handle."
+        )
+        return Cause("wrong-response", text, evidence.place("get_result_async"))
+    text = "Set success in the callback of the service, before the goal is cancelled: it is true if a goal was active."
+    return Cause("wrong-response", text, evidence.place("create_service"))
+
+
+def _always_true(evidence: Evidence) -> bool:
+    """Return whether the node sets `success` to nothing but True."""
+    assigned = [node for module in evidence.code.modules for node in module.nodes if isinstance(node, ast.Assign)]
+    values = [
+        node.value
+        for node in assigned
+        if any(isinstance(target, ast.Attribute) and target.attr == "success" for target in node.targets)
+    ]
+    return all(isinstance(value, ast.Constant) and value.value is True for value in values)
 
 
 def _is_active(goals: list[Goal], t_s: float) -> bool | None:

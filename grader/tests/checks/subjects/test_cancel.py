@@ -9,12 +9,14 @@ import pytest
 
 from grader.checks.outcome import Status
 from grader.checks.subjects.cancel import CANCELS_GOAL, NO_GOAL_AFTER, SAYS_WHETHER_ACTIVE
-from grader.tests.checks.goals import given, goal, stop
-from grader.tests.checks.made import found
+from grader.tests.checks.goals import CLIENT, given, goal, stop
+from grader.tests.checks.made import NODE_FILE, evidence, found, recording, submission
 from grader.tests.checks.told import told
 from grader.trial.observed import MOST_GOALS
 
 if TYPE_CHECKING:
+    from grader.checks.outcome import Finding
+    from grader.evidence.evidence import Evidence
     from grader.trial.observed import Goal
 
 
@@ -152,3 +154,19 @@ def test_a_sentence_about_success_is_true(goals: tuple[Goal, ...]) -> None:
 def test_a_response_that_never_came_says_nothing_about_a_goal() -> None:
     assert "The node received the call to /stop and never answered." in about_success(None, ACTIVE)
     assert found(SAYS_WHETHER_ACTIVE, given(ACTIVE), service="/stop").diagnosis == "no-response"
+
+
+@pytest.mark.parametrize(
+    ("value", "ended_s", "told_so"),
+    [("self.goal is not None", 3.2, True), ("True", 3.2, False), ("self.goal is not None", 9.0, False)],
+)
+def test_a_goal_that_has_ended_and_still_counts_is_told(value: str, ended_s: float, *, told_so: bool) -> None:
+    source = CLIENT.replace("        self.timer", f"        response.success = {value}\n        self.timer", 1)
+    made = recording([], goals=(goal(1.0, 80.0, ended_s),), calls=(stop(3.0), stop(3.4)))
+    reported = told(success_of(evidence(made, submission({NODE_FILE: source}))))
+    assert ("the node still counted it as active. When a goal has ended, forget its handle." in reported) == told_so
+    assert ("but success was true." in reported) == (ended_s < 3.4)
+
+
+def success_of(made: Evidence) -> Finding:
+    return found(SAYS_WHETHER_ACTIVE, made, service="/stop")
