@@ -55,6 +55,7 @@ RUNS_FIRST = (
         "common/__init__.py",
         "common/interpreter.py",
         "common/package_managers.py",
+        "common/readable_by_all.py",
         "common/system_errors.py",
     ),
     *(
@@ -194,10 +195,13 @@ def test_a_python_that_was_refused_is_reported_with_what_it_lacks() -> None:
     assert "PYTHON=/path/to/python3" in what
 
 
-def test_a_python_is_tried_with_the_environment_that_the_ros_needs(tmp_path: Path) -> None:
+def test_a_python_is_tried_with_the_environment_that_the_ros_needs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     here = SYSTEMS._replace(path=sys.executable, version=sys.version_info[:3])
     ros = SourcedRos("/opt/ros/jazzy", sys.version_info[:2], turtlesim=True)
     assert machine.for_ros(here, ros).lacks == ()
+    monkeypatch.delenv("PYTHONPATH", raising=False)  # a sourced ROS 2 may have these modules in its own prefix
     (tmp_path / "python3").write_text(f'#!/bin/sh\nexec {sys.executable} -S "$@"\n')
     (tmp_path / "python3").chmod(0o755)
     bare = here._replace(path=str(tmp_path / "python3"))
