@@ -44,26 +44,40 @@ class Limits:
 
 NODE_LIMITS = Limits()
 """The limits of a node in a trial."""
+_OPTIONS = {
+    resource.RLIMIT_NPROC: "nproc",
+    resource.RLIMIT_AS: "as",
+    resource.RLIMIT_NOFILE: "nofile",
+    resource.RLIMIT_FSIZE: "fsize",
+    resource.RLIMIT_CPU: "cpu",
+    resource.RLIMIT_CORE: "core",
+    resource.RLIMIT_SIGPENDING: "sigpending",
+}
+"""The options of prlimit(1)."""
 
 
 def limited(argv: Sequence[str], limits: Limits, *, in_cell: bool = False) -> list[str]:
     """Return the command that runs `argv` under resource limits, the only limits that work without bubblewrap."""
+    set_limits = resource_limits(limits, in_cell=in_cell)
+    options = [f"--{name}={set_limits[kind]}" for kind, name in _OPTIONS.items() if kind in set_limits]
+    # If the machine runs out of memory, the kernel kills this process first.
+    return ["prlimit", *options, "--", "choom", "-n", "1000", "--", *argv]
+
+
+def resource_limits(limits: Limits, *, in_cell: bool) -> dict[int, int]:
+    """Return the resource limits of a process: the constants of the module `resource`, and the values."""
     # Outside a cell, the kernel counts all processes of the user, and usage.py counts those of `argv`.
-    processes = limits.processes if in_cell else limits.processes + MOST_OTHERS
-    return [
-        "prlimit",
-        f"--nproc={_allowed(resource.RLIMIT_NPROC, processes)}",
-        f"--as={_allowed(resource.RLIMIT_AS, limits.memory)}",
-        f"--nofile={_allowed(resource.RLIMIT_NOFILE, limits.open_files)}",
-        f"--fsize={_allowed(resource.RLIMIT_FSIZE, limits.file_size)}",
-        f"--cpu={_allowed(resource.RLIMIT_CPU, limits.cpu_s)}",
-        f"--core={_allowed(resource.RLIMIT_CORE, NO_CORE_DUMP)}",
-        *([f"--sigpending={_allowed(resource.RLIMIT_SIGPENDING, MOST_SIGNALS)}"] if in_cell else []),
-        "--",
-        # If the machine runs out of memory, the kernel kills this process first.
-        *("choom", "-n", "1000", "--"),
-        *argv,
-    ]
+    wanted = {
+        resource.RLIMIT_NPROC: limits.processes if in_cell else limits.processes + MOST_OTHERS,
+        resource.RLIMIT_AS: limits.memory,
+        resource.RLIMIT_NOFILE: limits.open_files,
+        resource.RLIMIT_FSIZE: limits.file_size,
+        resource.RLIMIT_CPU: limits.cpu_s,
+        resource.RLIMIT_CORE: NO_CORE_DUMP,
+    }
+    if in_cell:
+        wanted[resource.RLIMIT_SIGPENDING] = MOST_SIGNALS
+    return {kind: _allowed(kind, value) for kind, value in wanted.items()}
 
 
 def _allowed(which: int, wanted: int) -> int:

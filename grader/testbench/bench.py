@@ -13,6 +13,7 @@ import tarfile
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
+from dataclasses import dataclass, replace
 from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING
@@ -30,7 +31,11 @@ if TYPE_CHECKING:
 RELAYED = Path(__file__).absolute().with_name("relayed_node.py")
 MOST_LANES = 4
 MOST_HANGS = 2
-"""If this many runs did not finish in time, no further run is started."""
+"""If this many runs on broken nodes did not finish in time, no further run on a broken node is started."""
+RIGHT_S = 5.0
+"""The time for each test on the correct node (s). On a broken node, a test may wait longer for a missing message."""
+DOUBT_S = 1.0
+"""The time for each test on a broken node (s), as long as the tests have not run on the correct node."""
 
 
 class Bench:
@@ -78,16 +83,21 @@ class Bench:
     def close(self) -> None:
         """Stop all runs."""
         self._queue.close()
+        self._kill_lanes()
+        self._stack.close()
+
+    def _kill_lanes(self) -> None:
         for lane in self._opened:
             lane.kill()
-        self._stack.close()
 
     def _work(self) -> None:
         with ExitStack() as stack:
             lane = stack.enter_context(self._lane(stack))
             self._opened.append(lane)
-            while (node := self._queue.take()) is not None:
-                self._queue.put(lane.run(*node))
+            while (next_ := self._queue.take()) is not None:
+                self._queue.put(next_, lane.run(next_.node, next_.behaviour, next_.test_s))
+                if self._queue.is_settled:
+                    self._kill_lanes()
 
     def _lane(self, stack: ExitStack) -> Lane:
         if self._in_cell:
@@ -96,34 +106,66 @@ class Bench:
         return Lane(self._ros, self._tests, self._spec.duration_s, Path(folder))
 
 
+@dataclass(frozen=True)
+class _Next:
+    """A run: the id of a broken node or "", how the node behaves, and the time for each test (s)."""
+
+    node: str
+    behaviour: Behaviour
+    test_s: float = RIGHT_S
+
+
 class _Queue:
     """The pending runs, in a random order, and the runs that have finished."""
 
     def __init__(self, spec: TestsSpec) -> None:
-        self._waiting: list[tuple[str, Behaviour]] = [("", spec.right)] * spec.right_runs
-        self._waiting += [(each.id, each.behaviour) for each in spec.broken]
+        self._spec = spec
+        self._waiting = [_Next("", spec.right)] * spec.right_runs
+        self._waiting += [_Next(each.id, each.behaviour) for each in spec.broken]
         random.SystemRandom().shuffle(self._waiting)
         self._lock = Lock()
         self._closed = False
+        self._doubts = False
+        """Whether a run on a broken node took long, and may hang on the correct node, too."""
         self.ended: list[Ended] = []
 
-    def take(self) -> tuple[str, Behaviour] | None:
+    @property
+    def is_settled(self) -> bool:
+        """Whether the tests did not finish on the correct node, so that no other run can change a verdict."""
+        return any(each.over and not each.node for each in self.ended)
+
+    def take(self) -> _Next | None:
         """Return the next run, or None.
 
         If the tests rejected the correct node, they earn no points for rejecting broken nodes. After the tests have
-        rejected the correct node, all remaining runs use the correct node.
+        rejected the correct node, all remaining runs use the correct node. If the tests may hang on the correct node,
+        they run on it now, in addition to the other runs: otherwise, tests could bring about that one of the other runs
+        on the correct node comes early.
         """
         with self._lock:
-            if self._closed or sum(each.over for each in self.ended) >= MOST_HANGS:
+            rights = [each for each in self.ended if not each.node]
+            if self._closed or self.is_settled:
                 return None
-            if any(not each.node and each.exit_code != 0 for each in self.ended):
-                self._waiting = [each for each in self._waiting if not each[0]]
-            return self._waiting.pop() if self._waiting else None
+            if self._doubts and not rights:
+                return _Next("", self._spec.right)
+            hangs = sum(each.over for each in self.ended)
+            if hangs >= MOST_HANGS or any(each.exit_code != 0 for each in rights):
+                self._waiting = [each for each in self._waiting if not each.node]
+            if not self._waiting:
+                return None
+            next_ = self._waiting.pop()
+            return replace(next_, test_s=self._spec.duration_s if rights else DOUBT_S) if next_.node else next_
 
-    def put(self, ended: Ended) -> None:
-        """Store the result of a run."""
+    def put(self, run: _Next, ended: Ended) -> None:
+        """Store the result of a run. A run that had little time and needed more is repeated later."""
         with self._lock:
-            self.ended.append(ended)
+            if self._closed or self.is_settled:
+                return
+            self._doubts |= ended.over
+            if ended.over and not ended.stuck and run.node and run.test_s == DOUBT_S:
+                self._waiting.insert(random.SystemRandom().randint(0, len(self._waiting)), run)
+            else:
+                self.ended.append(ended)
 
     def close(self) -> None:
         """After this call, `take` returns no more runs."""

@@ -76,6 +76,8 @@ class Ended:
     over: bool = False
     seconds: float = 0.0
     report: bytes = b""
+    stuck: bool = False
+    """Whether the run could never have gone on: see patience.py."""
 
 
 def run_of(ended: Ended) -> NodeRun:

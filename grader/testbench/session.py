@@ -1,34 +1,39 @@
-"""Run a student's tests in a sandbox cell repeatedly: pytest and rclpy are imported once, and each run is a fork.
+"""Run a student's tests repeatedly: pytest and rclpy are imported once, and each run is a fork in a new sandbox cell.
 
-This file runs as a separate script. The session reads one line of JSON and the files of the package (a tar stream) from
-standard input, then one byte per run. The session writes to standard output: READY as soon as it can run tests, and
-after each run the exit code of pytest, whether the time limit was exceeded, the duration (s), the report's size, and
-the report. The session does not know whether a run uses the correct node or a broken one.
+This file runs as a separate script, in a sandbox room. The session reads one line of JSON and the files of the package
+(a tar stream) from standard input, and writes READY to standard output as soon as it can run tests. Each request is a
+message on a Unix socket with three descriptors: the run's two pipes to the grader, and a socket for the result. On this
+socket, the session sends STARTED with a descriptor of the process that runs the tests (pidfd_open(2)), and at the end
+the exit code of pytest, the duration (s), the report's size, and the report. The session does not know whether a run
+uses the correct node or a broken one.
 
-Between two runs, the session kills all other processes of the cell and empties the disks of the cell. Therefore, a run
-finds no trace of earlier runs.
+bubblewrap makes the cell, and a fork of the session enters it (setns(2)). The session itself learns nothing about its
+runs: the fork reports to the grader, and ends together with its cell. Therefore, neither a cell nor the memory of a run
+contains a trace of an earlier run.
 """
 
 from __future__ import annotations
 
+import base64
 import ctypes
 import gc
 import importlib
 import io
 import json
 import os
-import select
+import resource
+import shutil
 import signal
+import socket
 import stat
 import struct
+import subprocess
 import sys
 import tarfile
+import tempfile
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
+from typing import Any, NoReturn
 
 _AHEAD = (
     *("pytest", "_pytest.assertion.rewrite", "_pytest.unittest", "_pytest.python", "_pytest.fixtures", "unittest.mock"),
@@ -38,18 +43,29 @@ _TYPES_AHEAD = (
     *(("geometry_msgs.msg", "Twist"), ("geometry_msgs.msg", "TwistStamped"), ("turtlesim.msg", "Pose")),
     *(("rosgraph_msgs.msg", "Clock"), ("rcl_interfaces.msg", "ParameterEvent")),
 )
-_HEADER = struct.Struct("<i?dI")
+_HEADER = struct.Struct("<idI")
 READY = b"ready\n"
 """The session writes this line before any of the student's code runs. A failure after this line is not the machine's
 fault."""
+STARTED = b"s"
+INFO, FILTER = 100, 101
+"""The descriptors in the command line of a cell: for what bubblewrap says about the cell, and for the call filter."""
+ASKS, ANSWERS = 3, 4
+"""The descriptors of a run: its requests to the grader, and the grader's answers."""
+_TEST_ENDED = struct.pack("<cHqdd", b"d", 0, 0, 0.0, 0.0)
+"""A message that needs no answer. See lane.py."""
 _MOST_REPORT = 64 * 1024
-_DUMPABLE, _PARENT_DEATH = 4, 1
-"""PR_SET_DUMPABLE and PR_SET_PDEATHSIG of prctl(2). A run cannot inspect a session that is not dumpable."""
-_GONE_S = 5.0
+_DUMPABLE, _PARENT_DEATH, _SECCOMP, _BOUNDING_DROP, _NO_NEW_PRIVILEGES, _AMBIENT = 4, 1, 22, 24, 38, 47
+"""Options of prctl(2). A process cannot inspect a process that is not dumpable."""
+_NAMESPACES = 0x02000000 | 0x04000000 | 0x08000000 | 0x10000000 | 0x20000000 | 0x40000000 | 0x00020000
+"""The cgroup, UTS, IPC, user, pid, network and mount namespace of clone(2)."""
+_CAPABILITIES_VERSION_3 = 0x20080522
+_LAST_CAPABILITY = 63
+_C = ctypes.CDLL(None, use_errno=True)
 
 
 class _Watcher:
-    """A pytest plugin that stores the results of the tests."""
+    """A pytest plugin that stores the results of the tests, and tells the grader that a test has ended."""
 
     def __init__(self) -> None:
         self.collected = 0
@@ -66,6 +82,7 @@ class _Watcher:
         if report.when == "call" or report.outcome != "passed":
             outcome = report.outcome if report.when == "call" or report.outcome == "skipped" else report.when
             self.cases.append({"name": report.nodeid, "outcome": outcome, **_details(report)})
+            os.write(ASKS, _TEST_ENDED)
 
     def report(self) -> bytes:
         """Return the report as JSON: the number of tests that were found, and the tests that ran."""
@@ -82,58 +99,128 @@ def _details(report: Any) -> dict[str, Any]:  # noqa: ANN401 - pytest's
 
 
 def main() -> None:
-    """Import everything, and run the tests once per byte of standard input."""
+    """Import everything, and run the tests once per request."""
     sys.path.pop(0)
     for name in _AHEAD:
         importlib.import_module(name)
     for name, message in _TYPES_AHEAD:
         type(getattr(importlib.import_module(name), message)).__import_type_support__()
-    orders = sys.stdin.buffer
-    order = json.loads(orders.readline())
-    source = orders.read(order["size"])
-    disks = [_Disk(Path(folder)) for folder in order["disks"]]
-    ctypes.CDLL(None).prctl(_DUMPABLE, 0, 0, 0, 0)
+    order = json.loads(sys.stdin.buffer.readline())
+    source = sys.stdin.buffer.read(order["size"])
+    requests = socket.socket(fileno=order["requests"])
+    _C.prctl(_DUMPABLE, 0, 0, 0, 0)
     gc.freeze()
     os.write(1, READY)
-    while orders.read(1):
-        _empty_pipe(order["answers"])
-        begun = time.monotonic()
-        child = os.fork()
-        if child == 0:
-            _run_tests(order, source)
-        over = not _ended(child, order["duration_s"])
-        if over:
-            os.kill(child, signal.SIGKILL)
-        status = os.waitpid(child, 0)[1]
-        code = os.waitstatus_to_exitcode(status)
-        report = _report(Path(order["workspace"], "report.json"))
-        seconds = time.monotonic() - begun
-        _end_all(None if order["in_cell"] else child)
-        for disk in disks:
-            disk.empty()
-        os.write(1, _HEADER.pack(code, over, seconds, len(report)) + report)
+    while _serve(requests, order, source):
+        pass
 
 
-def _ended(child: int, within_s: float) -> bool:
-    descriptor = os.pidfd_open(child)
-    try:
-        return bool(select.select([descriptor], [], [], within_s)[0])
-    finally:
+def _serve(requests: socket.socket, order: dict[str, Any], source: bytes) -> bool:
+    """Wait for a request and for the end of its run. Return False if there are no more requests."""
+    request, passed, *_ = socket.recv_fds(requests, 1, 3)
+    if request and os.fork() == 0:
+        try:
+            _supervise(order, source, *passed)
+        finally:
+            os._exit(0)
+    for descriptor in passed:
         os.close(descriptor)
+    if request:
+        os.wait()
+    return bool(request)
 
 
-def _run_tests(order: dict[str, Any], source: bytes) -> NoReturn:
+def _supervise(order: dict[str, Any], source: bytes, asks: int, answers: int, results: int) -> None:
+    """Run the tests once, in a new cell or in a new folder, and send the result to the grader."""
+    cell = _new_cell(order) if order["cell"] else None
+    workspace = Path(order["workspace"])
+    if cell is None:
+        workspace = Path(tempfile.mkdtemp(dir=workspace))
+    begun = time.monotonic()
+    child = os.fork()
+    if child == 0:
+        _run_tests(order, source, workspace, asks, answers)
+    result = socket.socket(fileno=results)
+    socket.send_fds(result, [STARTED], [os.pidfd_open(child)])
+    code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    report = _report(workspace / "report.json")
+    seconds = time.monotonic() - begun
+    if cell is not None:
+        cell.communicate()
+    else:
+        _end_group(child)
+        shutil.rmtree(workspace, ignore_errors=True)
+    result.sendall(_HEADER.pack(code, seconds, len(report)) + report)
+
+
+def _new_cell(order: dict[str, Any]) -> subprocess.Popen[bytes]:
+    """Make a cell, and move this process into its namespaces. Forks of this process are then processes of the cell.
+
+    The first process of the cell is `cat`. The cell ends as soon as the standard input of `cat` is closed.
+    """
+    info, childs_info = os.pipe()
+    passed = {childs_info: INFO}
+    if order["filter"] is not None:
+        childs_filter, writes = os.pipe()
+        os.write(writes, base64.b64decode(order["filter"]))
+        os.close(writes)
+        passed[childs_filter] = FILTER
+    for descriptor, number in passed.items():
+        os.dup2(descriptor, number)
+        os.close(descriptor)
+    cell = subprocess.Popen(
+        order["cell"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0, pass_fds=[*passed.values()]
+    )
+    for number in passed.values():
+        os.close(number)
+    assert cell.stdin is not None
+    assert cell.stdout is not None
+    with open(info, "rb") as about:  # noqa: PTH123 - a descriptor
+        first = int(json.loads(about.read())["child-pid"])
+    cell.stdin.write(b"?")
+    cell.stdout.read(1)  # now bubblewrap has made all namespaces and mounts
+    pid = int(Path(f"/proc/{first}/task/{first}/children").read_text("ascii").split()[0])
+    descriptor = os.pidfd_open(pid)
+    if _C.setns(descriptor, _NAMESPACES) != 0:
+        raise OSError(ctypes.get_errno(), "setns")
+    os.close(descriptor)
+    return cell
+
+
+def _confine(order: dict[str, Any]) -> None:
+    """Give up everything that a process in a cell does not have: capabilities, system calls and unlimited resources."""
+    Path("/proc/self/oom_score_adj").write_text("1000", "ascii")
+    for kind, value in order["limits"]:
+        resource.setrlimit(kind, (value, value))
+    for capability in range(_LAST_CAPABILITY + 1):
+        _C.prctl(_BOUNDING_DROP, capability, 0, 0, 0)  # fails for numbers that this kernel does not know
+    _C.prctl(_AMBIENT, 4, 0, 0, 0)
+    header = struct.pack("<Ii", _CAPABILITIES_VERSION_3, 0)
+    if _C.capset(header, bytes(24)) != 0 or _C.prctl(_NO_NEW_PRIVILEGES, 1, 0, 0, 0) != 0:
+        raise OSError(ctypes.get_errno(), "the capabilities could not be given up")
+    if order["filter"] is not None:
+        lines = base64.b64decode(order["filter"])
+        buffer = ctypes.create_string_buffer(lines, len(lines))
+        program = struct.pack("@HP", len(lines) // 8, ctypes.addressof(buffer))
+        if _C.prctl(_SECCOMP, 2, program, 0, 0) != 0:
+            raise OSError(ctypes.get_errno(), "the system call filter could not be installed")
+
+
+def _run_tests(order: dict[str, Any], source: bytes, workspace: Path, asks: int, answers: int) -> NoReturn:
     """Run the tests of the package as `colcon test` does: pytest, in the folder of the package."""
     code: int = 1
     try:
-        ctypes.CDLL(None).prctl(_DUMPABLE, 1, 0, 0, 0)
-        # Without a cell, nothing else stops a run whose session is killed.
-        ctypes.CDLL(None).prctl(_PARENT_DEATH, signal.SIGKILL, 0, 0, 0)
-        os.setpgid(0, 0)
+        os.setsid()
+        _C.prctl(_DUMPABLE, 1, 0, 0, 0)
         null = os.open(os.devnull, os.O_RDWR)
-        for number in (0, 1, 2):
-            os.dup2(null, number)
-        workspace = Path(order["workspace"])
+        kept = [os.dup(descriptor) for descriptor in (null, null, null, asks, answers)]
+        for number, descriptor in enumerate(kept):
+            os.dup2(descriptor, number)
+        os.closerange(len(kept), 4096)
+        if order["cell"]:
+            _confine(order)
+        # Without a cell, nothing else stops a run whose session is killed.
+        _C.prctl(_PARENT_DEATH, signal.SIGKILL, 0, 0, 0)
         package = workspace / "src" / order["package"]
         Path(order["home"]).mkdir(parents=True, exist_ok=True)
         with tarfile.open(fileobj=io.BytesIO(source)) as tree:
@@ -141,7 +228,6 @@ def _run_tests(order: dict[str, Any], source: bytes) -> NoReturn:
             tree.extraction_filter = lambda member, _path: member
             tree.extractall(workspace / "src")
         os.chdir(package)
-        os.environ.update(order["env"])
         sys.path.insert(0, str(package))
         sys.argv = ["pytest"]
         importlib.invalidate_caches()
@@ -168,58 +254,12 @@ def _report(file: Path) -> bytes:
         os.close(descriptor)
 
 
-def _empty_pipe(pipe: int) -> None:
-    """Discard answers that an earlier run did not read."""
-    while select.select([pipe], [], [], 0.0)[0] and os.read(pipe, 65536):
-        pass
-
-
-def _end_all(group: int | None) -> None:
-    """Kill all other processes of the cell. Outside a cell, kill all other processes of this process group."""
-    until = time.monotonic() + _GONE_S
+def _end_group(group: int) -> None:
+    """Without a cell, kill the processes of a run that have not left its process group."""
     try:
-        while time.monotonic() < until:
-            os.kill(-1 if group is None else -group, signal.SIGKILL)
-            time.sleep(0.002)
+        os.killpg(group, signal.SIGKILL)
     except ProcessLookupError:
         return
-    sys.exit("the processes of a run could not be ended")
-
-
-class _Disk:
-    """A disk of the cell. The initial entries of the disk are kept, because other disks are mounted there."""
-
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-        self._device = folder.stat().st_dev
-        self._first = set(self._entries(folder))
-
-    def empty(self) -> None:
-        """Remove everything that a run left behind. Exit if something remains, because the next run could find it."""
-        # in this order, the contents of a folder are removed before the folder itself
-        for path in sorted(self._entries(self._folder), reverse=True):
-            if path in self._first:
-                path.chmod(0o755)
-                os.utime(path, (0, 0))
-            elif path.is_dir() and not path.is_symlink():
-                path.rmdir()
-            else:
-                path.unlink()
-        self._folder.chmod(0o755)
-        os.utime(self._folder, (0, 0))
-        if set(self._entries(self._folder)) != self._first:
-            sys.exit("the disks of the cell could not be emptied")
-
-    def _entries(self, folder: Path) -> Iterator[Path]:
-        """Yield all files and folders on this disk that are below the given folder."""
-        for path in folder.iterdir():
-            about = path.lstat()
-            if about.st_dev != self._device:
-                continue
-            yield path
-            if stat.S_ISDIR(about.st_mode):
-                path.chmod(0o755)
-                yield from self._entries(path)
 
 
 main()

@@ -48,7 +48,7 @@ def pass_(evidence: Evidence, _: NoParams) -> Finding:
     runs, code = evidence.bench.right, code_of(evidence)
     expected = "All tests pass on the correct node in every run."
     rejected = [run for run in runs if not run.accepted]
-    if not rejected and len(runs) == spec.right_runs:
+    if not rejected and len(runs) >= spec.right_runs:
         if any(run.passed for run in runs):
             return passed(f"All tests pass on the correct node ({count(len(runs), 'run')}).")
         where = code.tests[0].where if code.tests else None
