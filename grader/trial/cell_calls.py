@@ -24,8 +24,13 @@ import types
 from pathlib import Path
 from typing import Any
 
-CPU_S = 5
-"""The maximum CPU time of one call (s). Unlike wall time, CPU time does not depend on the load of the machine."""
+FUNCTION_CPU_S = 2
+"""The maximum CPU time of one call of a function (s), many times as much as a fit in plain Python takes.
+
+Unlike wall time, CPU time does not depend on the load of the machine.
+"""
+PROGRAM_CPU_S = 5
+"""The maximum CPU time of one run of a program (s), which also imports modules and reads a bag."""
 CALL_S = 20.0
 """The maximum wall time of one call (s). After a call that exceeds one of these limits, no further call is made."""
 MOST_TEXT = 20_000
@@ -112,7 +117,8 @@ def _ended(child: int) -> str:
 def _child(order: dict[str, Any], call: dict[str, Any], files: tuple[int, int, int]) -> None:
     os.setpgid(0, 0)
     ctypes.CDLL(None).prctl(_DUMPABLE, 1, 0, 0, 0)  # so that a program can open /dev/stdin and /dev/stdout
-    resource.setrlimit(resource.RLIMIT_CPU, (CPU_S, CPU_S + 1))
+    cpu_s = FUNCTION_CPU_S if order["function"] else PROGRAM_CPU_S
+    resource.setrlimit(resource.RLIMIT_CPU, (cpu_s, cpu_s + 1))
     os.dup2(files[0], 1)
     os.dup2(files[1], 2)
     code = 1

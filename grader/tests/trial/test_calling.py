@@ -81,7 +81,9 @@ def test_a_call_that_does_not_end_is_stopped_and_the_others_are_not_made(
 ) -> None:
     script = tmp_path / "cell_calls.py"
     script.write_text(
-        calling._SCRIPT.read_text("utf-8").replace("CPU_S = 5", "CPU_S = 1").replace("CALL_S = 20.0", "CALL_S = 3.0"),
+        calling._SCRIPT.read_text("utf-8")
+        .replace("FUNCTION_CPU_S = 2", "FUNCTION_CPU_S = 1")
+        .replace("CALL_S = 20.0", "CALL_S = 3.0"),
         "utf-8",
     )
     monkeypatch.setattr(calling, "_SCRIPT", script)
