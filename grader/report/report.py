@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import grader
 from grader.checks.outcome import Status
-from grader.common.words import count, shorten
+from grader.common.words import a_list, count, shorten
 
 if TYPE_CHECKING:
     from grader.checks.outcome import Outcome
@@ -139,7 +139,19 @@ def _why_this_clock(evidence: Evidence) -> str:
     if evidence.run.bench is not None:
         return f"Your tests were run {count(len(evidence.run.bench.runs), 'time')}."
     if first is None:
-        return "The node was not run." if evidence.run.overwhelmed is None else "The trial could not be finished."
+        return _why_no_clock(evidence)
     others = [(view.trial.executable, view.run.recording) for view in evidence.views() if not view.trial.beside]
     differ = [(name, other) for name, other in others if other is not None and other.clock != first.clock]
     return "; ".join([first.why, *(f"{name} in {other.clock} time: {other.why}" for name, other in differ)])
+
+
+def _why_no_clock(evidence: Evidence) -> str:
+    """Return why the first trial has no clock, with the nodes of the other trials that were run."""
+    if evidence.run.overwhelmed is not None:
+        return "The trial could not be finished."
+    own = evidence.trial.executable
+    executables = [view.trial.executable for view in evidence.views() if view.run.recording is not None]
+    ran = [name for name in dict.fromkeys(executables) if name != own]
+    if not ran:
+        return "The node was not run."
+    return f"{own} was not run, but {a_list(ran)} {'was' if len(ran) == 1 else 'were'}."
