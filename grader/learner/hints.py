@@ -52,7 +52,7 @@ def read_hints(exercise: Exercise, known: StepProgress) -> list[str]:
     if known.passed and not known.failed:
         return []
     read = [exercise.hints[index] for index in known.read if index < len(exercise.hints)]
-    return [flowing(each.text) for each in read if not _is_done(each, known)]
+    return [flowing(each.text) for each in read if not _is_done(exercise, each, known)]
 
 
 def has_next(exercise: Exercise, known: StepProgress) -> bool:
@@ -92,7 +92,7 @@ def _part(exercise: Exercise, part: str) -> str:
 
 def _next(exercise: Exercise, wanted: list[int], known: StepProgress) -> int | None:
     """Return the index of the next hint, or None if the work that the hints help with is done."""
-    open_ = [index for index in wanted if not _is_done(exercise.hints[index], known)]
+    open_ = [index for index in wanted if not _is_done(exercise, exercise.hints[index], known)]
     if known.passed and not known.failed:
         open_ = []
     failed = [index for check in known.failed for index in open_ if check in exercise.hints[index].checks]
@@ -104,8 +104,11 @@ def _next(exercise: Exercise, wanted: list[int], known: StepProgress) -> int | N
     return max(failed or open_, default=None)
 
 
-def _is_done(hint: Hint, known: StepProgress) -> bool:
-    return bool(hint.checks) and set(hint.checks) <= set(known.done)
+def _is_done(exercise: Exercise, hint: Hint, known: StepProgress) -> bool:
+    """Return whether the checks of the hint have passed. A check of a later part only counts if it failed."""
+    of_part = {each.id for each in exercise.checks if hint.part and each.title.startswith(f"{hint.part})")}
+    needed = set(hint.checks) & of_part or set(hint.checks)
+    return bool(needed) and needed <= set(known.done) and not set(hint.checks) & set(known.failed)
 
 
 def _about(exercise: Exercise, index: int, known: StepProgress) -> str:

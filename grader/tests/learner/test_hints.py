@@ -101,6 +101,19 @@ def test_a_part_that_has_passed_needs_no_hint() -> None:
     assert hints.hint("07", None, "d") == "Part d) of 07-challenges has passed, so you do not need more hints."
 
 
+@pytest.mark.parametrize(("failed", "part"), [("catches", "b"), ("random", "a")])
+def test_a_passed_part_gets_no_hint_because_of_a_later_part_that_was_not_judged(failed: str, part: str) -> None:
+    of_a = ("dependencies", "entry-point", "catcher-entry-point", "start", "spawns", "topic", "announces", "removes")
+    of_b = ("catcher-start", "catches", "order", "reach")
+    verdict("13-catch-them-all", done=(*of_a, *(of_b if failed == "random" else ())), failed=(failed,))
+    for _ in range(9):
+        assert not hints.hint(None, None).split(": ", 1)[1].startswith("a) ") or part == "a"
+    if part == "b":
+        assert hints.hint("13", None, "a").endswith("has passed, so you do not need more hints.")
+    else:
+        assert "a) call_async sends the request" in hints.hint("13", None, "a")
+
+
 def test_an_unknown_part_is_an_error_that_lists_the_parts() -> None:
     with pytest.raises(UsageError, match=r"'e' is not a part of 07-challenges, which has the parts a, b, c and d\."):
         hints.hint("07", None, "e")
