@@ -86,6 +86,8 @@ def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
     crash = read_traceback(called.stderr, evidence.submission.files)
     if crash is not None:
         cause = "A user cannot read a traceback. If there are no poses, call sys.exit with a sentence."
+        if "Twist" in crash.message:
+            cause = "The program used a command as a pose. AnyReader.messages([]) returns the messages on all topics."
         observed = f"For a bag without poses, {name} ended with {crash.observed}."
         return failed(observed, expected, Cause("program-traceback", cause, crash.where))
     if called.ended == "exit 0":

@@ -109,6 +109,7 @@ def ended(how: str, *, stdout: str = "", stderr: str = "") -> Called:
     return Called("no-poses", how, stdout=stdout, stderr=stderr)
 
 
+TAKEN = raised("no-poses", "AttributeError: 'geometry_msgs__msg__Twist' object has no attribute 'x'")
 CRASH = raised("no-poses", "IndexError: list index out of range")
 
 
@@ -139,6 +140,12 @@ CRASH = raised("no-poses", "IndexError: list index out of range")
             CRASH,
             ended("exit 1", stderr="IndexError"),
         ),
+        (
+            "The program used a command as a pose. AnyReader.messages([]) returns the messages on all topics.",
+            TAKEN,
+            CRASH,
+        ),
+        ("A user cannot read a traceback.", CRASH, TAKEN),
         (
             "A user cannot read a traceback. If there are no poses, call sys.exit with a sentence.",
             CRASH,
