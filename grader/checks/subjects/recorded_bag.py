@@ -24,6 +24,9 @@ STILL_M = 0.05
 """A turtle that never leaves a square with this side has not moved."""
 MOVES_M = 1e-4
 """The minimum distance between two poses of a turtle that moves."""
+FASTEST_HZ = 110.0
+"""One turtlesim publishes 62.5 poses per second. With more poses than this, more than one turtlesim published."""
+SHORTEST_S = 2.0
 ROUND_M = 0.05
 """The maximum deviation of the poses from the circle (root mean square)."""
 
@@ -115,8 +118,14 @@ def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:
     if len(x) < 2:
         return failed(f"The bag has no path on {params.topic}.", expected, Cause("bag-topic", where=where))
     if max(np.ptp(x), np.ptp(y)) < STILL_M:
-        cause = "Start the recording, then the turtle, and end the recording after a whole turn."
+        cause = (
+            "Nothing moved the turtle during the recording. Start the recording, then a node that drives the turtle."
+        )
         return failed("The turtle stands still in the whole bag.", expected, Cause("bag-still", cause, where))
+    if _rate_hz(poses) > FASTEST_HZ:
+        observed = f"{params.topic} has {_rate_hz(poses):.0f} poses per second in the bag."
+        cause = "One turtlesim publishes 62.5 poses per second, so more than one was running. Stop the others."
+        return failed(observed, expected, Cause("not-round", cause, where))
     circle = fit_circle(x, y)
     if circle is None or circle.rms > ROUND_M:
         cause = "The bag must show only one circle: no wall, no teleport and no other figure."
@@ -140,6 +149,12 @@ def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:
         expected = f"{expected[:-1]}, at {params.speed_m_s:g} m/s."
         return failed(f"The turtle drives at {speed:.2f} m/s in the bag.", expected, Cause("wrong-speed", cause, where))
     return passed(f"The bag shows {driven:.1f} turns on a circle with a radius of {circle.radius:.2f} m.")
+
+
+def _rate_hz(poses: Poses) -> float:
+    """Return the mean rate of the poses (Hz), or 0 if the bag is so short that a delay changes the rate."""
+    took_s = poses.t_s[-1] - poses.t_s[0]
+    return (len(poses.t_s) - 1) / took_s if took_s > SHORTEST_S else 0.0
 
 
 def _speed(poses: Poses) -> float:

@@ -45,6 +45,7 @@ def bag_of(messages: list[Message], to: Path) -> dict[str, bytes]:
 
 WHOLE = made_bag.poses()
 SHORT = made_bag.poses(drive_s=5.0)
+TWO = [each for pair in zip(WHOLE, made_bag.poses(drive_s=0.0, end_s=10.0), strict=False) for each in pair]
 CUT = made_bag.poses(drive_s=5.0, begin_s=0.0)
 
 
@@ -57,7 +58,9 @@ CUT = made_bag.poses(drive_s=5.0, begin_s=0.0)
         ("The bag shows 1.1 turns on a circle with a radius of 1.10 m.", WHOLE, SHORT),
         ("The turtle stands still in the whole bag.", made_bag.poses(drive_s=0.0), made_bag.commands()),
         ("The bag has no path on /turtle1/pose.", made_bag.commands(), made_bag.poses(drive_s=0.0)),
-        ("Start the recording, then the turtle, and end", made_bag.poses(drive_s=0.0), SHORT),
+        ("Nothing moved the turtle during the recording.", made_bag.poses(drive_s=0.0), SHORT),
+        ("/turtle1/pose has 125 poses per second in the bag.", TWO, WHOLE),
+        ("One turtlesim publishes 62.5 poses per second, so more than one was running.", TWO, WHOLE),
         (
             "The bag must show only one circle: no wall, no teleport",
             [*WHOLE, *made_bag.poses(2.2, drive_s=20.0)],
