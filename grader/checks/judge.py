@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.why_rate import WITHOUT_PAUSE, period_of_zero
 from grader.checks.kinds import KINDS
 from grader.checks.outcome import Finding, Outcome, Status, failed
 from grader.common.words import shorten
@@ -165,7 +166,7 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
     if fault is not None and STAGES.index(kind.stage) >= STAGES.index(fault.stage) and not made:
         return unreadable(fault.message) if fault.unreadable else Finding(Status.ERROR, fault.message)
     if kind.stage == "trial" and evidence.run.overwhelmed is not None:
-        return _overwhelmed(evidence.run.overwhelmed)
+        return _overwhelmed(evidence, evidence.run.overwhelmed)
     if not made:
         return Finding(Status.SKIPPED, "Not judged, because the node was not run.")
     try:
@@ -198,13 +199,16 @@ def in_words(error: Exception) -> str:
     return f"{type(error).__name__}: {error}".rstrip(" :.")
 
 
-def _overwhelmed(how: str) -> Finding:
+def _overwhelmed(evidence: Evidence, how: str) -> Finding:
     observed = f"The trial could not be finished: the node made the simulator fail ({shorten(how, 150)})."
     expected = "The simulator keeps running while the node publishes and calls services at a reasonable rate."
     cause = (
         "The node sends without a pause, or sends invalid data. If your node pauses and sends valid data, "
         "please report this as a bug of the grader."
     )
+    timer = period_of_zero(evidence, "publish")
+    if timer is not None:
+        return failed(observed, expected, Cause("overwhelmed", WITHOUT_PAUSE, timer.where))
     return failed(observed, expected, Cause("overwhelmed", cause))
 
 

@@ -142,7 +142,7 @@ def _of_module(scene: CrashScene, module: str, name: str) -> Cause | None:
         text = f"The entry point names {shorten(name)}, which the module {shorten(module)} does not contain."
         missing = Cause("entry-point-function", text, no_entry_point.line(scene.evidence))
         return no_entry_point.indented(scene.module_of(f"{module.replace('.', '/')}.py"), name) or missing
-    if module == "rclpy" and name in ros_names.MODULE_OF:
+    if name in ros_names.MODULE_OF and (module == "rclpy" or ros_names.MODULE_OF[name].startswith(f"{module}.")):
         return Cause("import-wrong-place", f"{name} is in the module {ros_names.MODULE_OF[name]}.")
     if module == "rclpy" and name in ros_names.OF_ROS_1:
         return _of_ros_1(name)
@@ -159,6 +159,7 @@ def _of_ros_1(name: str) -> Cause:
 
 
 def _misspelt(scene: CrashScene, name: str, known: Iterable[str]) -> Cause | None:
+    known = [each for each in known if each != name]
     plain = {each.lower(): each for each in known}
     guess = plain.get(name.lower()) or nearest(
         name, [each for each in known if abs(len(each) - len(name)) <= MOST_LETTERS]
@@ -255,6 +256,11 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
     if inside is not None:
         text = f"{name} is indented too far. {name} is inside another method, so self.{name} does not exist."
         return Cause("method-in-method", text, scene.at(inside))
+    if name in ros_names.NODE:
+        text = (
+            f"{own.name} is not derived from Node, so it has no method {name}. The base classes follow the class name."
+        )
+        return Cause("attribute-missing", text, scene.at(own))
     if name in ros_names.OTHERS["RcutilsLogger"]:
         text = f"{name} is a method of the logger, and get_logger() returns the logger."
         return Cause("attribute-missing", text).fixed_by(at(scene.crash.where, f".{name}(", f".get_logger().{name}("))

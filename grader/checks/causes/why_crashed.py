@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
@@ -81,6 +82,22 @@ def _why_value(scene: CrashScene) -> Cause | None:
     return Cause("crash", "min or max had nothing to compare. Check first whether there is any value.")
 
 
+ARGUMENTS = re.compile(r"error: the following arguments are required: (?P<names>.+)")
+"""The message of argparse, which ends the program with exit code 2."""
+
+
+def _why_usage(scene: CrashScene) -> Cause | None:
+    """Return the cause if argparse ended the program because it got no arguments, else None."""
+    required = ARGUMENTS.search(scene.evidence.recording.stderr.text)
+    if required is None:
+        return None
+    text = (
+        f"The program ends without the argument {shorten(required['names'], 60)}, and the grader starts it without "
+        "arguments. Give the argument a default value."
+    )
+    return Cause("crash", text, scene.evidence.place("parse_args", "parse_known_args"))
+
+
 EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "AssertionError": why_field,
     "AttributeError": why_no_attribute,
@@ -96,6 +113,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "RuntimeError": why_refused,
     "TypeError": lambda scene: why_none(scene) or why_type(scene),
     "UnboundLocalError": why_unbound,
+    "exit code 2": _why_usage,
     "ValueError": _why_value,
 }
 """Maps an exception to the function that finds its cause in the source code, or returns None."""

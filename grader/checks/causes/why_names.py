@@ -254,11 +254,10 @@ def why_unbound(scene: CrashScene) -> Cause:
             )
             return Cause("method-in-method", text, scene.at(inner))
         return Cause("name-too-early", f"{name} gets its value in line {local[0]}, after this line.")
-    return Cause(
-        "local-name",
-        "A variable that a function assigns to is local to that function. "
-        "Store a value in self if later calls need the value.",
-    )
+    kept = "Store a value in self if later calls need the value."
+    if outside and own is None:
+        kept = f"To change the variable of the module, the function needs the line global {name}."
+    return Cause("local-name", f"A variable that a function assigns to is local to that function. {kept}")
 
 
 def _only_raised(scene: CrashScene, name: str) -> bool:

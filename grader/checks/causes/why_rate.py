@@ -9,6 +9,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.waiting import has_threads
 from grader.common.words import a_list
 from grader.submission.constants import dotted, number
 from grader.submission.where import Where
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 OFTEN = 0.5
 """In a loop without a pause, the mean interval is less than this fraction of the expected period."""
+WITHOUT_PAUSE = "The period of this timer is 0 s, so it calls its method without a pause."
 NO_PAUSE_S = 0.05
 """If the mean interval (s) is longer, something in the loop takes time, for example another loop that waits."""
 SEVERAL = 0.1
@@ -40,10 +42,9 @@ def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> 
             busy = isinstance(node, ast.While) and _calls(node, call) and not _pauses(node, call)
             if busy and mean_s < min(OFTEN * period_s, NO_PAUSE_S):
                 return Cause("loop-without-pause", f"This loop calls {call} without a pause.", where)
-    never_waits = _period_of_zero(evidence, call)
+    never_waits = period_of_zero(evidence, call)
     if never_waits is not None:
-        text = "The period of this timer is 0 s, so it calls its method without a pause."
-        return Cause("timer-period", text, never_waits.where)
+        return Cause("timer-period", WITHOUT_PAUSE, never_waits.where)
     if abs(mean_s - FRAME_S) > 0.1 * FRAME_S:
         return None
     for module, name in callbacks_of(evidence):
@@ -61,7 +62,7 @@ def _pauses(loop: ast.While, call: str) -> bool:
     return waits or not any(_calls(each, call) for each in loop.body if not isinstance(each, ast.If))
 
 
-def _period_of_zero(evidence: Evidence, call: str) -> Call | None:
+def period_of_zero(evidence: Evidence, call: str) -> Call | None:
     """Return the call that creates a timer with the period 0, unless its callback is known and never calls `call`."""
     for timer in evidence.code.calls("create_timer"):
         if number(timer.argument(0, "timer_period_sec"), timer.module.names) == 0.0:
@@ -118,15 +119,31 @@ def why_sleep_in_callback(evidence: Evidence) -> Cause | None:
 
 
 def why_rate_in_callback(evidence: Evidence) -> Cause | None:
-    """Return the cause if a callback calls sleep and the node creates a rate, else None."""
-    found = _made_in_callback(evidence, "sleep") if evidence.code.calls("create_rate") else None
-    if found is None:
+    """Return the cause if the node sleeps with a rate in a callback, or while nothing spins the node, else None."""
+    if not evidence.code.calls("create_rate"):
         return None
+    found = _made_in_callback(evidence, "sleep")
+    if found is None:
+        return _rate_without_spin(evidence)
     text = (
         "The method sleep of a Rate returns only after rclpy.spin has called the timer of the Rate, "
         "but rclpy.spin waits for this callback."
     )
     return Cause("sleep-in-callback", text, found[1])
+
+
+def _rate_without_spin(evidence: Evidence) -> Cause | None:
+    """Return the cause if the node sleeps with a rate, but no other thread can spin the node, else None."""
+    if has_threads(evidence):
+        return None
+    for sleep in evidence.code.calls("sleep"):
+        if dotted(sleep.node.func) not in (None, "sleep", "time.sleep"):
+            text = (
+                "The method sleep of a Rate returns only while another thread spins the node, and this program has no "
+                "other thread. A timer needs no thread."
+            )
+            return Cause("no-spin", text, sleep.where)
+    return None
 
 
 def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:

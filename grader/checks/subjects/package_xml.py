@@ -35,6 +35,14 @@ XML = re.compile(
 )
 """Messages of an XML parser about text that is not valid XML."""
 BARE_AMPERSAND = re.compile(r"&(?!#?\w+;)")
+UNKNOWN_TAG = re.compile(
+    r"\(with format version (?P<format>\d)\) must not contain the following tags: (?P<tag>[^\s,]{1,60})"
+)
+TAGS = (
+    *("name", "version", "description", "maintainer", "license", "url", "author", "export"),
+    *("depend", "exec_depend", "build_depend", "build_export_depend", "buildtool_depend", "test_depend"),
+)
+"""The tags that a learner's package.xml may contain."""
 ROS_1_TAGS = re.compile(r"must not contain the following tags: .*\b(?P<tag>run_depend)\b")
 
 
@@ -79,6 +87,12 @@ def why_not_read(evidence: Evidence, manifest: Manifest) -> Cause:
     if tag is not None:
         cause = f"<{tag['tag']}> belongs to ROS 1. In format 3, use <depend> or <exec_depend>."
         return Cause("package-xml-old-tag", cause, _line(evidence, f"<{tag['tag']}"))
+    other = UNKNOWN_TAG.search(problem)
+    if other is not None:
+        right = nearest(other["tag"], TAGS)
+        cause = f"Format {other['format']} of {FILE} has no tag <{shorten(other['tag'], 30)}>."
+        cause += f" There is a tag <{right}>." if right else ""
+        return Cause("package-xml-invalid", cause, _line(evidence, f"<{other['tag']}"))
     if XML.search(problem):
         cause = "Each <tag> needs a closing </tag> with the same name. Close the inner tag before the outer tag."
         line = manifest.line

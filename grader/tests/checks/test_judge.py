@@ -13,7 +13,7 @@ from grader.checks.kinds import KINDS
 from grader.checks.outcome import Finding, Outcome, Status
 from grader.evidence.evidence import Evidence, Fault, Run
 from grader.report.report import Report
-from grader.tests.checks.made import BUILD, NODE_FILE, evidence, exercise, good, recording, submission
+from grader.tests.checks.made import BUILD, NODE_FILE, evidence, exercise, good, node, recording, submission
 from grader.tests.checks.shapes import SHAPES
 from grader.trial.recording import Command, Output
 
@@ -201,3 +201,11 @@ def test_a_node_that_brings_the_simulator_down_has_failed_and_is_no_error() -> N
     )
     assert start.finding.cause.startswith(words)
     assert words not in by_id(evidence(good()))["start"].finding.cause
+
+
+@pytest.mark.parametrize(("period", "found"), [("0.5", False), ("0.0", True), ("1 // 2", True)])
+def test_a_timer_that_brings_the_simulator_down_is_pointed_at(period: str, *, found: bool) -> None:
+    given = evidence(None, node(("create_timer(0.5,", f"create_timer({period},"))).with_run(Run(overwhelmed="busy"))
+    start = by_id(given)["start"].finding
+    words = "The period of this timer is 0 s, so it calls its method without a pause."
+    assert (start.cause == words, str(start.where)) == (found, f"{NODE_FILE}:10" if found else "None")

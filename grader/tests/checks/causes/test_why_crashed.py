@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from grader.checks.causes.crash import crash_of
+from grader.checks.causes.why_crashed import why_crashed
 from grader.tests.checks.crashes import DRIVER, reported, to_look_at
+from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
+from grader.trial.recording import Output, ProcessEnd
 
 ERROR = "InvalidTopicNameException: Invalid topic name: topic name must not contain characters"
 
@@ -57,3 +61,25 @@ def test_each_rule_for_topic_names_is_told_alone(message: str, rule: str) -> Non
 def test_an_exception_without_a_known_cause_is_explained_by_its_class(error: str, words: str) -> None:
     assert reported(DRIVER.format(line="self.other()"), error).cause.startswith(words)
     assert reported(DRIVER.format(line="self.other()"), "OtherError: what").cause == ""
+
+
+@pytest.mark.parametrize(
+    ("said", "exit_code", "found"),
+    [
+        ("draw_circle: error: the following arguments are required: --speed", 2, True),
+        ("draw_circle: error: unrecognized arguments: --speed", 2, False),
+        ("draw_circle: error: the following arguments are required: --speed", 3, False),
+    ],
+)
+def test_an_argument_that_the_program_requires_is_named(said: str, exit_code: int, *, found: bool) -> None:
+    source = DRIVER.format(line="parser.parse_args()")
+    end = ProcessEnd(by="itself", exit_code=exit_code, t_s=-0.1, stop_s=None)
+    given = evidence(
+        recording([], end=end, stderr=Output(f"usage: draw_circle\n{said}\n")), submission({NODE_FILE: source})
+    )
+    crash = crash_of(given)
+    assert crash is not None
+    cause = why_crashed(given, crash)
+    words = "The program ends without the argument --speed, and the grader starts it without arguments."
+    assert (words in cause.text) == found
+    assert (cause.where is not None) == found

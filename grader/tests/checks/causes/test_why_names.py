@@ -135,7 +135,18 @@ def test_a_name_that_stands_elsewhere_is_reported_where(source: str, name: str, 
             "local-name",
             "no longer the module",
         ),
-        ("n = 0\ndef count():\n    print(n)  # crashed\n    n = 1\n", "n", "local-name", "local to that function"),
+        (
+            "n = 0\ndef count():\n    print(n)  # crashed\n    n = 1\n",
+            "n",
+            "local-name",
+            "To change the variable of the module, the function needs the line global n.",
+        ),
+        (
+            "n = 0\nclass Driver:\n    def count(self):\n        print(n)  # crashed\n        n = 1\n",
+            "n",
+            "local-name",
+            "local to that function. Store a value in self if later calls need the value.",
+        ),
     ],
 )
 def test_a_local_name_is_reported_by_the_line_that_sets_it(source: str, name: str, diagnosis: str, words: str) -> None:

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from grader.checks.causes.why_rate import FRAME_S, why_often, why_publishers_grow, why_several_calls, why_timers_grow
+from grader.checks.causes.why_rate import (
+    FRAME_S,
+    why_often,
+    why_publishers_grow,
+    why_rate_in_callback,
+    why_several_calls,
+    why_timers_grow,
+)
 from grader.tests.checks.crashes import LOOK, line_with
 from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
 
@@ -157,3 +164,21 @@ def test_calls_that_all_run_each_time_are_counted(sent: str, mean_s: float, *, f
     cause = why_several_calls(given, "publish", mean_s, PERIOD_S)
     assert (cause is not None) == found
     assert cause is None or cause.text.startswith("send calls publish 2 times each time it runs, in lines")
+
+
+@pytest.mark.parametrize(
+    ("made", "last", "found"),
+    [
+        ("self.rate = self.create_rate(1)", "self.rate.sleep()", True),
+        ("self.rate = self.create_rate(1); Thread(target=spin).start()", "self.rate.sleep()", False),
+        ("self.rate = self.create_rate(1)", "time.sleep(1)", False),
+        ("self.rate = 1", "self.rate.sleep()", False),
+    ],
+)
+def test_a_rate_that_nothing_spins_is_told(made: str, last: str, *, found: bool) -> None:
+    source = NODE.format(made=made, at_send="", sent=f"{last}  # look")
+    cause = why_rate_in_callback(evidence(recording([]), submission({NODE_FILE: source})))
+    assert (cause is not None) == found
+    words = "The method sleep of a Rate returns only while another thread spins the node, and this program has no other"
+    assert cause is None or cause.text.startswith(words)
+    assert cause is None or (cause.where and cause.where.line) == line_with(LOOK, source)

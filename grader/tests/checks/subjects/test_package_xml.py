@@ -164,6 +164,18 @@ def test_what_was_left_out_of_the_submission_is_reported(more: tuple[str, ...], 
             "package.xml:8",
             "<run_depend> belongs to ROS 1. In format 3, use <depend> or <exec_depend>.",
         ),
+        (
+            xml("<depend>rclpy</depend>", "<exec_depends>rclpy</exec_depends>"),
+            "package-xml-invalid",
+            "package.xml:8",
+            "Format 3 of package.xml has no tag <exec_depends>. There is a tag <exec_depend>.",
+        ),
+        (
+            xml("<depend>rclpy</depend>", "<quaff>rclpy</quaff>"),
+            "package-xml-invalid",
+            "package.xml:8",
+            "Format 3 of package.xml has no tag <quaff>.",
+        ),
     ],
 )
 def test_a_package_xml_that_cannot_be_read_is_explained(files: Files, diagnosis: str, where: str, cause: str) -> None:

@@ -1,0 +1,58 @@
+"""An attribute that every node has, and a method of nodes that an object does not have."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.tests.checks.crashes import DRIVER, reported, to_look_at
+
+NO_SETTER = "AttributeError: property '{}' of '{}' object has no setter"
+PROPERTY = "    @property\n    def speed(self):  # look\n        return self.count\n"
+
+
+@pytest.mark.parametrize(
+    ("line", "error", "name"),
+    [
+        ("self.timers = []", NO_SETTER.format("timers", "Driver"), "timers"),
+        ("self.timers = []", "AttributeError: can't set attribute 'timers'", "timers"),
+        ("self.handle = 3", "AttributeError: handle cannot be modified after node creation", "handle"),
+        ("now.nanoseconds = 3", NO_SETTER.format("nanoseconds", "Time"), None),
+    ],
+)
+def test_an_attribute_that_every_node_has_is_named(line: str, error: str, name: str | None) -> None:
+    given = reported(DRIVER.format(line=line), error)
+    words = f"Every node already has an attribute named {name}. Choose another name."
+    assert (given.cause == words) == (name is not None)
+    assert "Every node already has" not in reported(DRIVER.format(line=line), "AttributeError: nothing known").cause
+
+
+def test_a_property_of_the_students_own_is_not_one_of_every_node() -> None:
+    source = DRIVER.format(line="self.speed = 3").replace("\ndef outside", f"\n{PROPERTY}\ndef outside")
+    given = reported(source, NO_SETTER.format("speed", "Driver"))
+    assert (given.diagnosis, given.line) == ("name-used-twice", to_look_at(source))
+    assert given.cause.startswith("speed is a property without a setter, so nothing can be assigned to it.")
+    assert "Every node already has" not in given.cause
+
+
+@pytest.mark.parametrize(
+    ("base", "name", "words"),
+    [
+        (
+            "",
+            "create_timer",
+            "Driver is not derived from Node, so it has no method create_timer.",
+        ),
+        (
+            "(object)",
+            "get_logger",
+            "Driver is not derived from Node, so it has no method get_logger.",
+        ),
+        ("", "create_timr", "A similar name exists: create_timer."),
+        ("(Thread)", "create_timer", "Driver is not derived from Node, so it has no method create_timer."),
+    ],
+)
+def test_a_class_that_is_not_derived_from_node_has_none_of_its_methods(base: str, name: str, words: str) -> None:
+    source = DRIVER.format(line=f"self.{name}()").replace("(Node)", base)
+    given = reported(source, f"AttributeError: 'Driver' object has no attribute '{name}'")
+    assert given.cause.startswith(words)
+    assert (given.line == 3) == ("is not derived from" in words)
