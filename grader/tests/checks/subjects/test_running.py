@@ -53,7 +53,7 @@ def test_a_good_run_passes(check: str) -> None:
         ("topic", "other type", "wrong-type", ":9"),
         ("topic", "no messages", "never-publishes", ":16"),
         ("topic", "no publisher", "no-publisher", ":9"),
-        ("type", "other type", "second-type", ":9"),
+        ("type", "other type", "wrong-type", ":9"),
         ("stop", "ignores Ctrl-C", "ignores-ctrl-c", ":21"),
         ("stop", "slow stop", "slow-stop", ":21"),
         ("stop", "ends early", "ended-early", ":21"),
