@@ -271,6 +271,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "lstsq-result": "numpy's lstsq is called or its result is used incorrectly",
         "no-error": "a function returns a value instead of raising an exception",
         "other-error": "a function raises the wrong exception",
+        "empty-error": "a function raises the right exception, but without a message",
         "call-too-long": "a function or a program does not end",
         "call-ended": "a function ends the whole program, or a program ends with an error",
         "prints-nothing": "the program prints nothing",

@@ -20,6 +20,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "ros-1-package-xml": "package.xml requires catkin, the build tool of ROS 1",
         "build-type": "the build type in package.xml is not ament_python",
         "missing-depend": "package.xml does not declare a package that the node uses",
+        "depend-on-class": "package.xml declares a class instead of its package",
         "depend-misspelt": "the name of a required package is misspelt in package.xml",
         "depend-kind": "package.xml declares the package for building or testing only, not for running",
         "depend-commented-out": "the dependency is inside an XML comment",

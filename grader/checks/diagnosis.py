@@ -252,6 +252,7 @@ Diagnosis = Literal[
     "lstsq-result",
     "no-error",
     "other-error",
+    "empty-error",
     "call-too-long",
     "call-ended",
     "prints-nothing",

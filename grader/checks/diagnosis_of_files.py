@@ -16,6 +16,7 @@ DiagnosisOfFiles = Literal[
     "ros-1-package-xml",
     "build-type",
     "missing-depend",
+    "depend-on-class",
     "depend-misspelt",
     "depend-kind",
     "depend-commented-out",

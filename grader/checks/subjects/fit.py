@@ -164,6 +164,11 @@ def refuses(evidence: Evidence, params: OneCall) -> Finding:
     crash = read_traceback(called.stderr, evidence.submission.files)
     raiser = _raiser(evidence, called, name)
     if "ValueError" in called.kind.split() and crash is not None and raiser == name:
+        if not crash.message.strip():
+            cause = "The argument of ValueError is the message, which says what is wrong with the points."
+            return failed(
+                f"{name} raises {crash.error} without a message.", expected, Cause("empty-error", cause, crash.where)
+            )
         return passed(f"{name} raises {crash.observed}.")
     broken = _missing(evidence, called, expected, name) or _late(evidence, called, expected, name)
     if broken is not None:

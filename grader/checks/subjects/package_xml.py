@@ -17,7 +17,7 @@ from grader.submission.package_xml import line_of, open_tag
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from grader.evidence.evidence import Evidence
     from grader.submission.code import Code
@@ -131,7 +131,7 @@ def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
         )
     missing = [name for name in needed if name not in manifest.run_depends]
     if not missing:
-        return passed(expected)
+        return _class_declared(evidence, manifest.run_depends, expected) or passed(expected)
     late = [name for name in missing if name in manifest.other_depends]
     if late:
         observed = f"{FILE} declares {a_list(late)} only for building or testing."
@@ -143,6 +143,18 @@ def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
         return failed(observed, expected, Cause("depend-kind", cause, where))
     observed = f"{FILE} does not declare {a_list(missing)}."
     return failed(observed, expected, _why_not_declared(evidence, manifest, missing, needed, imported))
+
+
+def _class_declared(evidence: Evidence, declared: Iterable[str], expected: str) -> Finding | None:
+    """Return the failed finding if a class such as Twist is declared like a package, or else None."""
+    found = [name for name in declared if name in MODULE_OF and name not in SHARED_NAMES and name[0].isupper()]
+    if not found:
+        return None
+    package = MODULE_OF[found[0]].partition(".")[0]
+    observed = f"{FILE} also declares {found[0]}, which is not a package."
+    cause = f"{found[0]} is a class in the package {package}. Only packages are declared."
+    where = _line(evidence, rf">\s*{re.escape(found[0])}\s*<")
+    return failed(observed, expected, Cause("depend-on-class", cause, where))
 
 
 def _imported(evidence: Evidence) -> dict[str, Where]:

@@ -112,6 +112,7 @@ def test_an_arc_shows_what_is_taken_for_its_centre(values: tuple[float, ...], di
     ("called", "diagnosis"),
     [
         (raised("too-few", "ValueError: too few", "ValueError Exception"), None),
+        (raised("too-few", "ValueError", "ValueError Exception"), "empty-error"),
         (raised("too-few", "numpy.linalg.LinAlgError: singular", "LinAlgError ValueError Exception"), None),
         (raised("too-few", "RuntimeError: too few", "RuntimeError Exception"), "other-error"),
         (Called("too-few", "exit 1"), "other-error"),
@@ -189,6 +190,16 @@ def test_a_call_after_one_that_did_not_end_was_not_made(ended: str, *, is_told: 
 @pytest.mark.parametrize(
     ("words", "true", "near"),
     [
+        (
+            "fit_circle raises ValueError without a message.",
+            raised("too-few", "ValueError", "ValueError Exception"),
+            raised("too-few", "ValueError: too few", "ValueError Exception"),
+        ),
+        (
+            "The argument of ValueError is the message, which says what is wrong with the points.",
+            raised("too-few", "ValueError", "ValueError Exception"),
+            raised("too-few", "ValueError: too few", "ValueError Exception"),
+        ),
         (
             "fit_circle raises ValueError: too few.",
             raised("too-few", "ValueError: too few", "ValueError Exception"),

@@ -46,6 +46,12 @@ def test_a_good_package_passes(check: str, build: Build) -> None:
         ("dependencies", xml("  <depend>geometry_msgs</depend>\n"), "missing-depend", "package.xml:8"),
         (
             "dependencies",
+            xml("  <depend>rclpy</depend>", "  <depend>Twist</depend>\n  <depend>rclpy</depend>"),
+            "depend-on-class",
+            "package.xml:8",
+        ),
+        (
+            "dependencies",
             xml("depend>rclpy</depend", "build_depend>rclpy</build_depend"),
             "depend-kind",
             "package.xml:8",
@@ -255,3 +261,11 @@ FOR_PIP = {**MISSING, **setup_py("    packages=", "    install_requires=['geomet
 def test_a_sentence_about_package_xml_is_true(words: str, check: str, true: Files, near: Files) -> None:
     assert words in told(of(check, true))
     assert words not in told(of(check, near))
+
+
+@pytest.mark.parametrize(("name", "found"), [("Twist", True), ("twist", False), ("Pose", False)])
+def test_a_class_that_is_declared_like_a_package_is_told(name: str, *, found: bool) -> None:
+    added = xml("  <depend>rclpy</depend>", f"  <depend>{name}</depend>\n  <depend>rclpy</depend>")
+    reported = told(of("dependencies", added))
+    assert ("package.xml also declares Twist, which is not a package." in reported) == found
+    assert ("Twist is a class in the package geometry_msgs. Only packages are declared." in reported) == found
