@@ -1,7 +1,5 @@
 import os
-import re
 from contextlib import ExitStack
-from pathlib import Path
 
 import pytest
 import rclpy
@@ -15,13 +13,6 @@ from turtlesim.msg import Pose
 from my_robot_controller.wall_guard import WallGuard
 
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "OFF"
-TEXT = (Path(__file__).parents[1] / "my_numbers_12.toml").read_text()
-VALUES = {name: float(value) for name, value in re.findall(r"^(\w+) = ([\d.]+)$", TEXT, re.MULTILINE)}
-NAMED = {"speed": VALUES["speed_m_s"], "turn": VALUES["turn_rad_s"], "slow": 0.5}
-
-
-def value(text):
-    return NAMED[text] if text in NAMED else float(text)
 
 
 class World:
@@ -65,8 +56,8 @@ def test_a_scene(world, scene):
     world.put(float(scene["x"]), float(scene["y"]))
     world.play(int(scene["tenths"]))
     assert len(world.heard) == int(scene["commands"])
-    assert world.heard[-1].linear.x == pytest.approx(value(scene["speed"]))
-    assert world.heard[-1].angular.z == pytest.approx(value(scene["turn"]))
+    assert world.heard[-1].linear.x == pytest.approx(float(scene["speed"]))
+    assert world.heard[-1].angular.z == pytest.approx(float(scene["turn"]))
 
 
 def test_silence_first(world):
