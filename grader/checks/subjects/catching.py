@@ -86,7 +86,7 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_observed(evidence), expected)
-    observed = f"{len(gone)} of {count(len(tracks), 'target')} were caught."
+    observed = f"{len(gone)} of {count(len(tracks), 'target')} {'was' if len(gone) == 1 else 'were'} caught."
     if len(tracks) < params.turtles:
         observed = f"Only {count(len(tracks), 'target')} of {params.turtles:.0f} appeared."
     if end_observed(evidence):

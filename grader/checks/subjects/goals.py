@@ -161,8 +161,8 @@ def _other_turn(before: Goal, goal: Goal, turn_deg: float) -> str:
         return "A goal is an absolute heading, not a turn: 0 is to the right, whatever the heading was before."
     more = math.degrees(normalize(theta - float(before.request["theta"])))
     return (
-        f"This heading is {more:.0f} degrees further to the left than the previous goal; the exercise asks for "
-        f"{turn_deg:g}."
+        f"This heading is {abs(more):.0f} degrees further to the {'left' if more >= 0 else 'right'} than the previous "
+        f"goal; the exercise asks for {turn_deg:g} degrees to the left."
     )
 
 

@@ -153,7 +153,7 @@ def kill(name: str) -> Call:
     [
         ("All 2 targets were caught, the last one at 3 s.", (NEAR, FAR), (NEAR, WESTERN)),
         ("All targets are caught within 10 s, and turtle1 moves only by driving.", (NEAR, WESTERN), (NEAR, FAR)),
-        ("1 of 2 targets were caught.", (NEAR, WESTERN), (NEAR, FAR)),
+        ("1 of 2 targets was caught.", (NEAR, WESTERN), (NEAR, FAR)),
         ("Only 1 target of 2 appeared.", (NEAR,), (NEAR, WESTERN)),
     ],
 )
