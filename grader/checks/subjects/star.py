@@ -67,7 +67,7 @@ def star(evidence: Evidence, params: Star) -> Finding:
         return failed(observed, expected, Cause("curves", "The goals turn the turtle: angular.z stays 0.", where))
     if len(sides.lengths) < amount:
         observed = f"The trajectory has {count(len(sides.lengths), 'side')}."
-        text = "All sides and corners must fit into the duration of the trial."
+        text = f"All sides and corners must fit into the {evidence.recording.duration_s:g} s of the trial."
         return failed(observed, expected, Cause("too-few-sides", text, where))
     return _measured(evidence, params, sides, expected)
 

@@ -73,7 +73,7 @@ LONG = [(t_s, 3.0 * speed, turn) for t_s, speed, turn in star()]
     [
         ("The turtle drew a star of 5 sides.", star(), star(sides=4)),
         ("The trajectory has 4 sides.", star(sides=4), star()),
-        ("All sides and corners must fit into the duration of the trial.", star(sides=4), star()),
+        ("All sides and corners must fit into the 10 s of the trial.", star(sides=4), star()),
         ("The goals turn the turtle: angular.z stays 0.", CURVED, star(ticks=8)),
         ("% of the trajectory is curved.", CURVED, star()),
         ("Side 1 is 1.60 m long.", star(ticks=8), star()),
