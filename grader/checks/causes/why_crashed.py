@@ -98,6 +98,14 @@ def _why_usage(scene: CrashScene) -> Cause | None:
     return Cause("crash", text, scene.evidence.place("parse_args", "parse_known_args"))
 
 
+def _why_resized(scene: CrashScene) -> Cause | None:
+    """Return the cause if a dictionary, a set or a deque changed while a loop went through it, else None."""
+    if "during iteration" not in scene.crash.message:
+        return None
+    text = "While the loop went through it, an item was added or removed. Loop over a copy, which list() makes."
+    return Cause("crash", text)
+
+
 EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "AssertionError": why_field,
     "AttributeError": why_no_attribute,
@@ -110,7 +118,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "NotInitializedException": _why_no_init,
     "ParameterNotDeclaredException": _why_undeclared,
     "RCLError": lambda scene: why_no_transition(scene) or why_refused(scene),
-    "RuntimeError": why_refused,
+    "RuntimeError": lambda scene: _why_resized(scene) or why_refused(scene),
     "TypeError": lambda scene: why_none(scene) or why_type(scene),
     "UnboundLocalError": why_unbound,
     "exit code 2": _why_usage,
