@@ -83,3 +83,13 @@ def test_an_argument_that_the_program_requires_is_named(said: str, exit_code: in
     words = "The program ends without the argument --speed, and the grader starts it without arguments."
     assert (words in cause.text) == found
     assert (cause.where is not None) == found
+
+
+@pytest.mark.parametrize(
+    ("error", "found"),
+    [("dictionary changed size during iteration", True), ("dictionary keys changed", False), ("no service", False)],
+)
+def test_a_loop_over_what_it_changes_is_told(error: str, *, found: bool) -> None:
+    cause = reported(DRIVER.format(line="self.drive()"), f"RuntimeError: {error}").cause
+    assert ("Loop over a copy, which list() makes." in cause) == found
+    assert ("While the loop went through it, an item was added or removed." in cause) == found
