@@ -111,9 +111,7 @@ def check(
     verbose: Verbose = False,
 ) -> None:
     """Build and run one submission, and print what is right and what is wrong."""
-    from grader.colcon import runner
-    from grader.colcon.build_store import build_store
-    from grader.colcon.shared_builds import SharedBuilds
+    from grader.colcon.shared_builds import build_for
     from grader.evidence import recording_format
     from grader.grading.grade import grade
     from grader.grading.options import Options
@@ -129,8 +127,7 @@ def check(
     requested, opened = _opened(submission, exercise)
     in_cell = bubblewrap.require() if confined else bubblewrap.usable()
     options = Options(in_cell, clock.value, seed, explain)
-    # A build for marks never depends on an earlier build.
-    build = runner.build if confined else SharedBuilds(store=build_store())
+    build = build_for(marks=confined)
     with progress() as tell:
         graded = grade(requested, opened, options, tell, early=lambda failed: tell.keep_all(early(failed)), build=build)
         if recording:
@@ -231,7 +228,9 @@ def main() -> None:
             typer.secho(f"grader: {refused}", err=True)
             _drop_unwritten()
             sys.exit(3)
-        reported = f"grader: internal error of the grader, not of your work: {type(error).__name__}: {error}"
+        reported = (
+            f"grader: internal error in the grader, not a problem with your work: {type(error).__name__}: {error}"
+        )
         typer.secho(
             f"{reported}\nPut GRADER_DEBUG=1 before the command to see where the error happened. "
             "Please report the error.",

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from grader.colcon import runner
-from grader.colcon.build_store import key_of
+from grader.colcon.build_store import build_store, key_of
 from grader.colcon.comparison import installs
 from grader.colcon.predicted import SITE, predict
 from grader.colcon.rebuild import renewed
@@ -99,6 +99,11 @@ class SharedBuilds:
         self._kept[key] = (usual.empty, built) if confirmed else None
         if len(self._kept) > MOST_BUILDS:
             self._kept.popitem(last=False)
+
+
+def build_for(*, marks: bool) -> Callable[..., runner.Built]:
+    """Return the function that builds a single submission. A build for marks never depends on an earlier build."""
+    return runner.build if marks else SharedBuilds(store=build_store())
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ MOST_CELLS = 1000
 
 
 def time_of(folder: Path) -> datetime | None:
-    """Return the time when the submission was handed in, in UTC, or None if the folder has no time.
+    """Return the time when the submission was handed in, in UTC, or None if the folder has no time stamp.
 
     Raises:
         UnreadableError: the file is not a regular file with a valid time.

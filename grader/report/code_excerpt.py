@@ -34,7 +34,7 @@ class CodeLine:
 
 @dataclass(frozen=True)
 class Excerpt:
-    """Some successive lines of a file."""
+    """A few consecutive lines of a file."""
 
     file: str
     lines: tuple[CodeLine, ...]

@@ -56,7 +56,7 @@ DENIED = {
 }  # fmt: skip
 _MMAP, _SOCKET, _SOCKETPAIR, _CLONE, _CLONE3, _FCNTL = 9, 41, 53, 56, 435, 72
 _SHARED_MEMORY = 0x21
-"""MAP_SHARED and MAP_ANONYMOUS of mmap(2), which are forbidden together.
+"""MAP_SHARED | MAP_ANONYMOUS of mmap(2). The combination of the two flags is forbidden.
 
 A process can empty its page tables with madvise. Then this memory counts towards neither a tmpfs nor a process.
 """

@@ -54,7 +54,7 @@ def _groups(needs: Sequence[package_managers.Need]) -> List[List[package_manager
 
 
 def _rights(path: str) -> Optional[List[str]]:
-    """Return the words, such as sudo, that run a command as root, or None if this is not possible."""
+    """Return the beginning of a command that runs as root: empty for root, or sudo. Return None if there is no sudo."""
     if os.getuid() == 0:
         return []
     sudo = package_managers.find_program("sudo", path)

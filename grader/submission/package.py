@@ -160,7 +160,10 @@ def write_copy(submission: Submission, destination: Path) -> None:
                 file.write(data)
                 os.fchmod(descriptor, 0o755 if path in submission.executable else 0o644)
     except FileExistsError as error:
-        message = f"{error.filename} exists already: a copy needs a new folder, on a disk with case-sensitive names."
+        message = (
+            f"{error.filename} already exists. A submission must be copied to a new folder, on a case-sensitive file "
+            "system."
+        )
         raise MachineError(message) from error
     except OSError as error:
         todo = "Free some space and try again." if error.errno in (errno.ENOSPC, errno.EDQUOT) else "Try again."

@@ -70,7 +70,7 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
         "All lines of a block must start at the same column, further right than the line with the colon.",
     ),
     (r"forgot a comma", "comma-missing", "Put a comma between two arguments and between two items of a list."),
-    (r"instead of '='|cannot assign", "equals", "= gives a value to a name. == compares two values."),
+    (r"instead of '='|cannot assign", "equals", "= assigns a value to a name. == compares two values."),
 )
 """(pattern of Python's message, diagnosis, cause). The first pattern that matches is used."""
 NOT_CLOSED = re.compile(r"does not match opening parenthesis '(?P<bracket>.)' on line (?P<line>\d+)")

@@ -238,7 +238,7 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
     compared = [each for each in scene.on_line if isinstance(each, ast.Expr) and isinstance(each.value, ast.Compare)]
     if compared:
         place = scene.at(compared[0])
-        return Cause("equals", "== compares two values. = gives a value to a name.", place).fixed_by(
+        return Cause("equals", "== compares two values. = assigns a value to a name.", place).fixed_by(
             at(place, "==", "=")
         )
     local = [node for node in ast.walk(own) if isinstance(node, ast.Name) and _is_store(node) and node.id == name]

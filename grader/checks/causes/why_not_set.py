@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 
-EQUALS = "== compares two values. = gives a value to a name."
+EQUALS = "== compares two values. = assigns a value to a name."
 
 
 def compared_field(evidence: Evidence, field: str) -> Cause | None:

@@ -40,11 +40,8 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
         return failed(f"There is no {FILE}.", expected, Cause("no-answers"))
     if found.problem is not None:
         cause = 'Write a string in "quotation marks", a list in [brackets], and a number without either.'
-        return failed(
-            f"{FILE} cannot be read: {found.problem}.",
-            expected,
-            Cause("answers-unreadable", cause, Where(FILE, found.line)),
-        )
+        why = Cause("answers-unreadable", cause, Where(FILE, found.line))
+        return failed(f"{FILE} cannot be read: {found.problem}.", expected, why)
     questions = {str(check.params["answer"]) for check in evidence.exercise.checks if "answer" in check.params}
     named = set(found.given) | found.unusable
     other = sorted(named - questions)
@@ -168,9 +165,8 @@ def _why(answer: str, find: str, truth: Collection[str], others: Collection[str]
     if find == "type" and any(each.replace("/msg/", "/") == answer for each in truth):
         return Cause("type-without-msg", "In ROS 2 a type has three parts: the package, the word msg, and the name.")
     if find == "type" and any(each.endswith(f"/{answer}") for each in truth):
-        return Cause(
-            "type-without-package", "The full name of a type starts with its package, as in std_msgs/msg/String."
-        )
+        text = "The full name of a type starts with its package, as in std_msgs/msg/String."
+        return Cause("type-without-package", text)
     if any(each.lower() == answer.lower() for each in truth):
         return Cause("capitals", "Upper and lower case matter.")
     if not truth:

@@ -111,5 +111,5 @@ ANSWER = Kind(
     "The answer matches the bag",
     BagAnswer,
     bag_answer,
-    about="An answer in `answers.toml` matches the student's bag: a number with its unit.",
+    about="An answer in `answers.toml`, a number with its unit, matches the student's bag.",
 )

@@ -208,7 +208,7 @@ FITS = Kind(
     FitCall,
     fits_circle,
     about="A function that is called with the points of a `[[trial.points]]` returns the centre and the radius of "
-    "their circle. The tolerance follows from the noise of the points.",
+    "their circle. The tolerance is derived from the noise of the points.",
 )
 REFUSES = Kind(
     "raises_value_error",

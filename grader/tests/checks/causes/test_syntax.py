@@ -135,7 +135,7 @@ SAID = {
     "unterminated string literal": "A string must end on the same line",
     "unexpected indent": "All lines of a block must start at the same column",
     "invalid syntax. Perhaps you forgot a comma?": "Put a comma between two arguments",
-    "cannot assign to function call here.": "= gives a value to a name. == compares two values.",
+    "cannot assign to function call here.": "= assigns a value to a name. == compares two values.",
     "'(' was never closed": "This bracket is never closed.",
     "invalid non-printable character U+00A0": "This character comes from a word processor or a web page.",
 }
