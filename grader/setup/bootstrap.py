@@ -40,6 +40,13 @@ PARTS = {
     "tests": ["setup", "grader", "ros", "cluster", "notebooks", "docs", "tests"],
 }
 
+COPIED = (
+    *("grader/setup/commands", "grader/setup/prefix", "grader/gradebook/jupyter_server.json"),
+    *(f"grader/ros/{name}" for name in ("local_setup.sh", "local_setup.bash", "local_setup.zsh")),
+    *("grader/ros/setup.bash", "grader/ros/setup.zsh"),
+)
+"""The files and folders of the course that pyproject.toml copies into .venv."""
+
 
 class Stamp(NamedTuple):
     """The properties with which .venv was created. The stamp is written last, so an interrupted set-up has no stamp."""
@@ -50,7 +57,7 @@ class Stamp(NamedTuple):
     python: str
     version: List[int]
     digest: str
-    """The hash of the lock file and pyproject.toml."""
+    """See `digest`."""
     parts: List[str]
     seconds: Dict[str, float]
 
@@ -71,10 +78,13 @@ def write_stamp(stamp: Stamp, path: Path = STAMP) -> None:
 
 
 def digest() -> str:
-    """Return a hash of the files that determine which packages are installed."""
+    """Return a hash of the files that determine what is installed, and of those that are copied into .venv."""
     whole = hashlib.sha256()
-    for name in ("requirements.lock", "pyproject.toml"):
-        whole.update((ROOT / name).read_bytes())
+    for name in ("requirements.lock", "pyproject.toml", *COPIED):
+        place = ROOT / name
+        for path in sorted(place.rglob("*")) if place.is_dir() else [place]:
+            if path.is_file():
+                whole.update(path.read_bytes())
     return whole.hexdigest()
 
 
