@@ -110,19 +110,31 @@ def test_a_cell_with_too_many_files_is_ended() -> None:
     assert (done.out_of, done.timed_out) == ("files", False)
 
 
-def test_data_that_waits_in_sockets_counts_as_memory() -> None:
-    code = """
-import socket, sys, time
+UDP = """
 receivers = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(60)]
 sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 for receiver in receivers:
     receiver.bind(("127.0.0.1", 0))
     for _ in range(10 * sends):
         sender.sendto(bytes(20_000), receiver.getsockname())
-time.sleep(1.0 + 20.0 * sends)
 """
+TCP = """
+server, kept = socket.create_server(("127.0.0.1", 0)), []
+for _ in range(30):
+    client = socket.create_connection(server.getsockname())
+    kept += [client, server.accept()[0]]
+    client.setblocking(False)
+    with contextlib.suppress(BlockingIOError):
+        for _ in range(20 * sends):
+            client.send(bytes(50_000))
+"""
+
+
+@pytest.mark.parametrize("fill", [UDP, TCP], ids=["UDP", "TCP"])
+def test_data_that_waits_in_sockets_counts_as_memory(fill: str) -> None:
+    code = f"import contextlib, socket, time{fill}time.sleep(1.0 + 20.0 * sends)"
     limits = Limits(total_memory=12 * MIB)
-    assert [run(f"sends = {sends}{code}", limits).out_of for sends in (0, 1)] == [None, "memory"]
+    assert [run(f"sends = {sends}\n{code}", limits).out_of for sends in (0, 1)] == [None, "memory"]
 
 
 def test_shared_memory_without_a_file_is_refused() -> None:
