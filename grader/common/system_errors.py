@@ -7,7 +7,7 @@ import errno
 import os
 import re
 import resource
-import shutil
+import sys
 from typing import Optional, Tuple
 
 OF_THE_DISK = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS})
@@ -29,7 +29,7 @@ def refusal(error: BaseException) -> Optional[str]:
         return _refusal_behind(error)
     if isinstance(error, RuntimeError):
         return sentence(errno.EAGAIN) if "start new thread" in str(error) else refusal_in(str(error))
-    if isinstance(error, shutil.Error):
+    if _is_of_shutil(error):
         path, reason = path_and_reason(error)
         return refusal_in(reason) or sentence(0, path)
     if isinstance(error, FileNotFoundError) and str(error.strerror).startswith("No usable temporary directory"):
@@ -56,12 +56,18 @@ def refusal_in(said: str) -> Optional[str]:
     return sentence(found) if found else None
 
 
+def _is_of_shutil(error: BaseException) -> bool:
+    """Return whether this is a shutil.Error. shutil is not imported, since few commands need it."""
+    shutil = sys.modules.get("shutil")
+    return shutil is not None and isinstance(error, shutil.Error)
+
+
 def path_and_reason(error: OSError) -> Tuple[str, str]:
     """Return the path of an error of the file system ("" if there is none), and the reason.
 
     shutil.copytree collects the errors of all files, and has no reason of its own. The first error counts.
     """
-    if isinstance(error, shutil.Error) and error.args and error.args[0]:
+    if _is_of_shutil(error) and error.args and error.args[0]:
         _, path, said = error.args[0][0]
         found = re.match(r"\[Errno (\d+)\]", said)
         return str(path), os.strerror(int(found.group(1))) if found else said

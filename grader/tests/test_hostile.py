@@ -157,7 +157,7 @@ def assert_held(attack: Attack, done: Graded) -> None:
 
 
 def was_there(evidence: Evidence, what: str) -> bool:
-    """Return whether a topic, a node or an intervention is in a recording, or the build made too many files."""
+    """Return whether a topic, node, intervention or output of a call is in a recording, or the build made many files."""
     if evidence.run.overwhelmed is not None:
         return True
     if what.endswith(" files"):
@@ -166,7 +166,8 @@ def was_there(evidence: Evidence, what: str) -> bool:
     for recording in (run.recording for run in evidence.runs.values() if run.recording is not None):
         seen |= {node.lstrip("/") for graph in recording.graphs for node in graph.nodes}
         seen |= {*recording.topics, *recording.interventions}
-    return what in seen
+    outputs = [called.stdout for run in evidence.runs.values() for called in run.called or ()]
+    return what in seen or any(what in output for output in outputs)
 
 
 @pytest.mark.clocks("undefended")

@@ -81,6 +81,8 @@ OURS = {
     ("session", "_run_tests"): "a request of the lane, in a cell",
     ("session", "main"): "a request of the lane, in a cell",
     ("results", "load"): "our own result",
+    ("build_store", "_unpacked"): "a build that we stored",
+    ("session", "_new_cell"): "what bubblewrap says about a cell",
     ("source", "refreshed"): "a notebook of the course",
     ("trial", "_answer"): "the output of the conductor",
     ("runner", "_pack"): "a stream that we write",

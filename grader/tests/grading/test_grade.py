@@ -106,7 +106,8 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def broken(tmp_path: Path, sitecustomize: str) -> subprocess.CompletedProcess[str]:
     """Grade on a machine with a fault, which the given sitecustomize.py causes in the grader's own process."""
-    (tmp_path / "sitecustomize.py").write_text(sitecustomize)
+    no_stored_build = "import grader.colcon.build_store as store\nstore.BuildStore.get = lambda *_: None\n"
+    (tmp_path / "sitecustomize.py").write_text(no_stored_build + sitecustomize)
     return grader("check", SOLUTION, "--json", tmp_path / "report.json", env={"PYTHONPATH": python_path(tmp_path)})
 
 

@@ -42,7 +42,7 @@ def test_the_set_up_starts_with_modules_that_a_full_disk_truncated(tmp_path: Pat
         py_compile.compile(str(path), cfile=str(cache), doraise=True)
         os.truncate(cache, 20)
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-    found = re.search(r"^SET_UP := python3 (.+)$", makefile, re.MULTILINE)
+    found = re.search(r"^SET_UP = \$\(STARTER\) (.+)$", makefile, re.MULTILINE)
     assert found
     done = subprocess.run(
         [sys.executable, *found[1].split(), "--help"], cwd=tmp_path, capture_output=True, text=True, check=False
