@@ -157,7 +157,7 @@ def assert_held(attack: Attack, done: Graded) -> None:
 
 
 def was_there(evidence: Evidence, what: str) -> bool:
-    """Return whether a topic, node, intervention or output of a call is in a recording, or the build made many files."""
+    """Return whether the evidence has a topic, a node, an intervention, an output of a call, or too many files."""
     if evidence.run.overwhelmed is not None:
         return True
     if what.endswith(" files"):
