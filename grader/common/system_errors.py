@@ -29,7 +29,7 @@ def refusal(error: BaseException) -> Optional[str]:
         return _refusal_behind(error)
     if isinstance(error, RuntimeError):
         return sentence(errno.EAGAIN) if "start new thread" in str(error) else refusal_in(str(error))
-    if _is_of_shutil(error):
+    if isinstance(error, OSError) and _is_of_shutil(error):
         path, reason = path_and_reason(error)
         return refusal_in(reason) or sentence(0, path)
     if isinstance(error, FileNotFoundError) and str(error.strerror).startswith("No usable temporary directory"):
