@@ -1,7 +1,7 @@
 """A store on disk for the builds of a learner's package, so that the next `grader check` need not run colcon again.
 
-A learner changes a module ten times as often as setup.py or package.xml. The store keeps the last builds in the user's
-cache folder. A file in the store that cannot be read, or is damaged, is ignored. The store is never used for marks.
+The store keeps the last builds in the user's cache folder. A file in the store that cannot be read, or is damaged, is
+ignored. The store is never used for marks.
 """
 
 from __future__ import annotations

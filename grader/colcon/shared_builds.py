@@ -14,6 +14,7 @@ import re
 import warnings
 from collections import OrderedDict
 from dataclasses import dataclass, replace
+from threading import Lock
 from typing import TYPE_CHECKING
 
 from grader.colcon import runner
@@ -51,7 +52,8 @@ class SharedBuilds:
         self.runs = 0
         self._build = build
         self._store = store
-        self._kept: OrderedDict[object, tuple[Submission, runner.Built] | None] = OrderedDict()
+        self._kept: OrderedDict[object, runner.Built | None] = OrderedDict()
+        self._lock = Lock()  # a Dask worker has several threads
 
     def __call__(
         self,
@@ -77,28 +79,39 @@ class SharedBuilds:
             usual = None
         if usual is None:
             return build(submission)
-        key = (usual.empty.digest, usual.empty.executable, ros, in_cell)
-        if key not in self._kept:
-            store, stored_as = (self._store, key_of(usual.empty, ros)) if self._store and in_cell else (None, "")
-            stored = store.get(stored_as) if store else None
-            self._keep(key, usual, stored or build(usual.empty))
-            if store and not stored and (confirmed := self._kept[key]):
-                store.put(stored_as, confirmed[1])
-        self._kept.move_to_end(key)
-        kept = self._kept[key]
-        built = read(renewed, submission, *kept) if kept is not None else None
-        if kept is None or built is None:
+        reference, is_earlier = self._reference(usual, ros, build, in_cell=in_cell)
+        built = read(renewed, submission, usual.empty, reference) if reference is not None else None
+        if reference is None or built is None:
             return build(submission)
-        tell("Using an earlier build: only the modules differ")
+        if is_earlier:
+            tell("Using an earlier build: only the modules differ")
         # Testing causes may take a multiple of the time of a build.
-        return replace(built, build=replace(built.build, seconds=kept[1].build.seconds))
+        return replace(built, build=replace(built.build, seconds=reference.build.seconds))
 
-    def _keep(self, key: object, usual: Usual, built: runner.Built) -> None:
-        """Keep the build if colcon installed exactly the predicted files, and otherwise keep that nothing is shared."""
+    def _reference(
+        self, usual: Usual, ros: Ros, build: Callable[[Submission], runner.Built], *, in_cell: bool
+    ) -> tuple[runner.Built | None, bool]:
+        """Return the build with empty modules, and whether it is an earlier one.
+
+        The build is None if colcon installs other files than predicted, so that nothing can be shared.
+        """
+        key = (usual.empty.digest, usual.empty.executable, ros, in_cell)
+        with self._lock:
+            if key in self._kept:
+                self._kept.move_to_end(key)
+                return self._kept[key], True
+        store, stored_as = (self._store, key_of(usual.empty, ros)) if self._store and in_cell else (None, "")
+        stored = store.get(stored_as) if store else None
+        built = stored or build(usual.empty)
         confirmed = built.build.exit_code == 0 and len(built.tree) <= MOST_TREE and _installs(built, usual.predicted)
-        self._kept[key] = (usual.empty, built) if confirmed else None
-        if len(self._kept) > MOST_BUILDS:
-            self._kept.popitem(last=False)
+        if store and confirmed and not stored:
+            store.put(stored_as, built)
+        reference = built if confirmed else None
+        with self._lock:
+            self._kept[key] = reference
+            if len(self._kept) > MOST_BUILDS:
+                self._kept.popitem(last=False)
+        return reference, stored is not None
 
 
 def build_for(*, marks: bool) -> Callable[..., runner.Built]:

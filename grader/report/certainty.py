@@ -51,7 +51,6 @@ OF_RECORDINGS = frozenset(
         "goal-replaced",
         "goal-aborted-by-command",
         "not-driven",
-        "catch-again",
         "drives-before-pose",
         # Log lines and their numbers.
         "before-first-pose",

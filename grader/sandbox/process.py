@@ -139,7 +139,7 @@ def run(
     The beginning and the end of standard error are kept.
 
     With `watch`, the child is killed when its processes exceed these limits together, and the time for which they wait
-    for a processor is not a part of `timeout_s`. The child of a crowded machine gets at most MOST_TIME times as long.
+    for a processor does not count. On a crowded machine, the child may take up to MOST_TIME times `timeout_s`.
 
         done = run(["cat"], stdin=b"text", timeout_s=60.0, most_stdout=1000, most_stderr=1000)
     """

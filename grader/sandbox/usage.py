@@ -39,12 +39,15 @@ _THREADS = re.compile(r"^Threads:\s*(\d+)", re.MULTILINE)
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
 
-def exceeded(pid: int, limits: Limits) -> str | None:
-    """Return the limit that the cell at or below process `pid` exceeds ("memory", "processes", "files"), or None."""
+def exceeded(pid: int, limits: Limits, *, in_room: bool = False) -> str | None:
+    """Return the limit that the cell at or below process `pid` exceeds ("memory", "processes", "files"), or None.
+
+    With `in_room`, this process and the cell are in the same room, so that the cell can fill sockets of their network.
+    """
     memory = 0
     processes = 0
     disks: dict[int, tuple[int, int]] = {}
-    networks = {_network(os.getpid()): 0}
+    networks = {_network(os.getpid()): os.getpid() if in_room else 0}
     for process in family(pid):
         own, threads = _own_bytes_and_threads(process)
         memory += own
@@ -62,10 +65,13 @@ def exceeded(pid: int, limits: Limits) -> str | None:
 
 
 class Guard:
-    """A thread that watches a cell until `close` is called, and calls `over` once if a limit is exceeded."""
+    """A thread that watches a cell until `close` is called, and calls `over` once if a limit is exceeded.
 
-    def __init__(self, pid: int, limits: Limits, over: Callable[[str], None]) -> None:
-        self._pid, self._limits, self._over = pid, limits, over
+    `in_room` has the same meaning as in `exceeded`.
+    """
+
+    def __init__(self, pid: int, limits: Limits, over: Callable[[str], None], *, in_room: bool = False) -> None:
+        self._pid, self._limits, self._over, self._in_room = pid, limits, over, in_room
         self._worked = [(time.monotonic(), self._worked_so_far_s())]
         self._ready: dict[int, float] = {}
         self._waited: dict[int, float] = {}
@@ -110,7 +116,7 @@ class Guard:
                 ran_s, waited_s = _ran_and_waited_s(process)
                 self._ready[process] = max(ran_s + waited_s, self._ready.get(process, 0.0))
                 self._waited[process] = max(waited_s, self._waited.get(process, 0.0))
-            what = exceeded(self._pid, self._limits)
+            what = exceeded(self._pid, self._limits, in_room=self._in_room)
             if what is not None:
                 self._over(what)
                 return

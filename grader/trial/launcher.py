@@ -42,6 +42,7 @@ _AHEAD = (
 POSTPONED = ("numpy", "yaml")
 """Modules that rclpy and the messages import, and that most nodes never use. They are half of the CPU time of importing
 rclpy."""
+_SIMULATED = "use_sim_time:=true"
 _TYPES_AHEAD = (("geometry_msgs.msg", "Twist"), ("rosgraph_msgs.msg", "Clock"), ("turtlesim.msg", "Pose"))
 
 
@@ -177,7 +178,7 @@ def main() -> None:
         os.execv(script, [*sys.argv, *order["ros_arguments"]])
     if order["ros_arguments"]:
         _initialize_with(order["ros_arguments"])
-    else:
+    if _SIMULATED not in order["ros_arguments"]:
         # In wall time, an import in the middle of a callback would delay the node.
         for each in waiting:
             each.load()

@@ -167,7 +167,7 @@ class NodeProcess:
         """Send the launcher the install tree and the data about the node that it must run."""
         assert self._process.stdin is not None
         # Do not start the guard earlier: a launcher may wait for minutes, and watching it takes 1 % of a core.
-        self._guard = Guard(self._process.pid, self._limits, self._over)
+        self._guard = Guard(self._process.pid, self._limits, self._over, in_room=self._in_cell)
         try:
             self._process.stdin.write(json.dumps(order).encode() + b"\n" + tree)
             self._process.stdin.close()

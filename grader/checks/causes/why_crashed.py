@@ -102,7 +102,7 @@ def _why_resized(scene: CrashScene) -> Cause | None:
     """Return the cause if a dictionary, a set or a deque changed while a loop went through it, else None."""
     if "during iteration" not in scene.crash.message:
         return None
-    text = "While the loop went through it, an item was added or removed. Loop over a copy, which list() makes."
+    text = "An item was added or removed while a loop went through the collection. Loop over a copy: list() makes one."
     return Cause("crash", text)
 
 

@@ -95,6 +95,14 @@ def test_modules_do_not_need_a_build_of_their_own(builds: SharedBuilds, solution
     assert replace(shared[1].build, seconds=0.0, log="") == replace(own.build, seconds=0.0, log="")
 
 
+def test_only_an_earlier_build_is_called_so(solution: Submission) -> None:
+    reported: list[str] = []
+    builds = SharedBuilds()
+    for _ in range(2):
+        builds(solution, find_ros(), in_cell=bubblewrap.usable(), tell=reported.append)
+    assert reported == ["Building with colcon", "Using an earlier build: only the modules differ"]
+
+
 def test_the_shared_build_contains_no_module_of_a_student(solution: Submission) -> None:
     colcon = Colcon()
     build(SharedBuilds(colcon), solution)

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import socket
+from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
-from grader.sandbox.limits import Limits
-from grader.sandbox.usage import Guard
+import pytest
+
+from grader.sandbox.limits import MIB, Limits
+from grader.sandbox.usage import Guard, exceeded
 from grader.tests.trial.program import python
 from grader.tests.waiting import until
 
@@ -44,3 +48,17 @@ def test_processes_that_share_a_processor_are_ready_for_as_long_as_with_one_each
         until(lambda: guard.waited_s() >= 0.5 * WORK_S)
         guard.close()
     assert guard.ready_s(but=0) > guard.ready_s(but=process.pid)
+
+
+@pytest.mark.parametrize(("in_room", "over"), [(True, "memory"), (False, None)], ids=["in a room", "elsewhere"])
+def test_data_in_the_network_of_a_room_counts(*, in_room: bool, over: str | None) -> None:
+    """The simulator and a node are in one room: a node can fill the sockets of both."""
+    with ExitStack() as stack:
+        receivers = [stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) for _ in range(60)]
+        sender = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+        for receiver in receivers:
+            receiver.bind(("127.0.0.1", 0))
+            for _ in range(10):
+                sender.sendto(bytes(20_000), receiver.getsockname())
+        with python("import sys; print('ready', flush=True); sys.stdin.readline()") as process:
+            assert exceeded(process.pid, Limits(total_memory=12 * MIB), in_room=in_room) == over

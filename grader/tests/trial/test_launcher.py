@@ -120,7 +120,11 @@ print(loaded, type(covariance) is numpy.ndarray, numpy.zeros(2).sum(), yaml.safe
 """
 
 
-@pytest.mark.parametrize(("arguments", "loaded"), [(SIMULATED, False), ([], True)], ids=["simulated", "wall"])
+@pytest.mark.parametrize(
+    ("arguments", "loaded"),
+    [(SIMULATED, False), ([], True), (["--ros-args", "-p", "radius:=1.0"], True)],
+    ids=["simulated", "wall", "wall with a parameter"],
+)
 def test_modules_that_few_nodes_need_are_imported_on_first_use(
     in_ros: InRos, tmp_path: Path, arguments: list[str], *, loaded: bool
 ) -> None:

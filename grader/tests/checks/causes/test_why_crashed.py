@@ -91,5 +91,5 @@ def test_an_argument_that_the_program_requires_is_named(said: str, exit_code: in
 )
 def test_a_loop_over_what_it_changes_is_told(error: str, *, found: bool) -> None:
     cause = reported(DRIVER.format(line="self.drive()"), f"RuntimeError: {error}").cause
-    assert ("Loop over a copy, which list() makes." in cause) == found
-    assert ("While the loop went through it, an item was added or removed." in cause) == found
+    assert ("Loop over a copy: list() makes one." in cause) == found
+    assert ("An item was added or removed while a loop went through the collection." in cause) == found
