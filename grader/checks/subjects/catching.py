@@ -208,7 +208,7 @@ def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
         return failed(f"The node never called {params.service}.", expected, why_unasked(evidence, params.service))
     unseen = _uncaught(recording, caught(recording), params.service)
     if unseen is not None:
-        observed = f"{shorten(unseen.turtle)} was removed, but the recording has no call of {params.service} for it."
+        observed = f"{shorten(unseen.turtle)} was removed, but the recording has no call to {params.service} for it."
         text = "A recording keeps a limited number of calls. The node made too many."
         return failed(observed, expected, Cause("catch-again", text, where))
     return passed(f"Each time the node called {params.service}, the target was near.")

@@ -131,7 +131,7 @@ def _late(evidence: Evidence, called: Called, expected: str, name: str) -> Findi
     late = any(each.ended == TOO_LATE for each in evidence.run.called or ())
     if not late or called.ended not in (TOO_LATE, ""):
         return None
-    observed = f"{name} did not end in time (5 s of CPU time, or 20 s in all)."
+    observed = f"{name} did not end in time."
     if not called.ended:
         observed = f"{name} was not called with this input, because an earlier call did not end."
     cause = "A loop may never end, or the function may wait for something that never happens."
