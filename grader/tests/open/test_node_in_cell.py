@@ -159,7 +159,7 @@ def test_an_attack_reaches_nothing_and_leaves_nothing(learner: Course, *, defend
                 # The attack is real.
                 assert "a secret" in output
                 assert found.reached() == [learner.home.name, "ros2_ws", "SOCK_STREAM", *["SOCK_DGRAM"] * 3]
-                os.kill(left[0], signal.SIGKILL)
+                os.killpg(left[0], signal.SIGKILL)  # the shell and its child
 
 
 @needs_cells
