@@ -22,4 +22,6 @@ def _folder(variable: str, default: str) -> Path:
     As the specification demands, relative paths are ignored.
     """
     named = os.environ.get(variable, "")
-    return (Path(named) if named.startswith("/") else Path.home() / default) / "grader"
+    folder = Path(named) if named.startswith("/") else Path.home() / default
+    # CMake removes "..", and then the folder in which it installs would have another name than we expect.
+    return (folder.resolve() if ".." in folder.parts else folder) / "grader"

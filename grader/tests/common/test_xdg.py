@@ -42,3 +42,11 @@ def test_a_variable_that_names_no_absolute_path_counts_as_none(
     if value is not None:
         monkeypatch.setenv(variable, value)
     assert folder() == home / default / "grader"
+
+
+@pytest.mark.parametrize(("folder", "variable"), [each[:2] for each in FOLDERS])
+def test_a_path_with_two_dots_is_resolved(
+    monkeypatch: pytest.MonkeyPatch, home: Path, folder: Callable[[], Path], variable: str
+) -> None:
+    monkeypatch.setenv(variable, f"{home}/a/../b")
+    assert folder() == home / "b/grader"
