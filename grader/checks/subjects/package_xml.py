@@ -43,11 +43,17 @@ TAGS = (
     *("depend", "exec_depend", "build_depend", "build_export_depend", "buildtool_depend", "test_depend"),
 )
 """The tags that a learner's package.xml may contain."""
+TWICE = re.compile(r"dependency on ['\"](?P<name>[^'\"]{1,100})['\"] is redundant")
 ROS_1_TAGS = re.compile(r"must not contain the following tags: .*\b(?P<tag>run_depend)\b")
 
 
 def _line(evidence: Evidence, *patterns: str) -> Where:
     return Where(FILE, line_of(evidence.submission.files[FILE], *patterns))
+
+
+def _last_line(evidence: Evidence, pattern: str) -> Where:
+    lines = _text(evidence).splitlines()
+    return Where(FILE, max((number for number, line in enumerate(lines, 1) if re.search(pattern, line)), default=None))
 
 
 def valid(evidence: Evidence, _: NoParams) -> Finding:
@@ -87,6 +93,10 @@ def why_not_read(evidence: Evidence, manifest: Manifest) -> Cause:
     if tag is not None:
         cause = f"<{tag['tag']}> belongs to ROS 1. In format 3, use <depend> or <exec_depend>."
         return Cause("package-xml-old-tag", cause, _line(evidence, f"<{tag['tag']}"))
+    twice = TWICE.search(problem)
+    if twice is not None:
+        cause = f"The package {shorten(twice['name'])} is declared twice. Remove one of the two lines."
+        return Cause("package-xml-invalid", cause, _last_line(evidence, rf">\s*{re.escape(twice['name'])}\s*<"))
     other = UNKNOWN_TAG.search(problem)
     if other is not None:
         right = nearest(other["tag"], TAGS)

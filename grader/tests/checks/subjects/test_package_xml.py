@@ -171,6 +171,12 @@ def test_what_was_left_out_of_the_submission_is_reported(more: tuple[str, ...], 
             "<run_depend> belongs to ROS 1. In format 3, use <depend> or <exec_depend>.",
         ),
         (
+            xml("<depend>rclpy</depend>", "<depend>rclpy</depend>\n  <depend>rclpy</depend>"),
+            "package-xml-invalid",
+            "package.xml:9",
+            "The package rclpy is declared twice. Remove one of the two lines.",
+        ),
+        (
             xml("<depend>rclpy</depend>", "<exec_depends>rclpy</exec_depends>"),
             "package-xml-invalid",
             "package.xml:8",
