@@ -79,8 +79,8 @@ def _installed(path: str, built: runner.Built) -> str | None:
 
 def _with_texts(tree: bytes, texts: dict[str, bytes]) -> bytes:
     """Return a copy of the tree in which these members have new contents."""
-    renewed = io.BytesIO()
-    with tarfile.open(fileobj=io.BytesIO(tree)) as old, tarfile.open(fileobj=renewed, mode="w") as new:
+    renewed, gnu = io.BytesIO(), tarfile.GNU_FORMAT  # the only format that grader.sandbox.tar_stream reads
+    with tarfile.open(fileobj=io.BytesIO(tree)) as old, tarfile.open(fileobj=renewed, mode="w", format=gnu) as new:
         for member in old:
             content = texts.get(str(PurePosixPath(member.name)))
             if content is not None:

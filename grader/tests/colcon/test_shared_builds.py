@@ -11,6 +11,8 @@ import pytest
 
 from grader.colcon import runner
 from grader.colcon.build import Build
+from grader.colcon.comparison import installs
+from grader.colcon.predicted import predict
 from grader.colcon.shared_builds import SharedBuilds
 from grader.ros.installation import find_ros
 from grader.sandbox import bubblewrap
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
 
 NODE = "my_robot_controller/draw_circle.py"
 TEST = "test/test_node.py"
+LONG_NAME = 100
+"""Formats of tar store the names that are longer than this (characters) in different ways."""
 
 
 @pytest.fixture(scope="module")
@@ -93,6 +97,15 @@ def test_modules_do_not_need_a_build_of_their_own(builds: SharedBuilds, solution
     assert members(shared[1].tree) == members(own.tree)
     assert members(shared[0].tree) != members(own.tree)
     assert replace(shared[1].build, seconds=0.0, log="") == replace(own.build, seconds=0.0, log="")
+
+
+def test_the_files_are_the_predicted_ones(builds: SharedBuilds, solution: Submission) -> None:
+    """Otherwise a node that already ran during the build would run again."""
+    written = with_node(solution, "def main(args=None):\n    print('hello')\n")
+    predicted = predict(written, find_ros(), ())
+    assert predicted is not None
+    assert any(len(f"{predicted.package}/{path}") > LONG_NAME for path in predicted.files)
+    assert installs(build(builds, written).tree, predicted)
 
 
 def test_only_an_earlier_build_is_called_so(solution: Submission) -> None:
