@@ -70,7 +70,7 @@ def interpreter(
 
 
 def clean(env: Mapping[str, str]) -> Dict[str, str]:
-    """Return the environment without the entries of search paths that mean the current folder (empty or relative)."""
+    """Return the environment without empty or relative entries in search paths: these refer to the current folder."""
     cleaned = dict(env)
     for name in SEARCHED:
         if name in cleaned:

@@ -73,7 +73,7 @@ def expand(checks: object, trials: object) -> Any:  # noqa: ANN401 - TOML, not y
 
 
 def problem_of(table: Mapping[str, Any], trials: Sequence[Mapping[str, Any]]) -> str | None:
-    """Describe the mistake in the preset of a check.
+    """Return a description of the mistake in a check with a preset.
 
     Return an empty string if there is no mistake, and None if the check is not a preset.
     """

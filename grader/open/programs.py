@@ -48,7 +48,7 @@ class Program:
     def __init__(self, changed: Callable[[], object]) -> None:
         self.lines: deque[str] = deque(maxlen=KEPT)
         self.was_stopped = False
-        """Whether `stop` has ended the program, or it has not been started."""
+        """Whether `stop` has ended the program since it was last started."""
         self._changed = changed
         self._process: asyncio.subprocess.Process | None = None
         self._reading: asyncio.Task[None] | None = None

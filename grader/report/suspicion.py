@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 ERRORS = "errors"
-"""The key in a class's reports for the number of consecutive times that grading ended with an error."""
+"""The key in the reports of a class that counts how many times in a row grading has ended with an error."""
 REPEATED = 2
 """The number of consecutive errors after which chance is an unlikely explanation."""
 UNREADABLE = "unreadable"

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from types import FrameType
 
 ENDS_S = 10
-"""The longest time in s that a command takes to leave the graph after SIGTERM or SIGHUP. The system then ends it."""
+"""The maximum time that a command has to leave the graph after SIGTERM or SIGHUP (s). Then an alarm terminates it."""
 
 
 class _EndedError(KeyboardInterrupt):

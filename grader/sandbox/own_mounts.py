@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 _PIVOT_ROOT = {"x86_64": 155, "aarch64": 41}
-"""The number of the system call, which the C library does not offer, by processor."""
+"""The number of the system call pivot_root on each processor. The C library has no function for this call."""
 _NEW_MOUNTS, _NEW_USER = 0x20000, 0x10000000
 _READ_ONLY, _REMOUNT, _BIND, _RECURSIVE, _PRIVATE = 1, 32, 4096, 16384, 1 << 18
 _KEPT = {

@@ -12,8 +12,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 MOST_CALLS, MOST_ALIKE = 1000, 200
-"""The maximum number of calls that are kept. After this number, a call is still kept if fewer than MOST_ALIKE calls
-to services of this name are kept, such as set_pen of any turtle."""
+"""The log keeps the first MOST_CALLS calls. After that, it keeps a call only if it has fewer than MOST_ALIKE calls of
+services with the same last name, such as the set_pen of every turtle.
+"""
 
 
 class CallLog:

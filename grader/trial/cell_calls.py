@@ -2,8 +2,8 @@
 
 This file runs as a separate script. The script reads one line of JSON (`calls`, `script`, `function`, `python_path`,
 `env`, `install`, `files`) and then the install tree, a tar stream, from standard input. The script writes one line of
-JSON for each call. A call cannot write such lines, because this process cannot be inspected (not dumpable): otherwise,
-one call could decide what another call raised.
+JSON for each call. A call cannot write such lines: the process is not dumpable, so its child processes cannot open its
+standard output. Otherwise, one call could change the result of another call.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any
 
 FUNCTION_CPU_S = 2
-"""The maximum CPU time of one call of a function (s), many times as much as a fit in plain Python takes.
+"""The maximum CPU time of one call of a function (s). A fit in plain Python takes much less.
 
 Unlike wall time, CPU time does not depend on the load of the machine.
 """

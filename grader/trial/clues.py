@@ -1,4 +1,4 @@
-"""Find clues in the source which suggest that a node follows wall time.
+"""Find clues in the source that a node follows wall time.
 
 In simulated time, a node that follows wall time would get a wrong verdict.
 
@@ -46,7 +46,7 @@ _NAMES = {
 _CLOCKS = {"Clock", "ROSClock"}
 """A clock other than the node's own clock does not follow /clock."""
 _TIMELESS = {"threading.Lock", "threading.RLock", "threading.local", "threading.current_thread", "threading.get_ident"}
-"""Names that multi-threaded nodes need. None of these names waits for time to pass."""
+"""Names that multi-threaded nodes need. None of them waits for time to pass."""
 MOST_NODES = 30
 """The size of the largest expression that is shown in full (AST nodes)."""
 

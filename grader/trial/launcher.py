@@ -40,8 +40,9 @@ _AHEAD = (
     "type_description_interfaces.msg",
 )
 POSTPONED = ("numpy", "yaml")
-"""Modules that rclpy and the messages import, and that most nodes never use. They are half of the CPU time of importing
-rclpy."""
+"""Modules that rclpy and the messages import, and that most nodes never use. They take half of the CPU time that
+importing rclpy needs.
+"""
 _SIMULATED = "use_sim_time:=true"
 _TYPES_AHEAD = (("geometry_msgs.msg", "Twist"), ("rosgraph_msgs.msg", "Clock"), ("turtlesim.msg", "Pose"))
 

@@ -187,8 +187,9 @@ class Recorder(Node):
     def _endpoints(self, kind: Literal["publisher", "subscription"], topic: str, beside: object) -> set[Endpoint]:
         """Return the endpoints of other nodes on a topic.
 
-        `beside` is everything else in the graph that shows whether the endpoints may have changed. A query takes fifty
-        times as long as counting, so endpoints of the same number beside the same nodes are not queried again.
+        A query takes fifty times as long as counting. So the endpoints are queried again only if their number or
+        `beside` has changed. `beside` is everything else in the graph that shows whether the endpoints may have
+        changed.
         """
         publishes = kind == "publisher"
         amount = self.count_publishers(topic) if publishes else self.count_subscribers(topic)

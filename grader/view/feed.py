@@ -157,7 +157,7 @@ class Feed:
 
 
 def _reported(turtle: Turtle) -> tuple[object, ...]:
-    """Return x, y (m), theta (rad), linear (m/s), angular (rad/s), and the pen's red, green, blue, width and down."""
+    """Return x, y (m), theta (rad), linear (m/s) and angular (rad/s), and the colour, width and state of the pen."""
     state, pen = turtle.state(), turtle.pen
     return (state.x, state.y, state.theta, state.linear, state.angular, *pen.color, pen.width, pen.down)
 

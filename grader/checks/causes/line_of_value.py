@@ -27,8 +27,8 @@ OTHER_FIELD = {
 def line_of_value(evidence: Evidence, field: str, value: float) -> Where | None:
     """Return the line on which this value was written, if a field such as "linear.x" gets it from there, else None.
 
-    A line that assigns the number itself to the field is not searched for: only a constant with a name, or an argument
-    of a function that sets the field. Several such lines give None.
+    The value must reach the field through a named constant, or through an argument of a function that sets the field.
+    If the field is assigned the number itself, or if there are several such lines, return None.
     """
     assigned = list(_assigned(evidence, field))
     other = OTHER_FIELD[field.partition(".")[0]]
@@ -58,7 +58,7 @@ def _places(evidence: Evidence, module: Module, given: ast.expr, value: float) -
 
 
 def _arguments(evidence: Evidence, module: Module, given: ast.expr) -> Iterator[tuple[Module, ast.expr]]:
-    """Yield what the calls of the function around the expression pass for it, if it is a parameter of the function."""
+    """If the expression is a parameter of the function around it, yield the arguments that calls pass for it."""
     around = [
         node for node in module.nodes if isinstance(node, Function) and any(each is given for each in ast.walk(node))
     ]

@@ -36,7 +36,7 @@ STARTS = frozenset({"Thread", "Timer", "start_new_thread", "submit", "to_thread"
 STRAIGHT = frozenset({"__init__", "main"})
 """Functions that run before rclpy.spin, even if their names are mentioned without a call."""
 OTHER_CALLS = frozenset({"subprocess", "self", "super", "cls"})
-"""Objects whose method `call` is not the one of a service client."""
+"""Objects whose method `call` does not belong to a service client."""
 
 
 @dataclass(frozen=True)
@@ -224,7 +224,7 @@ def _in_callbacks(modules: Iterable[Module]) -> Iterator[tuple[Module, Function]
 
 
 def _in_threads(module: Module) -> Iterator[ast.expr]:
-    """Yield the functions that run in a thread of their own, where a wait holds nothing up."""
+    """Yield the functions that run in a separate thread, in which a wait does not delay any callback."""
     for node in module.nodes:
         if isinstance(node, ast.Call) and _last(node) in STARTS:
             yield from (*node.args, *(keyword.value for keyword in node.keywords))

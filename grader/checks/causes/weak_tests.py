@@ -59,7 +59,7 @@ def always_true(code: TestCode) -> Cause | None:
 def always_false(code: TestCode) -> Cause | None:
     """Return the cause if a test fails whatever the node does.
 
-    A test that may return or skip itself before it fails is not meant.
+    A test that may return, or skip itself, before it fails does not count.
     """
     for test in code.tests:
         for node in test.node.body:
@@ -109,7 +109,7 @@ def in_a_loop(code: TestCode) -> Cause | None:
 
 
 def _may_be_empty(listed: ast.expr, module: Module) -> bool:
-    """Return whether a loop over this expression may have no iteration. Nothing is said about the result of a call."""
+    """Return whether a loop over this expression may run zero times. The result of a call counts as not empty."""
     if isinstance(listed, ast.Call | ast.List | ast.Tuple):
         return False
     value = module.names.get(dotted(listed) or "")

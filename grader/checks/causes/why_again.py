@@ -47,7 +47,7 @@ def _calls(method: ast.FunctionDef) -> bool:
 
 
 def _set(method: ast.FunctionDef, *, empty: bool) -> Iterator[tuple[str, int]]:
-    """Yield the attributes of self that the method sets to None or False, or else to another value, with the lines."""
+    """Yield each attribute of self that the method sets, with its line: to nothing (`empty`) or to another value."""
     for node in ast.walk(method):
         if isinstance(node, ast.Assign):
             nothing = isinstance(node.value, ast.Constant) and node.value.value in NOTHING

@@ -99,7 +99,7 @@ def _why_usage(scene: CrashScene) -> Cause | None:
 
 
 def _why_resized(scene: CrashScene) -> Cause | None:
-    """Return the cause if a dictionary, a set or a deque changed while a loop went through it, else None."""
+    """Return the cause if the size of a dictionary, set or deque changed during a loop over it, else None."""
     if "during iteration" not in scene.crash.message:
         return None
     text = "An item was added or removed while a loop went through the collection. Loop over a copy: list() makes one."

@@ -77,7 +77,7 @@ RADIUS_OF_C: tuple[Diagnosis, str] = (
     "radius-without-centre",
     "The third unknown is c = r² - a² - b², not r²: the squares of the centre are missing.",
 )
-"""Mistakes that lead to a wrong radius, or NaN, although the centre is right."""
+"""The diagnosis and text for a radius that is wrong or NaN although the centre is right."""
 _FIRST_TRY = (
     "The equations are wrong, or the circle is computed incorrectly from their solution. Test the function "
     "with four "

@@ -1,4 +1,4 @@
-"""Explain a TypeError of a computation with None, such as `None + 1.0`."""
+"""Explain a TypeError that a computation with None raised, such as `None + 1.0`."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ WITH_NONE = re.compile(
     r"unsupported operand type\(s\) for .*'NoneType'|bad operand type for unary .*'NoneType'|"
     r"not supported between instances of .*'NoneType'"
 )
-"""What Python says if a side of an operator is None."""
+"""Python's error messages if one side of an operator is None."""
 
 
 def why_none(scene: CrashScene) -> Cause | None:
-    """Return the cause if a side of an operator is None, else None."""
+    """Return the cause if one side of an operator is None, else None."""
     if not WITH_NONE.search(scene.crash.message):
         return None
     names = dict.fromkeys(name for node in scene.on_line for name in map(dotted, _sides(node)) if name)

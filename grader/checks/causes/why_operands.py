@@ -17,7 +17,7 @@ NUMBERS = frozenset({"int", "float", "float64"})
 
 
 def why_operands(scene: CrashScene) -> Cause | None:
-    """Return the cause of a TypeError of an operator, or None for another TypeError."""
+    """Return the cause of a TypeError that an operator raised, or None for any other TypeError."""
     found = OPERANDS.search(scene.crash.message) or CONCATENATED.search(scene.crash.message)
     if found is None:
         return None

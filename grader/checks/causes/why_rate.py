@@ -165,9 +165,9 @@ def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: fl
 
 
 def _most(body: list[ast.stmt], call: str) -> int:
-    """Return how often statements call `call` at most, if each loop has one iteration. An if runs one of its branches.
+    """Return the maximum number of times that the statements call `call`, if each loop has one iteration.
 
-    What follows an if that may leave the function is not counted together with that branch.
+    Only one branch of an if runs. After an if that contains return, continue or break, nothing more is counted.
     """
     amount = 0
     for statement in body:

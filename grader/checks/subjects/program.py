@@ -147,7 +147,7 @@ def _has_a_billion(evidence: Evidence) -> bool:
 
 
 def _rounded_down(evidence: Evidence, value: float, bag: BagInput) -> Cause | None:
-    """Return the cause if // rounded the rate or the times in it down to whole numbers, else None."""
+    """Return the cause if // rounded the rate, or the time in its formula, down to a whole number, else None."""
     intervals, rate = bag.arc.count - 1, bag.rate_hz
     seconds = intervals / rate
     whole = {math.floor(rate), *(intervals / each for each in (math.floor(seconds), math.ceil(seconds)) if each)}
