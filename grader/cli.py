@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Optional
 
@@ -14,6 +13,7 @@ from grader.authoring import cli as authoring
 from grader.book import cli as book
 from grader.classroom import cli as classroom
 from grader.common.interpreter import clean_own
+from grader.common.log_commands import protect_output
 from grader.common.needed_command import needed_command
 from grader.common.system_errors import refusal
 from grader.errors import GraderError
@@ -51,14 +51,6 @@ learner.add_to(app)
 open_course.add_to(app)
 
 
-class Clock(str, Enum):
-    """The choices for `--clock`: the clock of the trials."""
-
-    auto = "auto"
-    simulated = "simulated"
-    wall = "wall"
-
-
 Json = Annotated[Optional[Path], typer.Option("--json", help="Write the report as JSON.", metavar="FILE")]  # noqa: UP045
 Image = Annotated[Optional[Path], typer.Option(help="Draw the turtle's trajectory as a PNG.", metavar="FILE.png")]  # noqa: UP045
 Html = Annotated[
@@ -88,7 +80,9 @@ def check(
         ),
     ] = None,
     exercise: ExerciseId = None,
-    clock: Annotated[Clock, typer.Option(help="auto: simulated time, or wall time in doubtful cases.")] = Clock.auto,
+    clock: Annotated[
+        classroom.Clock, typer.Option(help="auto: simulated time, or wall time in doubtful cases.")
+    ] = classroom.Clock.auto,
     json: Json = None,
     image: Image = None,
     html: Html = None,
@@ -198,6 +192,7 @@ book.add_to(app)
 def main() -> None:
     """Run the command. An error is printed as a sentence. Decision 9 in docs/design.md lists the exit codes."""
     clean_own()
+    protect_output()
     words = sys.argv[1:]
     if "_GRADER_COMPLETE" in os.environ:  # the shell requests completions (grader.ros.shell)
         from typer.completion import completion_init  # type: ignore[attr-defined]

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
+from grader.tests.fuzz.runs import Tally, table
 from grader.tests.fuzz.targets import TARGETS
 from grader.tests.no_ros import without_ros
 
@@ -52,3 +53,16 @@ def test_whatever_is_handed_in_has_an_outcome(name: str) -> None:
     for seed in seeds:
         target.run(seed)
     run()
+
+
+def test_the_runs_of_a_target_add_up(tmp_path: Path) -> None:
+    (tmp_path / "install-tree/runs").mkdir(parents=True)
+    for day, executions in (("24", 1000), ("25", 234)):
+        run = f'{{"wall_s": 90.0, "cpu_s": 30.0, "executions": {executions}}}'
+        (tmp_path / f"install-tree/runs/2026-11-{day}T07-00-00.json").write_text(run)
+    for _ in range(3):
+        Tally(tmp_path / "names").count()
+    lines = table(tmp_path, ["install tree", "names", "reports"]).splitlines()[2:]
+    assert lines[0] == "| `install tree` | 2 | 3.0 | 1.0 | 1,234 |"
+    assert lines[1].startswith("| `names` | 1 | 0.0 |")
+    assert lines[2] == "| `reports` | 0 | 0.0 | 0.0 | 0 |"

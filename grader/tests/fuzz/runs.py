@@ -1,0 +1,55 @@
+"""What was fuzzed so far: one file for each run in build/fuzz/TARGET/runs/, and their sums as a table.
+
+The corpus of a target is kept, too, so that a run continues where the earlier runs have ended.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+EVERY_S = 10.0
+"""How often a run is written (s), so that a run that is killed counts, too."""
+
+
+class Tally:
+    """Counts the inputs of this run and the CPU time (s), and writes both to a file."""
+
+    def __init__(self, target: Path) -> None:
+        (target / "runs").mkdir(parents=True, exist_ok=True)
+        self._begun = time.monotonic()
+        self._file = target / "runs" / f"{time.strftime('%Y-%m-%dT%H-%M-%S')}.json"
+        self._written, self._executions = -EVERY_S, 0
+
+    def count(self) -> None:
+        """Count one input."""
+        self._executions += 1
+        now = time.monotonic()
+        if now >= self._written + EVERY_S:
+            self._written = now
+            wall_s = round(now - self._begun, 1)
+            run = {"wall_s": wall_s, "cpu_s": round(time.process_time(), 1), "executions": self._executions}
+            self._file.write_text(json.dumps(run))
+
+
+def table(folder: Path, targets: Iterable[str]) -> str:
+    """Return the minutes of wall and CPU time and the executions of all runs of each target, as Markdown."""
+    lines = ["| target | runs | minutes | minutes of CPU time | executions |", "| --- | --- | --- | --- | --- |"]
+    for target in targets:
+        files = sorted((folder / kept_as(target) / "runs").glob("*.json"))
+        runs = [json.loads(file.read_bytes()) for file in files]
+        wall, cpu = (sum(run[what] for run in runs) / 60.0 for what in ("wall_s", "cpu_s"))
+        lines.append(
+            f"| `{target}` | {len(runs)} | {wall:.1f} | {cpu:.1f} | {sum(run['executions'] for run in runs):,} |"
+        )
+    return "\n".join(lines)
+
+
+def kept_as(target: str) -> str:
+    """Return the name of the folder of a target."""
+    return target.replace(" ", "-")
