@@ -147,7 +147,19 @@ def without_modules(submission: Submission, ros: Ros) -> Usual | None:
     folder = submission.package_dir.with_name(predicted.package)
     empty = replace(submission, package_dir=folder, files=files, digest=digest(files))
     predicted_of_empty = predict(empty, ros, ())
-    return None if predicted_of_empty is None else Usual(empty, predicted_of_empty)
+    if predicted_of_empty is None or not _differ_only_in(modules, submission, predicted, predicted_of_empty):
+        return None
+    return Usual(empty, predicted_of_empty)
+
+
+def _differ_only_in(modules: set[str], submission: Submission, predicted: Predicted, of_empty: Predicted) -> bool:
+    """Return whether the two install trees are equal except for the modules.
+
+    They are not if a data file has the path of a module, or if a module is also installed as a data file.
+    """
+    texts = {f"{SITE}/{path}": submission.files[path] for path in modules}
+    expected = {path: (texts.get(path, content), mode) for path, (content, mode) in of_empty.files.items()}
+    return expected == predicted.files
 
 
 def _compiles(path: str, data: bytes) -> bool:

@@ -27,6 +27,8 @@ NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 _VERSION = re.compile(r"(0|[1-9]\d*)(\.(0|[1-9]\d*))*")
 _POINT = re.compile(r"(?P<name>[A-Za-z0-9]\w*)\s*=\s*(?P<target>[A-Za-z_][\w.]*:[A-Za-z_]\w*)")
 _IMPORTED = frozenset({"setuptools", "os"})
+_CALLED = frozenset({"setup", "setuptools.setup", "find_packages", "setuptools.find_packages", "os.path.join"})
+"""Any other call can read the modules of the package, or do something else for some modules only."""
 _ONLY_METADATA = frozenset(
     {
         *("author", "author_email", "maintainer", "maintainer_email", "url", "description", "long_description"),
@@ -75,21 +77,25 @@ def read_plain_setup(setup_py: bytes, setup_cfg: bytes, paths: Collection[str]) 
 
 
 def _only_call(module: Module) -> ast.Call | None:
-    """Return the call of setup(), or None if the module has statements other than imports and assignments to names."""
+    """Return the call of setup(), or None if the module has other calls, or other statements than assignments."""
     calls: list[ast.Call] = []
     for statement in module.body:
         if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):
             calls.append(statement.value)
         elif isinstance(statement, ast.Import | ast.ImportFrom):
             names = [statement.module] if isinstance(statement, ast.ImportFrom) else [a.name for a in statement.names]
-            if not _IMPORTED.issuperset(name.partition(".")[0] if name else "" for name in names):
+            renamed = any(alias.asname for alias in statement.names)
+            if renamed or not _IMPORTED.issuperset(name.partition(".")[0] if name else "" for name in names):
                 return None
         elif isinstance(statement, ast.Assign):
             if not all(isinstance(target, ast.Name) and target.id != "setup" for target in statement.targets):
                 return None
         elif not (isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)):
             return None
-    return calls[0] if len(calls) == 1 and dotted(calls[0].func) in ("setup", "setuptools.setup") else None
+    called = [dotted(node.func) for node in module.nodes if isinstance(node, ast.Call)]
+    if len(calls) != 1 or dotted(calls[0].func) not in ("setup", "setuptools.setup") or not _CALLED.issuperset(called):
+        return None
+    return calls[0]
 
 
 def _is_plain(setup_cfg: bytes, name: str) -> bool:

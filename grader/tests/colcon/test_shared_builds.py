@@ -12,7 +12,7 @@ import pytest
 from grader.colcon import runner
 from grader.colcon.build import Build
 from grader.colcon.comparison import installs
-from grader.colcon.predicted import predict
+from grader.colcon.predicted import SITE, predict
 from grader.colcon.shared_builds import SharedBuilds
 from grader.ros.installation import find_ros
 from grader.sandbox import bubblewrap
@@ -156,6 +156,37 @@ def test_another_permission_needs_another_build(builds: SharedBuilds, solution: 
     runs = builds.runs
     build(builds, replace(solution, executable=frozenset({"package.xml"})))
     assert builds.runs == runs + 1
+
+
+MANIFEST = '("share/" + package_name, ["package.xml"])'
+"""A line of the solution's setup.py, to which lines can be added."""
+
+
+def with_data_file(submission: Submission, pair: str) -> bytes:
+    """Return setup.py of the submission with one more pair in data_files."""
+    text = submission.files["setup.py"].decode()
+    assert MANIFEST in text
+    return text.replace(MANIFEST, f"{MANIFEST}, {pair}").encode()
+
+
+@pytest.mark.parametrize(
+    ("folder", "file"),
+    [
+        ("lib/my_robot_controller", NODE),
+        (f"{SITE}/my_robot_controller", "config/draw_circle.py"),
+        (f"{SITE}/my_robot_controller", NODE),
+    ],
+    ids=["a module that is a data file", "a data file in place of a module", "a module in its own place"],
+)
+def test_what_colcon_installs_does_not_depend_on_other_submissions(
+    solution: Submission, folder: str, file: str
+) -> None:
+    setup_py = with_data_file(solution, f'("{folder}", ["{file}"])')
+    package = with_files(solution, {"setup.py": setup_py, "config/draw_circle.py": b"print('data')\n"})
+    shared = SharedBuilds()
+    build(shared, with_node(package, "def main(): ...\n"))
+    own = runner.build(package, find_ros(), in_cell=bubblewrap.usable(), tell=lambda _: None)
+    assert members(build(shared, package).tree) == members(own.tree)
 
 
 @pytest.mark.parametrize(
