@@ -52,7 +52,7 @@ _OBSERVE = """(line) => {
     return null;
 }"""
 """Wait without polling, which would keep the browser busy while the grader works. The result is the time at which the
-browser drew the verdict, because the way from the browser to this process also takes time."""
+browser drew the verdict, because a message from the browser to this process takes some time too."""
 
 
 def main() -> None:

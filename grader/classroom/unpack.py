@@ -84,7 +84,7 @@ def read_archive(archive: Path) -> tuple[Member, ...]:
         except NotUnpackedError:
             raise
         except MemoryError as error:
-            message = "needs more memory to unpack than a submission may take"
+            message = "needs more memory to unpack than a submission may use"
             raise NotUnpackedError(message) from error
         except (zipfile.BadZipFile, tarfile.TarError, zlib.error, EOFError, gzip.BadGzipFile) as error:
             message = f"is not a .zip or .tar.gz, or is damaged ({_shown(str(error))[:200]})"

@@ -89,7 +89,7 @@ def key_of(package: Submission, ros: Ros) -> str:
 
 @cache
 def _tools() -> tuple[str, ...]:
-    """Return what identifies Python, colcon and setuptools, and the grader's own part of a build."""
+    """Return strings that change with Python, with its installed packages, and with the grader's code for builds."""
     colcon = find_spec("colcon_core")
     installed = Path(colcon.origin).parents[1] if colcon is not None and colcon.origin is not None else Path(sys.prefix)
     own = hashlib.sha256(b"".join(Path(file).read_bytes() for file in (runner.__file__, runner.IN_CELL)))

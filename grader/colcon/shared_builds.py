@@ -4,8 +4,8 @@ In a class, submissions share builds in this way. For a learner, the next `grade
 
 If setup.py and setup.cfg have the usual form, colcon copies the modules and does not read them. So the grader builds
 the package once with empty modules, and then writes the modules of each submission into a copy of the install tree. The
-build with empty modules contains nothing that a student could have hidden in a module. Any other package gets a build
-of its own.
+build with empty modules contains nothing that a student could have hidden in a module. Any other package gets a
+separate build.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ MOST_BUILDS = 50
 MOST_TREE = 1024 * 1024
 """The maximum size of an install tree that is kept (bytes)."""
 _USUAL_FOLDER = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
-"""The names of folders in which colcon finds a package, as it does in a folder with the name of the package."""
+"""Matches the names of folders in which colcon finds a package. Other names could change the result of a build."""
 
 
 class SharedBuilds:
@@ -93,7 +93,7 @@ class SharedBuilds:
     ) -> tuple[runner.Built | None, bool]:
         """Return the build with empty modules, and whether it is an earlier one.
 
-        The build is None if colcon installs other files than predicted, so that nothing can be shared.
+        The build is None if colcon does not install the predicted files, so that nothing can be shared.
         """
         key = (usual.empty.digest, usual.empty.executable, ros, in_cell)
         with self._lock:

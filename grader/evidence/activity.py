@@ -58,9 +58,8 @@ def spun(recording: Recording) -> bool:
 def commands(recording: Recording) -> tuple[Command, ...]:
     """Return the commands that arrived before SIGINT, in the order of arrival.
 
-    If all commands arrived at the very start, return an empty tuple. Commands that are published before discovery is
-    over are usually lost. It depends on the machine whether a command that was published before the end of discovery
-    arrives, but a report must not depend on the machine.
+    If all commands arrived at the very start, return an empty tuple. A command that is published before the end of
+    discovery is usually lost. Whether it arrives depends on the machine, but a report must not depend on the machine.
     """
     until = end_s(recording)
     found = tuple(command for command in recording.commands if command.t_s < until)

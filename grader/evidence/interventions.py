@@ -1,8 +1,8 @@
 """Find out from the movement itself whether something other than velocity commands moved the turtle.
 
-turtlesim moves a turtle in each frame by its velocities alone, up to the walls. A frame in which the turtle moved
-differently, or turned while it followed a goal or without a command with this turning speed, shows a teleport, a reset
-or a rotate_absolute goal.
+turtlesim moves a turtle in each frame by its velocities alone, up to the walls. A frame shows a teleport, a reset or a
+rotate_absolute goal if the turtle moved in any other way, if it turned while it followed a goal, or if no command had
+set its turning speed.
 """
 
 from __future__ import annotations
@@ -32,15 +32,15 @@ ROTATE = "/turtle1/rotate_absolute"
 SAME = 1e-5
 """The largest difference (m, rad, rad/s) that counts as zero."""
 KEPT_S = 1.1
-"""turtlesim stops a turtle when no command arrives for 1 s."""
+"""The maximum time for which a command has an effect (s). turtlesim stops a turtle 1 s after the last command."""
 
 
 def moved_by(recording: Recording, *, from_start: bool, others_removed: bool = False) -> str | None:
     """Return the call that moved the turtle, or None.
 
     With `from_start`, all calls since the start of the trial count. Without `from_start`, only events after the first
-    command count. With `others_removed`, the node may remove other turtles and set parameters. It must still not remove
-    turtle1 and spawn it at another place.
+    command count. With `others_removed`, the node may remove other turtles and set parameters. The node must still not
+    remove turtle1 and spawn it at another place.
     """
     always = next((name for name in recording.interventions if name in ALWAYS and not others_removed), None)
     if always is not None:
@@ -105,7 +105,7 @@ def _path(recording: Recording, first: int) -> _Path:
 
 
 def _driven(path: _Path, speed: Floats) -> Steps:
-    """Return an array that says in which frames the turtle moved forward at this speed (m/s), as far as the walls."""
+    """Return an array that says in which frames the turtle moved forward at this speed (m/s), or up to a wall."""
     cos, sin = np.cos(path.theta[1:]), np.sin(path.theta[1:])
     x = np.clip(path.x[:-1] + cos * speed * FRAME_S, 0.0, SIDE_M)
     y = np.clip(path.y[:-1] + sin * speed * FRAME_S, 0.0, SIDE_M)

@@ -24,7 +24,7 @@ _TWIST: Mapping[str, Any] = {"topic": "/turtle1/cmd_vel", "type": "geometry_msgs
 
 PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     "package": {
-        "files": {"kind": "plain_files", "title": "The package is plain files and folders"},
+        "files": {"kind": "plain_files", "title": "The package contains only normal files"},
         "package-xml": {"kind": "package_xml", "title": "package.xml is valid"},
         "dependencies": {
             "kind": "dependencies",
@@ -32,7 +32,7 @@ PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
             "title": "package.xml declares what the nodes use",
             "needs": ["package-xml"],
         },
-        "package-name": {"kind": "package_name", "title": "The package is named the same everywhere"},
+        "package-name": {"kind": "package_name", "title": "The package name is the same everywhere"},
         "build": {"kind": "builds", "title": "colcon builds and installs the package"},
         "installed": {"kind": "installs", "title": "ROS 2 finds the installed package", "needs": ["build"]},
     },

@@ -1,7 +1,7 @@
 """`nbgrader export`: export only confirmed scores, and report unconfirmed scores.
 
-nbgrader's own export writes names without quotes. A student with the name "anna,,,,100,0,100,100" would get, or give to
-somebody else, any score.
+nbgrader's own export writes names without quotes. With a name such as "anna,,,,100,0,100,100", a student could change
+any score in the table.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]
 
 
 def _rows(gradebook: Any, steps: Collection[str], students: Collection[str]) -> Iterator[list[str]]:  # noqa: ANN401
-    """Yield a line for each assignment and student. An empty `steps` or `students` stands for all of them."""
+    """Yield a line for each assignment and student. If `steps` or `students` is empty, all of them are included."""
     for assignment in gradebook.assignments:
         submissions = {each.student.id: each for each in assignment.submissions}
         for student in gradebook.students:

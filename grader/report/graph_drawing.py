@@ -103,7 +103,7 @@ def _draw(topics: Sequence[Topic], types: dict[str, list[str]], left: list[str],
 
 
 def _draw_narrow(topics: Sequence[Topic], types: dict[str, list[str]], nodes: list[str], name: str) -> str:
-    """Draw nodes on the left and topics on the right. The direction of an arrow is that of the messages."""
+    """Draw nodes on the left and topics on the right. Arrows point in the direction of the messages."""
     height = max(len(nodes), len(topics), 1) * ROW + 34
     topic_x = NARROW - NARROW_MIDDLE - 2
     node_x = 2 + NARROW_SIDE

@@ -5,10 +5,10 @@ bubblewrap creates two kinds of containers:
 - a **room** contains the grader's own processes for one trial (the simulator). These processes run as an ordinary user,
   with separate pid and network namespaces, and only the loopback interface. The simulator reads the messages of a
   student's node with libraries that may have security holes;
-- a **cell** contains a student's process. A cell has its own user, pid, ipc, uts, cgroup and mount namespaces, no
-  network except the network of the room, no files from the disk except the files in `View`, a system call filter
-  (system_calls.py), and limits on memory, processes, files, CPU and disk. usage.py watches totals that the kernel does
-  not limit.
+- a **cell** contains a student's process. A cell has its own user, pid, ipc, uts, cgroup and mount namespaces. It has
+  no network except the network of the room, and no files from the disk except the files in `View`. It has a system call
+  filter (system_calls.py), and limits on memory, processes, files, CPU and disk. usage.py watches totals that the
+  kernel does not limit.
 
 The functions of this module only return command lines. The caller starts and stops the process. Input and output use
 pipes.

@@ -125,7 +125,7 @@ def ascii_only(lines: str) -> str:
 
 
 def numpy_is_missing() -> bool:
-    """Return whether .venv of a sourced ROS 2 needs a numpy of its own.
+    """Return whether .venv needs its own numpy although a ROS 2 is sourced.
 
     The system may have no numpy, or one that is too old to draw the images. A numpy inside the prefix of the sourced
     ROS 2 does not count: the grader's own processes do not search PYTHONPATH.

@@ -139,8 +139,8 @@ class _Queue:
 
         If the tests rejected the correct node, they earn no points for rejecting broken nodes. After the tests have
         rejected the correct node, all remaining runs use the correct node. If the tests may hang on the correct node,
-        they run on it now, in addition to the other runs: otherwise, tests could bring about that one of the other runs
-        on the correct node comes early.
+        the next run is an additional run on the correct node. Otherwise, tests could choose when one of the other runs
+        on the correct node takes place.
         """
         with self._lock:
             rights = [each for each in self.ended if not each.node]

@@ -23,7 +23,7 @@ MOST_QUESTIONS = 100_000
 """The maximum number of requests that are answered in one run. A normal test makes only a few hundred requests."""
 MOST_REPORT = 64 * 1024
 LATEST = 4.0
-"""However busy the machine is, a run takes at most this many times its time limit in wall time."""
+"""The maximum wall time of a run, as a multiple of its time limit. This limit also applies on a busy machine."""
 END_S = 30.0
 """The time for making a cell, and for ending it (s)."""
 LOOK_S = 0.1
@@ -71,7 +71,7 @@ class Conversation:
 
     @property
     def has_begun(self) -> bool:
-        """Whether the run has had its cell."""
+        """Whether the tests have started in their cell."""
         return self._process is not None
 
     def passed(self) -> None:

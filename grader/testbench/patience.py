@@ -1,8 +1,8 @@
 """The time that one run of the tests may take. A busy machine does not make a run exceed this time.
 
-The time that counts is wall time without the time that the threads of the run have waited for a processor, and without
-the time that the thread which answers a request has waited for one. A run that can never go on is recognized earlier:
-each of its threads waits, without a time limit, for another thread of the same process.
+Wall time counts, except for the time for which the threads of the run, or the thread that answers their requests, have
+waited for a processor. A run that can never continue is recognized earlier: each of its threads waits, without a time
+limit, for another thread of the same process.
 """
 
 from __future__ import annotations
@@ -41,32 +41,33 @@ class Patience:
         self._callers_last_ns, self._callers_waits_ns = self._callers_waited_ns(), 0
         self._seen: Look | None = None
         self.stuck = False
-        """Whether the run can never go on."""
+        """Whether the run can never continue."""
 
     def close(self) -> None:
         """Close the file that this object keeps open."""
         os.close(self._caller)
 
     def test_ended(self) -> None:
-        """Note that a test has ended, and that the next one begins."""
+        """Record that a test has ended, and that the next one begins."""
         self._test_begun = time.monotonic()
         self._waited_before_s = self._waited_s()
 
     def answered(self) -> None:
-        """Note that requests have been answered. Call this method after each wait for requests that were there."""
+        """Record that requests have been answered. Call this method each time after answering them."""
         self._moved, self._seen = time.monotonic(), None
         now_ns = self._callers_waited_ns()
         self._callers_waits_ns += now_ns - self._callers_last_ns
         self._callers_last_ns = now_ns
 
     def is_over(self) -> bool:
-        """Return whether the run has exceeded its time, or can never go on."""
+        """Return whether the run has exceeded its time, or can never continue."""
         now = time.monotonic()
         self._callers_last_ns = self._callers_waited_ns()
         if now - self._moved >= LOOK_S:
             self._moved = now
             self.stuck = self._is_stuck()
-        # Waiting for a processor only makes these times shorter, so most runs need no look into /proc.
+        # Subtracting the time spent waiting for a processor makes these times shorter, so /proc is read only if one is
+        # too long.
         is_late = now - self._begun >= self._run_s or now - self._test_begun >= self._test_s
         if self.stuck or not is_late:
             return self.stuck
@@ -99,7 +100,7 @@ class Patience:
                 self._waits_ns[int(task.name)] = int((task / "schedstat").read_bytes().split()[1])
 
     def _waited_s(self) -> float:
-        """Return for how long the run and its requests have waited for a processor, as far as is known (s)."""
+        """Return for how long the run and its requests are known to have waited for a processor (s)."""
         return (sum(self._waits_ns.values()) + self._callers_waits_ns) / 1e9
 
     def _callers_waited_ns(self) -> int:

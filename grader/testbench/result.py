@@ -77,7 +77,7 @@ class Ended:
     seconds: float = 0.0
     report: bytes = b""
     stuck: bool = False
-    """Whether the run could never have gone on: see patience.py."""
+    """Whether the run could never have continued: see patience.py."""
 
 
 def run_of(ended: Ended) -> NodeRun:

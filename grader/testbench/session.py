@@ -49,7 +49,7 @@ READY = b"ready\n"
 fault."""
 STARTED = b"s"
 INFO, FILTER = 100, 101
-"""The descriptors in the command line of a cell: for what bubblewrap says about the cell, and for the call filter."""
+"""The descriptors in the command line of a cell: for bubblewrap's data about the cell, and for the call filter."""
 ASKS, ANSWERS = 3, 4
 """The descriptors of a run: its requests to the grader, and the grader's answers."""
 _TEST_ENDED = struct.pack("<cHqdd", b"d", 0, 0, 0.0, 0.0)
@@ -188,7 +188,7 @@ def _new_cell(order: dict[str, Any]) -> subprocess.Popen[bytes]:
 
 
 def _confine(order: dict[str, Any]) -> None:
-    """Give up everything that a process in a cell does not have: capabilities, system calls and unlimited resources."""
+    """Restrict this process like any process in a cell: no capabilities, limited resources and a system call filter."""
     Path("/proc/self/oom_score_adj").write_text("1000", "ascii")
     for kind, value in order["limits"]:
         resource.setrlimit(kind, (value, value))
@@ -197,7 +197,7 @@ def _confine(order: dict[str, Any]) -> None:
     _C.prctl(_AMBIENT, 4, 0, 0, 0)
     header = struct.pack("<Ii", _CAPABILITIES_VERSION_3, 0)
     if _C.capset(header, bytes(24)) != 0 or _C.prctl(_NO_NEW_PRIVILEGES, 1, 0, 0, 0) != 0:
-        raise OSError(ctypes.get_errno(), "the capabilities could not be given up")
+        raise OSError(ctypes.get_errno(), "the capabilities could not be dropped")
     if order["filter"] is not None:
         lines = base64.b64decode(order["filter"])
         buffer = ctypes.create_string_buffer(lines, len(lines))

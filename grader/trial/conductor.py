@@ -54,9 +54,10 @@ MESSAGES_HZ = 1000
 """If nodes other than the simulator send more messages than this (Hz), the node caused all stalls."""
 STARTED = 0.4
 STARTED_LEAST = 1.2
-"""The node caused all stalls if the processes that it started could use the machine alone: together, they were ready
-to run for at least the fraction STARTED of the time of all processors, and for at least STARTED_LEAST times the
-length of the trial. A single process cannot reach these limits."""
+"""The node caused all stalls if the processes that it started could use the whole machine. This is the case if,
+together, they were ready to run for at least the fraction STARTED of the time of all processors, and for at least
+STARTED_LEAST times the length of the trial. A single process cannot reach these limits.
+"""
 SIMULATORS = ("/pose", "/color_sensor")
 """The endings of the topics on which the simulator publishes, for each turtle and in each frame."""
 

@@ -1,7 +1,8 @@
 """Choose random places for targets, which are turtles that a node must catch, nearest first.
 
-Places are chosen again until the order of the targets is unambiguous: the rule of always going to the nearest target
-gives a single order, and any other rule (by name, by the distance from the start) gives a different order.
+Places are chosen again until the order of the targets is unambiguous. A turtle that always goes to the nearest target
+must reach them in a single order, and any other rule (by name, by the distance from the start) must give a different
+order.
 """
 
 from __future__ import annotations

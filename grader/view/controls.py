@@ -92,7 +92,7 @@ class Hands:
                 self._ears.leave()
 
     def pressed(self, turtle: str, key: str) -> None:
-        """Turn to the heading that the key stands for (its direction from F on the keyboard), or stop turning."""
+        """Turn to the heading of the key (the direction from F to the key on the keyboard), or stop turning."""
         typed, _ = keys(key[:1])
         if typed:
             self.turn(turtle, typed[0])

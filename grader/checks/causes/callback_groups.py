@@ -50,7 +50,7 @@ def _waits_in_its_group(node: ast.ClassDef, wait: Wait) -> bool:
 
 
 def _clients(node: ast.ClassDef) -> set[str]:
-    """Return the attributes, such as self.pen, that hold a client without a callback group of its own."""
+    """Return the attributes, such as self.pen, that hold a client without its own callback group."""
     return {
         dotted(target) or ""
         for each in ast.walk(node)

@@ -213,8 +213,8 @@ FITS = Kind(
 REFUSES = Kind(
     "raises_value_error",
     "trial",
-    "The function refuses points without a circle",
+    "The function refuses points that determine no circle",
     OneCall,
     refuses,
-    about="A function that is called with a `[[trial.points]]` raises ValueError.",
+    about="The function raises ValueError when it is called with the points of a `[[trial.points]]`.",
 )

@@ -246,5 +246,5 @@ LOG_COUNTER = Kind(
     "The counter increases by one",
     Counter,
     log_counter,
-    about="A number in the lines starts at the given value and increases by one with each line.",
+    about="The counter in the log lines starts at the given value and increases by one with each line.",
 )

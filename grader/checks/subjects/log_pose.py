@@ -239,7 +239,7 @@ LOG_POSITION = Kind(
     "The log shows where the turtle is",
     LogPosition,
     log_position,
-    about="Every line in the format shows where the turtle was when it was logged.",
+    about="Each log line in the format shows where the turtle was when the line was logged.",
 )
 LOG_DISTANCE = Kind(
     "log_distance",
@@ -247,5 +247,5 @@ LOG_DISTANCE = Kind(
     "The log shows how far the turtle has driven",
     LogDistance,
     log_distance,
-    about="Every line in the format shows how far the turtle had driven when it was logged.",
+    about="Each log line in the format shows how far the turtle had driven when the line was logged.",
 )

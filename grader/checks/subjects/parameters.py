@@ -24,7 +24,7 @@ CLOSE = 1e-6
 SET = ("/set_parameters", "/set_parameters_atomically")
 """The services of a node that set parameters one after the other, or all together."""
 INTEGER, DOUBLE = 2, 3
-"""The numbers that stand for an integer and for a double in rcl_interfaces/msg/ParameterType."""
+"""The numbers of the types integer and double in rcl_interfaces/msg/ParameterType."""
 
 
 UNDECLARED = "undeclared parameter"

@@ -219,7 +219,7 @@ PLACES_DIFFER = Kind(
     "The places are random",
     PlacesDiffer,
     places_differ,
-    about="The turtles are in different places from those in the other trial of the same node.",
+    about="The turtles are not in the same places as in the other trial of the same node.",
 )
 REMOVES = Kind(
     "removes_targets",

@@ -21,7 +21,7 @@ SILENT_S = 2.0
 ALSO_S = 0.05
 """Anything that arrives at most this long (s) after a response may have been sent before the response."""
 SAME_GROUP = (
-    "Several threads do not help here: the executor never calls two callbacks of the same callback group at the same "
+    "Several threads do not help here. The executor never runs two callbacks of the same callback group at the same "
     "time, so nothing receives the response: a deadlock. Use call_async, or give the client its own callback group."
 )
 

@@ -35,7 +35,7 @@ class Quit:
 Key = Drive | Turn | Cancel | Quit
 
 _ARROWS = {"A": Drive(1.0, 0.0), "B": Drive(-1.0, 0.0), "C": Drive(0.0, -1.0), "D": Drive(0.0, 1.0)}
-# The keys around F on the keyboard. The turtle turns in the direction of the key, as seen from F.
+# The keys around F on the keyboard. Each key turns the turtle to the direction from F to the key.
 _LETTERS: dict[str, Key] = {
     "g": Turn(0.0),
     "t": Turn(math.pi / 4),

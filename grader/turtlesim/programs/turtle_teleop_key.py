@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 _HELP = """\
 The arrow keys drive the turtle, for one second per key press.
     E R T
-    D   G   turn the turtle in the direction of the key from F: G east, R north, D west, V south.
+    D   G   turn the turtle to the direction from F to the key: G east, R north, D west, V south.
     C V B
 F stops turning, Q quits."""
 _NO_TERMINAL = (
