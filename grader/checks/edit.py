@@ -60,7 +60,7 @@ def difference(before: Mapping[str, bytes], after: Mapping[str, bytes]) -> str:
 
 
 def _replaced(line: str, edit: Edit) -> str | None:
-    """Return the line in which the first occurrence of `edit.old` is replaced with `edit.new`.
+    """Return the line in which the first occurrence of `edit.old` is replaced with `edit.new`, or None.
 
     If possible, replace a whole name rather than part of a longer name.
     """

@@ -104,7 +104,7 @@ def _folder(found: Found) -> Iterator[Path]:
 
 
 def _archive(path: Path) -> Path | None:
-    """Return the archive with the submission: the path itself, or (as in Moodle) the only file in the folder."""
+    """Return the archive: the path itself or, as in Moodle, the only file in the folder. Return None for a folder."""
     try:
         if not path.is_dir():
             return path

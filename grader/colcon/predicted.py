@@ -143,7 +143,7 @@ def _looks_around(node: ast.AST, files: Mapping[str, bytes]) -> bool:
 
 
 def _template() -> str | None:
-    """Return the text that setuptools writes into the script of an entry point. setuptools is not imported."""
+    """Return the text that setuptools writes into the script of an entry point, or None. setuptools is not imported."""
     found = find_spec("setuptools")
     if found is None or found.origin is None:
         return None

@@ -142,7 +142,7 @@ class Evidence:
 
     @cached_property
     def node_file(self) -> str | None:
-        """The node's source file: the module of the entry point, or else the file named after the executable."""
+        """The node's source file: the module of the entry point, or the file named after the executable, or None."""
         target = self.trial.calls.function or self.entry_point()
         files = self.submission.files
         if target is not None:
@@ -173,7 +173,7 @@ class Evidence:
         return trajectory_of(self.recording)
 
     def entry_point(self) -> str | None:
-        """Return the executable's entry point "module:attribute" as it was installed, or as setup.py defines it."""
+        """Return the executable's entry point "module:attribute" as installed, or as setup.py defines it, or None."""
         executable = self.trial.executable
         if self.build is not None and executable in self.build.entry_points:
             return self.build.entry_points[executable]
@@ -219,7 +219,7 @@ class Evidence:
         return self.build
 
     def place(self, *calls: str) -> Where | None:
-        """Return the place of the first call to one of these functions (in this order), or else the node's file."""
+        """Return the place of the first call to one of these functions (in this order), or the node's file, or None."""
         for name in calls:
             found = self.code.calls(name)
             if found:

@@ -131,7 +131,7 @@ class Programs:
         """The step of the node, and the digest of its code when the node was started."""
 
     def address(self) -> Address | None:
-        """Return the address of turtlesim's view, whether turtlesim was started here or in a terminal."""
+        """Return the address of turtlesim's view, whether turtlesim was started here or in a terminal, or None."""
         for line in self.turtlesim.lines:
             found = _ADDRESS.search(line)
             if found:

@@ -157,7 +157,7 @@ def _s(seconds: float) -> str:
 
 
 def values(evidence: Evidence, name: str = "values", bins: int = BINS) -> Chart | None:
-    """Draw the values of the commands over time.
+    """Draw the values of the commands over time. Return None if there are no commands.
 
     The fields linear.x and angular.z always have a row. Another field has a row if the exercise requires the field or
     if its value was not always 0.

@@ -114,7 +114,7 @@ def _compiler(search: str) -> Path | None:
 
 
 def _built_by_another_compiler(ros: installation.Ros) -> Path | None:
-    """Return a finished build whose compiler has since been removed.
+    """Return a finished build whose compiler has since been removed, or None.
 
     Such a build can still be used.
     """
@@ -254,7 +254,7 @@ def _run(command: list[str], env: dict[str, str], tell: Callable[[str], None]) -
 
 
 def _percent(line: str) -> int | None:
-    """Read the progress of make (`[ 40%]`) or ninja (`[30/75]`)."""
+    """Return the progress of make (`[ 40%]`) or ninja (`[30/75]`) in percent, or None."""
     match = re.match(r"\[\s*(\d+)(%|/(\d+))\]", line)
     if match is None:
         return None

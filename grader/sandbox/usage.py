@@ -123,7 +123,7 @@ class Guard:
 
 
 def family(pid: int) -> Iterator[int]:
-    """Return the process and all its descendants. Orphans become children of the cell's first process."""
+    """Yield the process and all its descendants. Orphans become children of the cell's first process."""
     waiting = [pid]
     while waiting:
         process = waiting.pop()

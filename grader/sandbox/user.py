@@ -87,7 +87,7 @@ def _folder() -> Path:
 
 
 def _lock(file: int, byte: int) -> bool:
-    """Lock a byte of the file for this open file description (F_OFD_SETLK of fcntl(2))."""
+    """Lock a byte of the file with F_OFD_SETLK of fcntl(2). Return False if another process has locked the byte."""
     # The fields of struct flock are type, whence, start, length, pid.
     wanted = struct.pack("hhqqi4x", fcntl.F_WRLCK, os.SEEK_SET, byte, 1, 0)
     try:

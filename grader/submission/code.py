@@ -76,7 +76,7 @@ class Call:
         return Where(self.module.file, self.node.lineno)
 
     def argument(self, place: int, name: str) -> ast.expr | None:
-        """Return the argument at this position (from 0) or with this name."""
+        """Return the argument at this position (from 0) or with this name, or None."""
         for keyword in self.node.keywords:
             if keyword.arg == name:
                 return keyword.value
@@ -94,7 +94,7 @@ class Code:
 
     @property
     def start(self) -> Where | None:
-        """The path of the node's file, for messages that refer to the file but not to a line."""
+        """The path of the node's file, for messages that refer to the file but not to a line, or None."""
         return None if self.node_file is None else Where(self.node_file)
 
     @cached_property
@@ -115,7 +115,7 @@ class Code:
         return self._calls.get(name, [])
 
     def assigned(self, *path: str) -> Where | None:
-        """Return the first place that sets an attribute such as ("linear", "x"), by assignment or by keyword."""
+        """Return the first place that sets an attribute such as ("linear", "x") by assignment or keyword, or None."""
         for module in self.modules:
             lines = [line for node in module.nodes for line in _sets(node, path)]
             if lines:

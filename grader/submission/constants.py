@@ -68,7 +68,7 @@ def single_names(tree: ast.AST) -> Names:
 
 
 def written(node: ast.expr | None, names: Names) -> ast.expr | None:
-    """Return the expression itself or, for a name, the expression that is assigned to it."""
+    """Return the expression itself or, for a name, the expression that is assigned to it. Return None for None."""
     for _ in range(MAX_DEPTH):
         value = names.get(dotted(node) or "") if isinstance(node, ast.Name | ast.Attribute) else None
         if value is None:
@@ -145,7 +145,7 @@ def _together(between: str, pieces: Iterable[ast.expr], names: Names, depth: int
 
 
 def _call(node: ast.expr, names: Names, depth: int) -> str | None:
-    """Evaluate a call to os.path.join with strings, which is common in setup.py."""
+    """Return the result of os.path.join with strings, which is common in setup.py, or None for another call."""
     if not isinstance(node, ast.Call) or dotted(node.func) not in ("os.path.join", "path.join", "join"):
         return None
     return _together("/", node.args, names, depth)

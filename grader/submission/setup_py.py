@@ -57,7 +57,7 @@ class SetupPy:
     unreadable: Unreadable | None = None
 
     def entry_point(self, name: str) -> EntryPoint | None:
-        """Return the console script with this name."""
+        """Return the console script with this name, or None."""
         return next((point for point in self.entry_points or () if point.name == name), None)
 
 
@@ -118,7 +118,7 @@ def _last(node: ast.expr) -> str:
 
 
 def _value_line(node: ast.expr | None, module: Module) -> int | None:
-    """Return the line of the value itself, even if the argument is only a name for this value."""
+    """Return the line of the value itself, even if the argument is only a name for this value, or None."""
     for _ in range(MAX_DEPTH):  # `a = b; b = a` would loop forever
         if not isinstance(node, ast.Name) or module.names.get(node.id) is None:
             break

@@ -191,7 +191,7 @@ def _is_of_a_module(node: ast.expr) -> bool:
 
 
 def _by_string(call: ast.Call, file: _File, names: Collection[str]) -> str | None:
-    """Return the function that is named in a string argument, or used by source code in a string."""
+    """Return the function that is named in a string argument, or used by source code in a string, or None."""
     for argument in (*call.args, *(keyword.value for keyword in call.keywords)):
         text = evaluate(argument, file.module.names)
         if isinstance(text, str):

@@ -174,7 +174,7 @@ class Simulation:
         return handled
 
     def may_act(self) -> bool:
-        """Return whether a node has a client of the simulator's actions, or has not responded to the simulator yet."""
+        """Return whether a node has a client of the simulator's actions, or has not answered a call by the trial."""
         if self.caller is not None and self.caller.pending:
             return True
         if self._actions is None:

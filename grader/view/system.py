@@ -195,7 +195,7 @@ class _Counter:
             self._subscription = node.create_subscription(self._class, self._topic, self._arrived, _COUNTING, raw=True)
 
     def hertz(self, now: float) -> float | None:
-        """Return the measured rate, or MOST_HZ if the rate is too high to be measured."""
+        """Return the measured rate, MOST_HZ if the rate is too high to be measured, or None if no messages arrive."""
         return MOST_HZ if now < self._spared_until_s else self._arrivals.hertz(now)
 
     def close(self, node: Node) -> None:

@@ -41,7 +41,7 @@ class Shown(Protocol):
 
     @property
     def system(self) -> System | None:
-        """The running system."""
+        """The running system, or None if it is not known yet."""
 
     @property
     def lines(self) -> Iterable[str]:

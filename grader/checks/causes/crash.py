@@ -121,9 +121,10 @@ def end_observed(evidence: Evidence) -> str:
 
 
 def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:
-    """Return the last exception in stderr.
+    """Return the last exception in stderr, or None.
 
-    In a chain of exceptions, return the first exception that Ctrl-C did not cause.
+    In a chain of exceptions, those that Ctrl-C caused do not count. Of the others, return the first one that rclpy
+    raised, or else the first one.
     """
     last: list[Crash] = []
     for chained, crash in read_tracebacks(text, files):
@@ -178,7 +179,7 @@ def _crash(lines: list[str], files: Mapping[str, bytes]) -> Crash | None:
 
 
 def _own_file(path: str, files: Mapping[str, bytes]) -> str | None:
-    """Return the submission file that was installed or linked at this path, preferring the longest match."""
+    """Return the submission file that was installed or linked at this path (the longest match), or None."""
     tail = f"/{path}"
     ends = [
         file

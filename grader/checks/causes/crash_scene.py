@@ -30,7 +30,7 @@ class CrashScene:
 
     @cached_property
     def module(self) -> Module | None:
-        """The module that contains the line."""
+        """The module that contains the line, or None."""
         return None if self.crash.where is None else self.module_of(self.crash.where.file)
 
     def module_of(self, file: str) -> Module | None:

@@ -47,7 +47,7 @@ def why_without_assert(test: TestFunction) -> Cause:
 
 
 def always_true(code: TestCode) -> Cause | None:
-    """Return the cause if an assert is always true because its condition is a tuple or a string."""
+    """Return the cause if an assert is always true because its condition is a tuple, else None."""
     for module in code.modules:
         for node in module.nodes:
             if isinstance(node, ast.Assert) and isinstance(node.test, ast.Tuple) and node.test.elts:
@@ -57,7 +57,7 @@ def always_true(code: TestCode) -> Cause | None:
 
 
 def always_false(code: TestCode) -> Cause | None:
-    """Return the cause if a test always fails, on any node.
+    """Return the cause if a test always fails, on any node, else None.
 
     A test that may return, or skip itself, before it fails does not count.
     """
@@ -74,7 +74,7 @@ def always_false(code: TestCode) -> Cause | None:
 
 
 def swallowed(code: TestCode) -> Cause | None:
-    """Return the cause if an except clause catches the failure of an assert and does nothing that fails the test."""
+    """Return the cause if an except clause catches the failure of an assert without failing the test, else None."""
     for module in code.modules:
         for node in module.nodes:
             if isinstance(node, ast.Try) and any(isinstance(each, ast.Assert) for each in _below(node.body)):
@@ -96,7 +96,7 @@ def _asserted_later(module: Module, tried: ast.Try, handler: ast.ExceptHandler) 
 
 
 def in_a_loop(code: TestCode) -> Cause | None:
-    """Return the cause if all asserts of a test are in a loop over a list that may be empty."""
+    """Return the cause if all asserts of a test are in a loop over a list that may be empty, else None."""
     for test in code.tests:
         asserts = [node for node in ast.walk(test.node) if isinstance(node, ast.Assert)]
         loops = [node for node in ast.walk(test.node) if isinstance(node, ast.For)]
@@ -117,7 +117,7 @@ def _may_be_empty(listed: ast.expr, module: Module) -> bool:
 
 
 def timed_loop(code: TestCode) -> Cause | None:
-    """Return the cause if a loop always lasts for a fixed wall time, like a sleep.
+    """Return the cause if a loop always lasts for a fixed wall time, like a sleep, else None.
 
     A loop that waits for something until a deadline is correct.
     """

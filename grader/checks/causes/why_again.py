@@ -47,7 +47,10 @@ def _calls(method: ast.FunctionDef) -> bool:
 
 
 def _set(method: ast.FunctionDef, *, empty: bool) -> Iterator[tuple[str, int]]:
-    """Yield each attribute of self that the method sets, with its line: to nothing (`empty`) or to another value."""
+    """Yield each attribute of self that the method sets, with its line.
+
+    With `empty`, only assignments of None or False count. Without `empty`, only assignments of other values count.
+    """
     for node in ast.walk(method):
         if isinstance(node, ast.Assign):
             nothing = isinstance(node.value, ast.Constant) and node.value.value in NOTHING

@@ -57,7 +57,7 @@ MODULES_READ = {"math": math, "time": time, "random": random}
 
 
 def why_no_attribute(scene: CrashScene) -> Cause | None:
-    """Return the cause of an AttributeError, depending on the type of the object."""
+    """Return the cause of an AttributeError, depending on the type of the object, or None."""
     taken = OF_THE_NODE.search(scene.crash.message)
     if taken is not None:
         return _without_setter(scene, next(filter(None, taken.groups())))
@@ -80,7 +80,7 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
 
 
 def _without_setter(scene: CrashScene, name: str) -> Cause | None:
-    """Return the cause if a property cannot be set: the student's own property, or one that rclpy's nodes have."""
+    """Return the cause if a property of the student or of rclpy's nodes cannot be set, else None."""
     own = next((each for each in scene.functions(name) if "property" in map(dotted, each.decorator_list)), None)
     if own is not None:
         text = f"{name} is a property without a setter, so nothing can be assigned to it. Use another name inside it."
@@ -98,7 +98,7 @@ def _written_name(scene: CrashScene, name: str) -> str:
 
 
 def _is_subclass_elsewhere(scene: CrashScene, owner: str, name: str) -> bool:
-    """Return whether another module defines the class of the object, and nothing in that module sets the attribute."""
+    """Return whether the node's code defines the class of the object, and none of its classes sets the attribute."""
     classes = [
         node for module in scene.evidence.code.modules for node in module.nodes if isinstance(node, ast.ClassDef)
     ]
@@ -107,7 +107,7 @@ def _is_subclass_elsewhere(scene: CrashScene, owner: str, name: str) -> bool:
 
 
 def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None:
-    """Return the cause if an rclpy object, a message or a plain value has no attribute with this name."""
+    """Return the cause if an rclpy object, a message or a plain value has no such attribute. Return None for others."""
     if owner in ros_names.FIELDS:
         fields = ros_names.FIELDS[owner]
         guess = nearest(name, fields)
@@ -130,7 +130,7 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
 
 
 def _of_class_elsewhere(scene: CrashScene, owner: str, name: str) -> Cause:
-    """Return the cause if a class of ROS 2 has no such attribute. The fields of a message need an object."""
+    """Return the cause of a missing attribute of a class of ROS 2. The fields of a message need an object."""
     if owner in ros_names.FIELDS:
         return class_for_object(scene, owner, name)
     text = f"The class {shorten(owner)} has no constant or method with that name."

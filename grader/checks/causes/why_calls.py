@@ -100,7 +100,7 @@ def kind_of(argument: ast.expr, scene: CrashScene) -> str:
 
 
 def why_type(scene: CrashScene) -> Cause | None:
-    """Return the cause of a TypeError: too few, too many or wrong arguments, or an object that is not callable."""
+    """Return the cause of a TypeError, such as wrong arguments or an object that is not callable, or None."""
     text = scene.crash.message
     found = callback_called(scene) or swapped(scene)
     if found is not None:
@@ -263,7 +263,7 @@ def _not_callable(scene: CrashScene, kind: str) -> Cause | None:
 
 
 def why_refused(scene: CrashScene) -> Cause | None:
-    """Return the cause of an error that rclpy raises about a type, a period, a callback or a second call to init."""
+    """Return the cause if rclpy refused a type, a period, a callback or a second call to init, else None."""
     text = scene.crash.message
     if "must only be called once" in text:
         lines = [

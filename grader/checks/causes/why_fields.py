@@ -25,7 +25,7 @@ READS = ("input", "get", "str", "format", "getenv")
 
 
 def why_field(scene: CrashScene) -> Cause | None:
-    """Return the cause of a wrong value, such as an int, a string or a NumPy number in a float field."""
+    """Return the cause of a wrong value, such as an int or a string in a float field, or None for another error."""
     match = FIELD.search(scene.crash.message)
     if match is None:
         limits = RANGE.search(scene.crash.message)

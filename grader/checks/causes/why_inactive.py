@@ -18,9 +18,9 @@ TRANSITIONS = ("on_activate", "on_configure")
 
 
 def never_activated(evidence: Evidence) -> Cause | None:
-    """Return the cause if the node is a lifecycle node that needs to be activated and does not activate itself.
+    """Return the cause if a lifecycle node needs to be activated and does not activate itself, else None.
 
-    A lifecycle node without such methods and publishers works like any other node.
+    A lifecycle node without the methods in TRANSITIONS and without lifecycle publishers works like any other node.
     The grader never activates a node: an exercise asks for a node that works as soon as it is started.
     """
     if evidence.code.calls("trigger_activate"):

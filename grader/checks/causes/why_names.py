@@ -44,7 +44,7 @@ CONSTANTS = {
 
 
 def why_no_name(scene: CrashScene) -> Cause | None:
-    """Return the cause of a NameError, such as a missing self or import, a typo, or a local name in another method."""
+    """Return the cause of a NameError, such as a missing self or import, or a typo. Return None for other messages."""
     match = NO_NAME.search(scene.crash.message)
     if match is None:
         return None

@@ -116,7 +116,7 @@ def _stands_still(evidence: Evidence, left: list[Track]) -> Cause:
 
 
 def _moved_m(evidence: Evidence, from_s: float) -> float:
-    """Return the largest distance (m) between two positions of turtle1 after this time."""
+    """Return the diagonal (m) of the smallest rectangle around the positions of turtle1 after this time."""
     frames = evidence.recording.frames
     rows = (frames.t_s >= from_s) & (frames.t_s <= activity.end_s(evidence.recording))
     if not rows.any():

@@ -25,7 +25,7 @@ def steady_command(evidence: Evidence) -> tuple[float, float] | None:
 
 
 def radius_of_commands(evidence: Evidence) -> str:
-    """Return a sentence about the radius that follows from the commands."""
+    """Return a sentence about the radius that follows from the commands, or an empty string if the commands change."""
     speed = steady_command(evidence)
     if speed is None or not all(map(math.isfinite, speed)):
         return ""
@@ -83,7 +83,7 @@ def all_zero(evidence: Evidence) -> str:
 
 
 def line_of_values(evidence: Evidence) -> Where | None:
-    """Return the line that sets angular.z, or the line that sets linear.x if only linear.x changes."""
+    """Return the line that sets angular.z (or linear.x, if only linear.x changes), or None."""
     code = evidence.code
     if len({command.angular for command in evidence.commands}) == 1 < len({each.linear for each in evidence.commands}):
         return code.assigned("linear", "x") or evidence.place("Twist", "publish")

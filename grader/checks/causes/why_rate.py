@@ -35,7 +35,7 @@ FRAME_S = 0.016
 
 
 def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:
-    """Return the cause if a loop without a pause, or a subscription callback, contains `call`, else None."""
+    """Return the cause if a loop or a timer without a pause, or a callback for poses, calls `call`, else None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             where = Where(module.file, getattr(node, "lineno", None))
@@ -63,7 +63,7 @@ def _pauses(loop: ast.While, call: str) -> bool:
 
 
 def period_of_zero(evidence: Evidence, call: str) -> Call | None:
-    """Return the call that creates a timer with the period 0, unless its callback is known and never calls `call`."""
+    """Return the call that creates a timer with the period 0 whose callback may call `call`, or None."""
     for timer in evidence.code.calls("create_timer"):
         if number(timer.argument(0, "timer_period_sec"), timer.module.names) == 0.0:
             name = (dotted(timer.argument(1, "callback") or ast.Constant(0)) or "").rpartition(".")[2]
@@ -96,7 +96,7 @@ def why_publishers_grow(evidence: Evidence) -> Cause | None:
 def why_timers_grow(evidence: Evidence) -> Cause | None:
     """Return the cause if a callback creates a timer, else None.
 
-    A callback that also stops a timer may replace its own timer, so that it is not called again.
+    A callback that also stops a timer is not reported, because it may replace its own timer.
     """
     found = _made_in_callback(evidence, "create_timer")
     if found is None:
@@ -147,7 +147,7 @@ def _rate_without_spin(evidence: Evidence) -> Cause | None:
 
 
 def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:
-    """Return the cause if one function contains several calls to `call`, and as many messages arrive in each period."""
+    """Return the cause if a function has several calls to `call` and as many messages arrive per period, else None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.FunctionDef):
@@ -234,7 +234,7 @@ PLACES = {"create_timer": 1, "add_done_callback": 0, "add_on_set_parameters_call
 
 
 def callbacks_of(evidence: Evidence, *makers: str) -> Iterator[tuple[Module, str]]:
-    """Yield the names of the functions that are passed as callbacks to `makers`, with their modules."""
+    """Yield the names of the callbacks passed to `makers` (default: create_subscription), with their modules."""
     for maker in makers or ("create_subscription",):
         for call in evidence.code.calls(maker):
             name = dotted(call.argument(PLACES.get(maker, 2), "callback") or ast.Constant(0))

@@ -31,7 +31,7 @@ ERROR = re.compile(r"^E\s+(?P<text>\w*(?:Error|Exception|Interrupt)\b.*)$", re.M
 
 
 def place_of(run: NodeRun, code: TestCode) -> Where | None:
-    """Return the line in the student's test files at which a test failed, or else only the file of the test."""
+    """Return the line in the student's test files at which a test failed, or else only the file, or None."""
     for module in code.modules:
         if run.file.endswith(f"/{module.file}") and run.line > 0:
             return Where(module.file, run.line)

@@ -80,7 +80,7 @@ def _nothing_to_spin(evidence: Evidence) -> Cause | None:
 
 
 def _stuck(evidence: Evidence) -> Cause | None:
-    """Return the cause if a loop or wait in __init__, or a wait in a callback, never returns. Otherwise return None."""
+    """Return the cause if a loop or wait in __init__, or a wait in a callback, may never end. Otherwise return None."""
     for module, method in methods_of(evidence):
         for node in inside(method):
             where = Where(module.file, getattr(node, "lineno", None))

@@ -16,7 +16,7 @@ CALLBACKS = ("on_configure", "on_activate", "on_deactivate", "on_cleanup")
 
 
 def why_no_transition(scene: CrashScene) -> Cause | None:
-    """Return the cause of a failed transition, such as a class that a callback uses without importing the class."""
+    """Return the cause of a failed transition, such as a class that a callback uses without importing it, or None."""
     if "lifecycle state machine transition" not in scene.crash.message:
         return None
     known = {alias.asname or alias.name for node in scene.nodes for alias in _imported(node)}

@@ -60,7 +60,7 @@ def _is_absolute(evidence: Evidence, maker: str, topic: str) -> bool:
 
 
 def _line(evidence: Evidence, maker: str, topic: str) -> Where | None:
-    """Return the line of the call that has this topic name."""
+    """Return the line of the call that has this topic name, or None."""
     for call in evidence.code.calls(maker):
         value = evaluate(call.argument(1, "topic"), call.module.names)
         if isinstance(value, str) and topic.endswith(f"/{value.strip('/')}"):

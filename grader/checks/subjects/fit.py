@@ -127,7 +127,7 @@ def _missing(evidence: Evidence, called: Called, expected: str, name: str) -> Fi
 
 
 def _late(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
-    """Return a finding about a call that did not return, or that was not made because an earlier call was late."""
+    """Return a finding if a call did not return, or was not made because an earlier call was late, or None."""
     late = any(each.ended == TOO_LATE for each in evidence.run.called or ())
     if not late or called.ended not in (TOO_LATE, ""):
         return None

@@ -198,7 +198,7 @@ def _not_killed(
 
 
 def _callback(evidence: Evidence) -> Where | None:
-    """Return the place of the node's service callback."""
+    """Return the place of the node's service callback, or None."""
     names = {name for _, name in callbacks_of(evidence, "create_service")}
     return next(
         (Where(each.file, method.lineno) for each, method in methods_of(evidence) if method.name in names), None

@@ -76,7 +76,7 @@ def test_the_budgets_of_reading_are_those_of_the_code() -> None:
 
 
 def test_the_limits_of_the_processes_of_the_grader_are_those_of_the_code() -> None:
-    text, budget = text_of("docs/security.md"), Budget()
+    text, budget = " ".join(text_of("docs/security.md").split()), Budget()
     one, total = budget.message // MIB, budget.total // MIB
     assert (
         f"{budget.messages:,} messages from its kernel, {one} MiB each, {total} MiB and a million JSON values in total"
@@ -91,7 +91,7 @@ def test_the_limits_of_the_processes_of_the_grader_are_those_of_the_code() -> No
 
 
 def test_the_users_of_the_cells_are_named() -> None:
-    text = text_of("docs/security.md")
+    text = " ".join(text_of("docs/security.md").split())
     assert f"{FIRST_USER} to {FIRST_USER + USERS - 1}" in text
     assert f"{FEW_USERS[0]} to {FEW_USERS[-1]}" in text
 

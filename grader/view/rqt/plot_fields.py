@@ -25,7 +25,7 @@ def expand(typed: str) -> list[str]:
 
 
 def topic_of(name: str, topics: Iterable[str]) -> str | None:
-    """Return the topic of a field, which is the longest topic name that is a prefix of the field's name."""
+    """Return the topic of a field (the longest topic name that is a prefix of the field's name), or None."""
     return max((topic for topic in topics if f"{name}/".startswith(f"{topic}/")), key=len, default=None)
 
 
