@@ -108,6 +108,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "numbers-changed": "the file with the student's numbers was changed",
         "numbers-of-another": "the numbers belong to another student",
         "numbers-unreadable": "the file with the student's numbers cannot be read",
+        "own-number-missing": "a module does not have one of the student's numbers",
         "one-lobe": "the figure eight has only one lobe",
         "wrong-side-first": "the first lobe goes to the wrong side",
         "lobe-not-round": "a lobe of the figure eight is not round",

@@ -96,6 +96,7 @@ Diagnosis = Literal[
     "numbers-changed",
     "numbers-of-another",
     "numbers-unreadable",
+    "own-number-missing",
     "one-lobe",
     "wrong-side-first",
     "lobe-not-round",

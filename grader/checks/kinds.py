@@ -38,6 +38,7 @@ _KINDS = {
     "own_numbers": ("own", "NUMBERS"),
     "own_circle": ("own", "CIRCLE"),
     "own_rate": ("own", "RATE"),
+    "own_constants": ("own_constants", "CONSTANTS"),
     "figure_eight": ("eight", "EIGHT"),
     "square": ("square", "SQUARE"),
     "goal": ("goal", "GOAL"),

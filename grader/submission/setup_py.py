@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from grader.errors import TooLargeError
 from grader.submission.code import Call, Module, Unreadable, read_module
 from grader.submission.constants import MAX_DEPTH, dotted, evaluate
+from grader.submission.extras import extras_of_setup
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -48,8 +49,10 @@ class SetupPy:
     """The names of the groups in entry_points."""
     required: tuple[str, ...] = ()
     """The value of install_requires."""
-    tested_with: tuple[str, ...] = ()
-    """The packages in extras_require["test"], which determine how colcon runs the tests."""
+    tested_with: tuple[str, ...] | None = ()
+    """The packages for tests in extras_require, which determine how colcon runs the tests. None if they are unknown."""
+    has_extras: bool = False
+    """Whether setup() has the argument extras_require. Without it, setuptools reads setup.cfg and pyproject.toml."""
     tests_require_line: int | None = None
     """The line of the argument tests_require, which setuptools has ignored since version 72."""
     stray: tuple[EntryPoint, ...] = ()
@@ -89,7 +92,8 @@ def read_setup_py(data: bytes) -> SetupPy:
         groups=tuple(groups or ()),
         required=tuple(_strings(call.argument(99, "install_requires"), module)),
         tests_require_line=_value_line(call.argument(99, "tests_require"), module),
-        tested_with=tuple(_tested_with(call, module)),
+        tested_with=_tested_with(call, module),
+        has_extras=call.argument(99, "extras_require") is not None,
         stray=_stray(module, points or ()),
     )
 
@@ -184,12 +188,11 @@ def _data_file(item: ast.expr, module: Module) -> tuple[str, tuple[str, ...]]:
     return _string(folder, module), tuple(_strings(files, module))
 
 
-def _tested_with(call: Call, module: Module) -> Iterator[str]:
-    table = _resolved(call.argument(99, "extras_require"), module)
-    if isinstance(table, ast.Dict):
-        for key, value in zip(table.keys, table.values, strict=True):
-            if evaluate(key, module.names) == "test":
-                yield from _strings(value, module)
+def _tested_with(call: Call, module: Module) -> tuple[str, ...] | None:
+    given = call.argument(99, "extras_require")
+    if given is None:
+        return None if any(keyword.arg is None for keyword in call.node.keywords) else ()
+    return extras_of_setup(given, module)
 
 
 def _strings(node: ast.expr | None, module: Module) -> Iterator[str]:

@@ -11,12 +11,14 @@ from grader.checks.causes.weak_tests import always_true, timed_loop, why_without
 from grader.checks.kind import Kind, NoParams, strings
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, shorten
+from grader.submission.extras import extras_of_files
 from grader.submission.pytest_files import TestCode, read_test_code
 from grader.submission.uses import uses_of
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
+    from grader.submission.setup_py import SetupPy
     from grader.submission.uses import Use
 
 PYTEST = "pytest"
@@ -44,7 +46,7 @@ def declared(evidence: Evidence, _: NoParams) -> Finding:
         f"and package.xml declares {TEST_DEPEND} as a <test_depend>."
     )
     setup, manifest = evidence.setup_py, evidence.manifest
-    if setup is not None and not any(_name(each) == PYTEST for each in setup.tested_with):
+    if setup is not None and PYTEST not in _tested_with(setup, evidence):
         old = setup.tests_require_line
         cause = "Without this entry, colcon test runs unittest, which does not find pytest's test functions."
         if old is not None:
@@ -60,8 +62,11 @@ def declared(evidence: Evidence, _: NoParams) -> Finding:
     return passed("colcon test runs the tests with pytest.")
 
 
-def _name(requirement: str) -> str:
-    return requirement.split(" ")[0].split("[")[0].rstrip("<>=!~.0123456789")
+def _tested_with(setup: SetupPy, evidence: Evidence) -> tuple[str, ...]:
+    """Return the packages for tests that colcon finds. An argument that setup.py computes counts as correct."""
+    if setup.tested_with is None:
+        return (PYTEST,)
+    return setup.tested_with if setup.has_extras else extras_of_files(evidence.submission.files)
 
 
 def outside(evidence: Evidence, _: NoParams) -> Finding:

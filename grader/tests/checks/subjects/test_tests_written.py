@@ -6,6 +6,7 @@ import pytest
 
 from grader.checks.exercises import find_exercise
 from grader.checks.kind import NoParams
+from grader.checks.outcome import Status
 from grader.checks.subjects.tests_written import ASSERTS, DECLARED, OUTSIDE, STEADY
 from grader.evidence.evidence import Evidence
 from grader.tests.checks.changed import setup_py, xml
@@ -148,3 +149,45 @@ def about_declaration(extra: str, depend: str) -> str:
 def test_a_sentence_about_the_declaration_is_true(words: str, true: tuple[str, str], near: tuple[str, str]) -> None:
     assert words in about_declaration(*true)
     assert words not in about_declaration(*near)
+
+
+@pytest.mark.parametrize(
+    ("extra", "accepted"),
+    [
+        ("extras_require={'test': 'pytest'},", True),
+        ("extras_require={'test': 'flake8\\npytest>=7'},", True),
+        ("extras_require={'tests': ['pytest']},", True),
+        ("extras_require={'testing': ('pytest[extra]',)},", True),
+        ("extras_require=dict(test={'pytest; python_version > \"3\"'}),", True),
+        ("extras_require=read_extras(),", True),
+        ("**read_arguments(),", True),
+        ("extras_require={'Test': ['pytest']},", False),
+        ("extras_require={'dev': ['pytest']},", False),
+        ("extras_require={'test': ['PyTest']},", False),
+        ("extras_require={'test': ['pytest-cov', 'python3-pytest']},", False),
+        ("extras_require={'test': 'flake8, pytest'},", False),
+    ],
+)
+def test_pytest_is_declared_where_colcon_reads_it(extra: str, *, accepted: bool) -> None:
+    """colcon_core 0.21 and setuptools 79 read each of these arguments as stated, if they are constant."""
+    words = 'setup.py does not list "pytest" in extras_require.'
+    assert (words not in about_declaration(f"    {extra}\n", DEPEND)) == accepted
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "accepted"),
+    [
+        ("setup.cfg", "[options.extras_require]\ntest = pytest\n", True),
+        ("setup.cfg", "[options.extras_require]\ntesting =\n  flake8\n  pytest >= 7\n", True),
+        ("setup.cfg", "[options.extras_require]\ndoc =\n  pytest\n", False),
+        ("setup.cfg", "[options]\ntests_require = pytest\n", False),
+        ("pyproject.toml", "[project.optional-dependencies]\ntest = ['pytest']\n", True),
+        ("pyproject.toml", "[project.optional-dependencies]\ndoc = ['pytest']\n", False),
+        ("pyproject.toml", "[project\n", False),
+    ],
+)
+@pytest.mark.parametrize("extra", ["", "    extras_require={'doc': ['sphinx']},\n"])
+def test_other_files_count_if_setup_py_has_no_extras(extra: str, file: str, text: str, *, accepted: bool) -> None:
+    files = {**setup_py("    packages=", f"{extra}    packages="), **xml("  <export>\n", f"{DEPEND}  <export>\n")}
+    finding = DECLARED.check(Evidence(find_exercise("12-tests"), submission({**files, file: text})), NoParams())
+    assert (finding.status is Status.PASSED) == (accepted and not extra)
