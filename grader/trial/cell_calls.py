@@ -53,10 +53,10 @@ def main() -> None:
         Path(path).write_bytes(base64.b64decode(data))
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.environ.update(order["env"])
-    sys.path[:0] = order["python_path"]
+    # The package can contain a module of any name. Only the processes of the calls import modules of the package.
+    sys.path[:] = [folder for folder in sys.path if folder not in order["python_path"]]
     for module in order["ahead"]:
         importlib.import_module(module)
-    importlib.invalidate_caches()
     ctypes.CDLL(None).prctl(_DUMPABLE, 0, 0, 0, 0)
     for call in order["calls"]:
         called = _called(order, call)
@@ -121,6 +121,8 @@ def _child(order: dict[str, Any], call: dict[str, Any], files: tuple[int, int, i
     resource.setrlimit(resource.RLIMIT_CPU, (cpu_s, cpu_s + 1))
     os.dup2(files[0], 1)
     os.dup2(files[1], 2)
+    sys.path[:0] = order["python_path"]
+    importlib.invalidate_caches()
     code = 1
     try:
         if order["function"]:
