@@ -1,11 +1,10 @@
 """Run colcon in its sandbox cell. Each `python setup.py` that colcon starts becomes a fork of a prepared interpreter.
 
 colcon runs the setup.py of a package three times, each time in a new interpreter that imports setuptools and reads the
-metadata of all installed packages again. The imports of these interpreters take most of the CPU time of a build. To
-avoid this cost, one process imports these modules once, before the submission arrives, and forks for each run of
-setup.py. The fork gets the folder, environment, arguments and streams of the process that colcon started. The process
-that colcon started only waits for the exit code of the fork. If a fork might behave differently from a new interpreter,
-no fork is used (`Run.of`).
+metadata of all installed packages again. These imports take most of the CPU time of a build. So one process imports the
+modules once, before the submission arrives, and forks for each run of setup.py. The fork gets the folder, environment,
+arguments and streams of the process that colcon started, which only waits for the exit code of the fork. If a fork
+might behave differently from a new interpreter, no fork is used (`Run.of`).
 
 This file runs as a separate script. Standard input is the submission, a tar stream that is unpacked into src.
 """
@@ -43,18 +42,17 @@ _AT_START = re.compile(r"PYTHON(?!PATH$)|LD_|SETUPTOOLS_|DISTUTILS_")
 """Variables that have an effect only while an interpreter starts or imports setuptools."""
 _WITH_PREFIX = ("sysconfig", "distutils.sysconfig")
 """Modules that copy sys.prefix when they are imported."""
+_CONDITION = "catkin_pkg.condition"
 
 
 @dataclass(frozen=True)
 class Run:
-    """The code that a new interpreter would run: the argument of -c, or setup.py (an absolute path) if `argv` names it.
-
-    `ignored` are the prefixes of the warnings that -W ignores.
-    """
+    """Code that a new interpreter would run: the argument of -c, or setup.py (an absolute path) if argv names it."""
 
     code: str
     argv: list[str]
     ignored: list[str]
+    """The prefixes of the warnings that -W ignores."""
     cwd: str
     env: dict[str, str]
 
@@ -212,10 +210,9 @@ def _main_of(run: Run) -> tuple[types.ModuleType, bytes]:
 class EntryPoints:
     """`importlib.metadata.entry_points` with a cache.
 
-    The original function reads the metadata of every package on each call.
-
-    setuptools calls `entry_points` up to fifteen times per run. EntryPoints reads the metadata of the machine only
-    once. The metadata in other folders on sys.path, such as the folder of the submission, is read on each call.
+    The original function reads the metadata of every package on each call, up to fifteen times per run of setup.py.
+    EntryPoints reads the metadata of the machine once. It reads other folders on sys.path, such as the folder of the
+    submission, on each call.
     """
 
     def __init__(self) -> None:
@@ -271,13 +268,21 @@ def _starting_with(forks: Forks) -> type[subprocess.Popen[Any]]:
     return Popen
 
 
+def _evaluate_condition(condition: str | None, context: Mapping[str, str]) -> Any:  # noqa: ANN401 - catkin_pkg's
+    """Do what catkin_pkg does, but import its slow parser only if a package.xml has a condition."""
+    if condition is None:
+        return True
+    sys.modules.pop(_CONDITION)
+    return importlib.import_module(_CONDITION).evaluate_condition(condition, context)
+
+
 def main() -> None:
     """Unpack the submission into src, and run colcon with the arguments of this process."""
     sys.path.pop(0)
     forks = Forks()
+    sys.modules[_CONDITION] = types.SimpleNamespace(evaluate_condition=_evaluate_condition)  # type: ignore[assignment]
     colcon = importlib.import_module("colcon_core.command").main
-    # During a build, colcon skips these modules if they fail to load, and the package would be blamed. So load them
-    # now.
+    # If one of these modules failed to load during a build, colcon would skip it, and the package would be blamed.
     for name in ("colcon_core.shell.dsv", "colcon_core.shell.sh", "colcon_core.task.python.build"):
         importlib.import_module(name)
     for name in ("colcon_ros.package_identification.ros", "colcon_ros.task.ament_python.build"):

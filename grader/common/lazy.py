@@ -11,14 +11,19 @@ finishes (grader/submission/reader.py). Therefore, code that forks must hold the
 from __future__ import annotations
 
 import importlib
+import sys
 import threading
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from types import ModuleType
+    from collections.abc import Mapping
 
 IMPORTING = threading.RLock()
 """This lock is held while numpy or catkin_pkg is imported, and while the process forks."""
+
+
+_CONDITION = "catkin_pkg.condition"
 
 
 class _Lazy:
@@ -39,8 +44,38 @@ class _Lazy:
             return importlib.import_module(self._name)
 
 
+class _LazyCatkin(_Lazy):
+    """The module catkin_pkg.package, without the parser of conditions until a package.xml has a condition.
+
+    The import of this parser takes longer than all other imports of catkin_pkg.
+    """
+
+    def load(self) -> ModuleType:
+        with IMPORTING:
+            sys.modules.setdefault(_CONDITION, _WithoutParser(_CONDITION))
+            return importlib.import_module(self._name)
+
+
+class _WithoutParser(ModuleType):
+    """A stand-in for catkin_pkg.condition."""
+
+    def evaluate_condition(self, condition: str | None, context: Mapping[str, str]) -> bool:
+        """Return whether the condition of a tag is met.
+
+        Raises:
+            ValueError: the condition cannot be parsed.
+        """
+        if condition is None:
+            return True
+        with IMPORTING:
+            if sys.modules[_CONDITION] is self:
+                del sys.modules[_CONDITION]
+            met: bool = importlib.import_module(_CONDITION).evaluate_condition(condition, context)
+            return met
+
+
 _NUMPY = _Lazy("numpy")
-catkin_package: Any = _Lazy("catkin_pkg.package")
+catkin_package: Any = _LazyCatkin("catkin_pkg.package")
 """The module catkin_pkg.package."""
 if TYPE_CHECKING:
     import numpy as np

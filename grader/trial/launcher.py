@@ -43,6 +43,8 @@ POSTPONED = ("numpy", "yaml")
 """Modules that rclpy and the messages import, and that most nodes never use. They take half of the CPU time that
 importing rclpy needs.
 """
+_NOT_NEEDED = "rosidl_generator_py.generate_py_impl"
+"""A module that creates Python code from interfaces and imports a parser. Messages can be used without this module."""
 _SIMULATED = "use_sim_time:=true"
 _TYPES_AHEAD = (("geometry_msgs.msg", "Twist"), ("rosgraph_msgs.msg", "Clock"), ("turtlesim.msg", "Pose"))
 
@@ -68,13 +70,17 @@ class Postponed(types.ModuleType):
 def postponed(names: Iterable[str] = POSTPONED) -> Iterator[list[Postponed]]:
     """Postpone the import of these modules by other modules that are imported inside the context.
 
-    Modules that are imported after the context get the real modules.
+    Modules that are imported after the context get the real modules. Inside the context, the part of ROS 2 that creates
+    the code of messages is not imported at all.
     """
     modules = [Postponed(name) for name in names if name not in sys.modules]
     sys.modules.update({module.__name__: module for module in modules})
+    sys.modules.setdefault(_NOT_NEEDED, None)  # type: ignore[arg-type]  # None makes an import fail
     try:
         yield modules
     finally:
+        if sys.modules[_NOT_NEEDED] is None:
+            del sys.modules[_NOT_NEEDED]
         for module in modules:
             if sys.modules.get(module.__name__) is module:
                 del sys.modules[module.__name__]

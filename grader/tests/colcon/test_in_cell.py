@@ -70,6 +70,11 @@ def package(*, before: str = "", after: str = "", more: dict[str, str] | None = 
     }
 
 
+def with_depend(attribute: str) -> str:
+    """Return a package.xml with a second <depend> tag that has this attribute."""
+    return PACKAGE_XML.replace("<export>", f"<depend>rclpy</depend><depend {attribute}>unknown</depend><export>")
+
+
 def build(ros: Ros, workspace: Path, files: dict[str, str], *, forks: bool) -> tuple[int, str, dict[str, bytes]]:
     """Build the files, with forks or with plain colcon. Return the exit code, the log, and the installed files."""
     shutil.rmtree(workspace, ignore_errors=True)
@@ -101,6 +106,8 @@ def build(ros: Ros, workspace: Path, files: dict[str, str], *, forks: bool) -> t
     "files",
     [
         pytest.param(package(before=TELLS), id="tells"),
+        pytest.param(package(more={"package.xml": with_depend('condition="$ROS_VERSION == 1"')}), id="condition"),
+        pytest.param(package(more={"package.xml": with_depend('condition="1 =="')}), id="no condition"),
         pytest.param(package(before=FAILS), id="fails"),
         pytest.param(package(after="sys.exit('install' in sys.argv and 3)"), id="exits", marks=pytest.mark.exhaustive),
         pytest.param(package(after="os.kill(os.getpid(), 9)"), id="killed", marks=pytest.mark.exhaustive),

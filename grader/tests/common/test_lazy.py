@@ -28,3 +28,34 @@ def test_check_imports_no_slow_package_that_few_submissions_need() -> None:
 def test_what_numpy_does_not_have_is_reported_as_numpy_tells_it() -> None:
     with pytest.raises(AttributeError, match="module 'numpy' has no attribute 'hypott'"):
         np.hypott  # type: ignore[attr-defined] # noqa: B018
+
+
+PARSING = """\
+import sys
+from grader.common.lazy import catkin_package, load_catkin_pkg
+
+load_catkin_pkg()
+text = '''<package format="3"><name>x</name><version>0.1.0</version><description>x</description>
+<maintainer email="a@b.example">x</maintainer><license>x</license><depend {attribute}>rclpy</depend></package>'''
+try:
+    package = catkin_package.parse_package_string(text)
+    package.evaluate_conditions({{"ROS_VERSION": "2"}})
+    print([depend.evaluated_condition for depend in package.exec_depends], "pyparsing" in sys.modules)
+except Exception as error:
+    print(type(error).__name__)
+"""
+
+
+@pytest.mark.parametrize(
+    ("attribute", "printed"),
+    [
+        ("", "[True] False"),
+        ('condition="$ROS_VERSION == 2"', "[True] True"),
+        ('condition="$ROS_VERSION == 1"', "[False] True"),
+        ('condition="1 =="', "ValueError"),
+    ],
+)
+def test_the_parser_of_conditions_is_imported_only_for_a_condition(attribute: str, printed: str) -> None:
+    code = PARSING.format(attribute=attribute)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == printed

@@ -131,3 +131,18 @@ def test_modules_that_few_nodes_need_are_imported_on_first_use(
     """In wall time, they are imported before the program runs, since the import would delay a callback."""
     done = launch(in_ros, tmp_path, ARRAYS, arguments)
     assert printed(done).decode() == f"{[loaded] * 3} True 0.0 1 module\n", done.stderr
+
+
+INTERFACES = """#!/usr/bin/env python3
+import sys
+loaded = ["rosidl_generator_py" in sys.modules, "lark" in sys.modules]
+from nav_msgs.msg import Odometry
+type(Odometry).__import_type_support__()
+import rosidl_generator_py.generate_py_impl
+print(loaded, Odometry._TYPE_SUPPORT is not None, "lark" in sys.modules)
+"""
+
+
+def test_the_generator_of_interfaces_is_imported_only_by_a_program_that_needs_it(in_ros: InRos, tmp_path: Path) -> None:
+    done = launch(in_ros, tmp_path, INTERFACES, SIMULATED)
+    assert printed(done).decode() == "[True, False] True True\n", done.stderr
