@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from grader.exercise.node_under_test import FIELDS, SIDE_M
+from grader.testbench.result import LATEST_S, NodeEvents
 
 if TYPE_CHECKING:
     from grader.exercise.node_under_test import Behaviour
@@ -24,12 +25,22 @@ Values = list[float]
 
 @dataclass
 class _State:
-    """The state of one node: the last pose (m), its arrival time (ns), and whether the node turns forever."""
+    """The state of one node: the last pose (m), its arrival time (ns), whether the node turns forever, and counters."""
 
     x: float = 0.0
     y: float = 0.0
     received_ns: int | None = None
     turns: bool = False
+    poses: int = 0
+    calls: int = 0
+    commands: int = 0
+    first_ns: int | None = None
+    clock_ns: int | None = None
+
+    def happens(self, now_ns: int) -> None:
+        """Store the time of the node's clock (ns) at an event."""
+        self.first_ns = now_ns if self.first_ns is None else self.first_ns
+        self.clock_ns = now_ns
 
 
 class Brain:
@@ -59,13 +70,31 @@ class Brain:
         if number < len(self._states):
             state = self._states[number]
             state.x, state.y, state.received_ns = x, y, now_ns
+            state.poses += 1
+            state.happens(now_ns)
 
     def tick(self, number: int, now_ns: int) -> Values | None:
         """Return the command that node `number` publishes when its timer fires at this time (ns), or None."""
-        of = self._behaviour
-        if number >= len(self._states) or not of.publishes:
+        if number >= len(self._states):
             return None
         state = self._states[number]
+        command = self._react(state, now_ns)
+        state.calls += 1
+        state.commands += command is not None
+        state.happens(now_ns)
+        return command
+
+    def events(self) -> NodeEvents | None:
+        """Return what happened to the node that was created last, or None if there is no node."""
+        if not self._states:
+            return None
+        of, calls = self._states[-1], sum(state.calls for state in self._states)
+        return NodeEvents(of.poses, of.calls, of.commands, _seconds(of.first_ns), _seconds(of.clock_ns), calls)
+
+    def _react(self, state: _State, now_ns: int) -> Values | None:
+        of = self._behaviour
+        if not of.publishes:
+            return None
         if state.received_ns is None:
             return None if of.waits else self._command(of.speed_m_s, 0.0)
         if of.timeout_s and now_ns - state.received_ns > of.timeout_s * 1e9:
@@ -87,3 +116,7 @@ class Brain:
         values[self._behaviour.speed_field] = speed_m_s
         values[self._behaviour.turn_field] = turn_rad_s if self._behaviour.turns_left else -turn_rad_s
         return list(values.values())
+
+
+def _seconds(time_ns: int | None) -> float | None:
+    return None if time_ns is None else min(max(time_ns / 1e9, 0.0), LATEST_S)

@@ -99,7 +99,7 @@ class Conversation:
             code, seconds, size = _HEADER.unpack(self._received[: _HEADER.size])
         report = self._received[_HEADER.size :][: min(size, MOST_REPORT)]
         stuck = self._patience is not None and self._patience.stuck
-        return Ended(self._node, None if over else code, over, seconds, report, stuck)
+        return Ended(self._node, None if over else code, over, seconds, report, stuck, self._brain.events())
 
     def _receive(self) -> bool:
         """Receive a part of the result. Return False at its end."""

@@ -11,6 +11,26 @@ from grader.common.json_types import number, text, whole_or_none
 
 MOST_MESSAGE = 1500
 """The maximum length of a pytest message (characters)."""
+LATEST_S = 1e9
+"""A clock that shows a later time shows the time of day."""
+
+
+@dataclass(frozen=True)
+class NodeEvents:
+    """What happened to the last node of a run, which the failing test created. The grader has counted this itself."""
+
+    poses: int = 0
+    """The number of poses that the node received."""
+    calls: int = 0
+    """The number of times that its timer called the node."""
+    commands: int = 0
+    """The number of commands that the node published."""
+    first_s: float | None = None
+    """The time (s) of the node's clock when something happened first, at most LATEST_S. None if nothing happened."""
+    clock_s: float | None = None
+    """The time (s) of the node's clock when something happened last, at most LATEST_S. None if nothing happened."""
+    all_calls: int = 0
+    """The number of times that the timers of all nodes of the run called them."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +57,8 @@ class NodeRun:
     message: str = ""
     file: str = ""
     line: int = 0
+    events: NodeEvents | None = None
+    """None if the run created no node, or in an old recording."""
 
     @property
     def accepted(self) -> bool:
@@ -78,6 +100,8 @@ class Ended:
     report: bytes = b""
     stuck: bool = False
     """Whether the run could never have continued: see patience.py."""
+    events: NodeEvents | None = None
+    """What the grader has counted during the run."""
 
 
 def run_of(ended: Ended) -> NodeRun:
@@ -103,6 +127,7 @@ def run_of(ended: Ended) -> NodeRun:
         message=_text(bad.get("message")),
         file=_text(bad.get("file")),
         line=int(_number(bad.get("line"))),
+        events=ended.events,
     )
 
 
@@ -130,7 +155,16 @@ def _run(data: dict[str, Any]) -> NodeRun:
         message=text(data["message"]),
         file=text(data["file"]),
         line=int(number(data["line"])),
+        events=_events(data.get("events")),
     )
+
+
+def _events(data: Any) -> NodeEvents | None:  # noqa: ANN401 - JSON
+    if data is None:
+        return None
+    poses, calls, commands, all_calls = (int(number(data[key])) for key in ("poses", "calls", "commands", "all_calls"))
+    first_s, clock_s = (None if data[key] is None else number(data[key]) for key in ("first_s", "clock_s"))
+    return NodeEvents(poses, calls, commands, first_s, clock_s, all_calls)
 
 
 def _text(value: object) -> str:

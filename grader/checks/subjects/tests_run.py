@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.weak_tests import in_a_loop, swallowed, why_without_assert, without_assert
 from grader.checks.causes.why_no_test import why_no_test
+from grader.checks.causes.why_not_heard import why_not_called, why_not_heard
 from grader.checks.causes.why_rejected import last_error, why_rejected
 from grader.checks.kind import Kind, NoParams, string
 from grader.checks.outcome import Finding, failed, passed
@@ -62,7 +63,8 @@ def pass_(evidence: Evidence, _: NoParams) -> Finding:
         cause = Cause("unsteady-tests", UNSTEADY, why_rejected(rejected[0], code).where)
         observed = f"The tests pass on the correct node in {len(runs) - len(rejected)} of {count(len(runs), 'run')}."
         return failed(observed, expected, cause)
-    return failed(_observed(rejected[0]), expected, why_rejected(rejected[0], code, _numbers(evidence)))
+    cause = why_not_heard(rejected[0], code, spec.right) or why_rejected(rejected[0], code, _numbers(evidence))
+    return failed(_observed(rejected[0]), expected, cause)
 
 
 def _numbers(evidence: Evidence) -> str:
@@ -85,7 +87,9 @@ def _observed(run: NodeRun) -> str:
         return f"{shorten(run.test, 60)} cannot be imported."
     if not name:
         return f"The tests on the correct node ended with exit code {run.exit_code}."
-    message = last_error(f"E   {run.message}") if run.message else ""
+    # pytest explains the values of a comparison in lines that begin with "+". They would hide the cause.
+    compared = run.message.partition("\n +")[0]
+    message = last_error(f"E   {compared}") if compared else ""
     return f"{name} fails on the correct node: {shorten(_one_line(message), MOST_TEXT)}."
 
 
@@ -120,12 +124,18 @@ def _why_accepted(evidence: Evidence, params: Catches, code: TestCode) -> Cause:
     empty = without_assert(code)
     if empty and len(empty) == len(code.tests):
         return why_without_assert(empty[0])
-    cause = swallowed(code)
+    cause = swallowed(code) or _why_not_called(evidence, params.broken, code)
     if cause is None and _is_silent(evidence, params.broken):
         cause = in_a_loop(code)
     # No line is wrong: a test is missing.
     where = Where(code.tests[0].module.file) if code.tests else None
     return cause or Cause("accepts-broken", params.cause, where)
+
+
+def _why_not_called(evidence: Evidence, broken: str, code: TestCode) -> Cause | None:
+    spec = evidence.trial.tests
+    assert spec is not None
+    return why_not_called(evidence.bench.of(broken), code, spec.right)
 
 
 def _is_silent(evidence: Evidence, broken: str) -> bool:

@@ -14,6 +14,7 @@ from grader.exercise.model import catalogue
 from grader.exercise.node_under_test import FIELDS, Behaviour
 from grader.exercise.tables import read_toml
 from grader.testbench.brain import MOST_NODES, Brain
+from grader.testbench.result import LATEST_S, NodeEvents
 
 SECOND = 1_000_000_000
 STEP = "12-tests"
@@ -28,6 +29,20 @@ def commands(behaviour: Behaviour, *poses: tuple[float, float], after_s: float =
         values = brain.tick(0, number * SECOND + round(after_s * SECOND))
         found.append(None if values is None else {f: v for f, v in zip(FIELDS, values, strict=True) if v})
     return found
+
+
+def test_what_happens_to_the_last_node_is_counted() -> None:
+    brain = Brain(Behaviour(), "wall_guard")
+    assert brain.events() is None
+    brain.create()
+    brain.tick(0, SECOND)
+    brain.create()
+    assert brain.events() == NodeEvents(all_calls=1)
+    brain.pose(1, SECOND, 5.0, 5.0)
+    brain.tick(1, 2 * SECOND)
+    assert brain.events() == NodeEvents(poses=1, calls=1, commands=1, first_s=1.0, clock_s=2.0, all_calls=2)
+    brain.tick(1, 10 * round(LATEST_S) * SECOND)
+    assert brain.events() == NodeEvents(1, 2, 2, 1.0, LATEST_S, 3)
 
 
 def test_the_right_node_keeps_its_promises() -> None:

@@ -18,7 +18,7 @@ from grader.evidence.recording_format import load, save
 from grader.report.html import html_page
 from grader.report.report import report_of
 from grader.report.scene import scene_of
-from grader.testbench.result import BenchResult, Ended, NodeRun, run_of
+from grader.testbench.result import BenchResult, Ended, NodeEvents, NodeRun, run_of
 from grader.tests.checks import made
 from grader.tests.checks.made import found
 from grader.tests.checks.told import told
@@ -87,7 +87,10 @@ def test_a_report_about_tests_does_not_say_that_the_node_was_not_run() -> None:
 
 
 def test_a_recording_of_tests_is_judged_again(tmp_path: Path) -> None:
-    evidence = given(GOOD, GOOD, GOOD, dataclasses.replace(BAD, node="stop"))
+    events = NodeEvents(poses=1, calls=2, commands=2, first_s=0.1, clock_s=0.3, all_calls=2)
+    evidence = given(
+        GOOD, GOOD, dataclasses.replace(GOOD, events=NodeEvents()), dataclasses.replace(BAD, events=events)
+    )
     save(tmp_path / "kept", evidence, "none", ())
     again = load(tmp_path / "kept", load_exercise).evidence
     assert again.bench == evidence.bench

@@ -1,0 +1,124 @@
+"""Explain why a student's test has received no message: what happened in the node under test shows the mistake."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.why_rejected import place_of
+from grader.common.words import count
+from grader.submission.uses import uses_of
+from grader.testbench.result import LATEST_S
+
+if TYPE_CHECKING:
+    from grader.exercise.node_under_test import Behaviour
+    from grader.submission.pytest_files import TestCode
+    from grader.submission.uses import Use
+    from grader.submission.where import Where
+    from grader.testbench.result import NodeEvents, NodeRun
+
+NOTHING_RECEIVED = re.compile(
+    r"IndexError: (?:list|deque|tuple) index out of range|IndexError: pop from (?:an )?empty|len\(\[\]\)|assert \[\]|"
+    r"'NoneType' object has no attribute '(?:linear|angular)'|is an empty sequence|iterable argument is empty"
+)
+"""The message of a test that looks at a command although it has received none."""
+COUNTED = re.compile(r"assert (?P<received>\d{1,6}) (?:==|>=|>) (?P<wanted>\d{1,6})\n +\+  where \d+ = len\(\[")
+"""The message of a test that counts messages."""
+
+
+def why_not_heard(run: NodeRun, code: TestCode, right: Behaviour) -> Cause | None:
+    """Return the reason why a test has received no command from the correct node, or None if this did not happen."""
+    events = run.events
+    if run.over or events is None:
+        return None
+    if _moves_the_wrong_clock(events, code):
+        return Cause("bench-wall-time", WALL_TIME, _place(code, run, OVERRIDE))
+    if not NOTHING_RECEIVED.search(run.message):
+        return _too_few(events, run, code, right)
+    if not events.calls:
+        return _not_called(events, run, code, right)
+    if not events.poses:
+        text = (
+            f"The timer called the node {count(events.calls, 'time')}, but no pose had arrived on {right.listens}. "
+            "Does the bench publish a Pose on this topic, and spin after that?"
+        )
+        return Cause("bench-no-pose", text, _place(code, run, "create_publisher"))
+    if not events.commands:
+        return Cause("bench-clock-stands", LATE, _place(code, run, OVERRIDE))
+    text = (
+        f"The node has published {count(events.commands, 'command')} on {right.topic}, but the test has received none. "
+        "Is the node that listens in the executor, does it listen on this topic, and does the bench spin often enough?"
+    )
+    return Cause("bench-not-heard", text, _place(code, run, "create_subscription"))
+
+
+def _too_few(events: NodeEvents, run: NodeRun, code: TestCode, right: Behaviour) -> Cause | None:
+    """Return the reason why a test has received fewer commands than it wants, if the calls of the timer show it."""
+    counted = COUNTED.match(run.message)
+    if counted is None or int(counted["received"]) >= int(counted["wanted"]):
+        return None
+    if events.first_s is None or events.clock_s is None or not events.calls:
+        return None
+    if events.first_s == 0.0 and int(counted["received"]) == int(counted["wanted"]) - 1:
+        return Cause("bench-clock-not-started", NOT_STARTED, _place(code, run, OVERRIDE))
+    due = round((events.clock_s - events.first_s) / right.period_s)
+    if events.calls >= due - 1:
+        return None
+    text = (
+        f"The node's clock advanced by {due * right.period_s:.1f} s, but the timer called the node only "
+        f"{count(events.calls, 'time')}. Each call of spin_once runs at most one callback, and a step longer than the "
+        "period loses calls."
+    )
+    return Cause("bench-loses-calls", text, _place(code, run, "spin_once"))
+
+
+def why_not_called(run: NodeRun | None, code: TestCode, right: Behaviour) -> Cause | None:
+    """Return the reason why no test of a run let the timer of a node call it, or None if a test did."""
+    if run is None or run.events is None or run.events.all_calls:
+        return None
+    if _moves_the_wrong_clock(run.events, code):
+        return Cause("bench-wall-time", WALL_TIME, _place(code, run, OVERRIDE))
+    return _not_called(run.events, run, code, right)
+
+
+def _moves_the_wrong_clock(events: NodeEvents, code: TestCode) -> bool:
+    """Return whether the tests set a clock, but the node uses the time of day."""
+    return events.clock_s is not None and events.clock_s >= LATEST_S and bool(_uses(code, OVERRIDE))
+
+
+def _not_called(events: NodeEvents, run: NodeRun, code: TestCode, right: Behaviour) -> Cause:
+    """Return the reason why the timer has never called the node."""
+    if events.clock_s is None:
+        return Cause("bench-not-spun", NOT_SPUN, _place(code, run, "add_node"))
+    text = (
+        f"A pose arrived when the node's clock showed {events.clock_s:g} s, but the timer has not called the node: the "
+        f"clock was not advanced by a period. Advance it in steps of {right.period_s:g} s, and spin after each step."
+    )
+    return Cause("bench-clock-stands", text, _place(code, run, OVERRIDE))
+
+
+OVERRIDE = "set_ros_time_override"
+NOT_SPUN = (
+    "The node has received no pose, and its timer has not called it. Is the node in the executor, and does the bench "
+    "call spin_once after each step of the clock?"
+)
+WALL_TIME = (
+    f"The node's clock shows the time of day, so {OVERRIDE} does not move it. Set the node's parameter use_sim_time to "
+    "True first."
+)
+NOT_STARTED = (
+    "The pose arrived when the node's clock showed 0 s, which counts as not set: the first period of the timer begins "
+    "with the first step. Advance the clock by one step before the tests begin."
+)
+LATE = "The pose arrived after the timer had called the node for the last time. Advance the clock after the pose."
+
+
+def _place(code: TestCode, run: NodeRun, call: str) -> Where | None:
+    """Return the first line of the tests that calls this function, or else the line that failed."""
+    uses = _uses(code, call)
+    return uses[0].where if uses else place_of(run, code)
+
+
+def _uses(code: TestCode, call: str) -> list[Use]:
+    return [use for module in code.modules for use in uses_of(code.modules, module.file, frozenset({call}))]
