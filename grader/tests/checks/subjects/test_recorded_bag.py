@@ -68,6 +68,7 @@ CUT = made_bag.poses(drive_s=5.0, begin_s=0.0)
         ),
         ("The circle in the bag has a radius of 1.50 m.", made_bag.poses(1.5, drive_s=13.0), SHORT),
         ("The turtle drives at 1.00 m/s in the bag.", made_bag.poses(speed=1.0), SHORT),
+        ("The speed is linear.x of the commands. Compare the speed with", made_bag.poses(speed=1.0), SHORT),
     ],
 )
 def test_a_sentence_about_the_circle_is_true(
