@@ -18,6 +18,7 @@ from grader.testbench.result import Ended
 
 if TYPE_CHECKING:
     from grader.testbench.brain import Brain
+    from grader.testbench.patience import WorkedS
 
 MOST_QUESTIONS = 100_000
 """The maximum number of requests that are answered in one run. A normal test makes only a few hundred requests."""
@@ -38,9 +39,9 @@ class Conversation:
     `childs` contains the other ends, which belong to the session. Close them with `passed` when the session has them.
     """
 
-    def __init__(self, node: str, brain: Brain, test_s: float, run_s: float) -> None:
+    def __init__(self, node: str, brain: Brain, test_s: float, run_s: float, worked_s: WorkedS) -> None:
         self._node, self._brain = node, brain
-        self._test_s, self._run_s = test_s, run_s
+        self._test_s, self._run_s, self._worked_s = test_s, run_s, worked_s
         self._patience: Patience | None = None
         self._process: int | None = None
         self._asked, self._rest, self._received = 0, b"", b""
@@ -85,15 +86,18 @@ class Conversation:
         with selectors.DefaultSelector() as selector:
             selector.register(self._asks, selectors.EVENT_READ)
             selector.register(self._result, selectors.EVENT_READ)
-            while time.monotonic() < until:
+            while True:
                 ready = [key.fd for key, _ in selector.select(LOOK_S)]
                 if self._asks in ready and not self._answer_all():
                     selector.unregister(self._asks)
                 if self._result.fileno() in ready and not self._receive():
                     break
-                if not over and self._patience is not None and self._patience.is_over():
-                    over, until = True, time.monotonic() + END_S
+                now = time.monotonic()
+                if not over and self._patience is not None and (now >= until or self._patience.is_over()):
+                    over, until = True, now + END_S
                     self._kill()
+                elif now >= until:
+                    break
         code, seconds, size = None, time.monotonic() - begun, 0
         if len(self._received) >= _HEADER.size:
             code, seconds, size = _HEADER.unpack(self._received[: _HEADER.size])
@@ -106,7 +110,7 @@ class Conversation:
         data, passed, *_ = socket.recv_fds(self._result, 65536, 1)
         if passed and self._process is None:
             self._process = passed[0]
-            self._patience = Patience(_pid_of(self._process), self._test_s, self._run_s)
+            self._patience = Patience(_pid_of(self._process), self._test_s, self._run_s, self._worked_s)
             data = data[1:]  # the message STARTED of session.py
         self._received += data
         return bool(data or passed)

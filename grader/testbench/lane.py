@@ -137,7 +137,7 @@ class Lane:
         """
         self._wait_until_ready()
         brain = Brain(behaviour, self._package.node)
-        with Conversation(node, brain, test_s, self._duration_s) as conversation:
+        with Conversation(node, brain, test_s, self._duration_s, self._guard.worked_s) as conversation:
             with suppress(OSError):  # the session has exited, and the conversation ends at once
                 socket.send_fds(self._requests, [b"."], conversation.childs)
             conversation.passed()

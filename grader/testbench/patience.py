@@ -1,8 +1,9 @@
 """The time that one run of the tests may take. A busy machine does not make a run exceed this time.
 
 Wall time counts, except for the time for which the threads of the run, or the thread that answers their requests, have
-waited for a processor. A run that can never continue is recognized earlier: each of its threads waits, without a time
-limit, for another thread of the same process.
+waited for a processor. The CPU time of all processes of the run together has the same limit, so that a run gains no
+time by keeping the processors busy itself. A run that can never continue is recognized earlier: each of its threads
+waits, without a time limit, for another thread of the same process.
 """
 
 from __future__ import annotations
@@ -18,7 +19,12 @@ from grader.sandbox.usage import family
 from grader.trial.rest import GoneError, Threads, not_of_dds, of_dds
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from grader.trial.rest import Look
+
+    WorkedS = Callable[[float, float], float]
+    """The CPU time (s) that all processes of the run used between two times of CLOCK_MONOTONIC."""
 
 LOOK_S = 0.5
 """A run that has sent no request for this time (s) is examined, and again after the same time."""
@@ -28,12 +34,12 @@ _CALLER = "/proc/thread-self/schedstat"
 class Patience:
     """Watches one run. `test_s` is the maximum time for each test (s), and `run_s` for the whole run (s).
 
-    The thread that creates this object answers the requests of the run.
+    The thread that creates this object answers the requests of the run. `worked_s` measures the processes of the run.
     """
 
-    def __init__(self, pid: int, test_s: float, run_s: float) -> None:
+    def __init__(self, pid: int, test_s: float, run_s: float, worked_s: WorkedS) -> None:
         self._pid = pid
-        self._test_s, self._run_s = test_s, run_s
+        self._test_s, self._run_s, self._worked_s = test_s, run_s, worked_s
         self._begun = self._test_begun = self._moved = time.monotonic()
         self._waits_ns: dict[int, int] = {}
         self._waited_before_s = 0.0
@@ -71,6 +77,8 @@ class Patience:
         is_late = now - self._begun >= self._run_s or now - self._test_begun >= self._test_s
         if self.stuck or not is_late:
             return self.stuck
+        if self._worked_s(self._begun, now) >= self._run_s:
+            return True
         self._look_at_waits()
         waited_s = self._waited_s()
         in_test_s = now - self._test_begun - (waited_s - self._waited_before_s)

@@ -8,6 +8,7 @@ import pytest
 
 from grader.sandbox import bubblewrap
 from grader.testbench import bench
+from grader.testbench.conversation import LATEST
 from grader.tests.testbench.bench_runs import TESTS, run, spec
 
 pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
@@ -41,6 +42,36 @@ def test_a_run_that_hangs_is_ended(code: str, files: dict[str, bytes], monkeypat
     monkeypatch.setattr(bench, "RIGHT_S", 1.5)
     runs = run(spec("rate", "stop", right_runs=3), {**files, TESTS: code.encode()})
     assert [(each.node, each.over, each.accepted) for each in runs] == [("", True, False)]
+
+
+CROWD = """
+import os
+
+def test_it():
+    for _ in range(16):
+        if os.fork() == 0:
+            os.setsid()
+            while True:
+                pass
+    while True:
+        pass
+"""
+
+
+def test_a_run_gains_no_time_by_keeping_the_processors_busy(files: dict[str, bytes]) -> None:
+    """The first process of the run waits for a processor most of the time, and only because of its own children."""
+    nodes = spec(right_runs=1, duration_s=4.0)
+    (only,) = run(nodes, {**files, TESTS: CROWD.encode()})
+    assert only.over
+    assert only.seconds < LATEST * nodes.duration_s
+
+
+def test_a_run_is_ended_at_the_latest_time(files: dict[str, bytes], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Otherwise its cell would go on, and the next run would have to wait for it."""
+    monkeypatch.setattr("grader.testbench.conversation.END_S", 5.0)
+    monkeypatch.setattr("grader.testbench.patience.Patience.is_over", lambda _: False)
+    runs = run(spec("rate", right_runs=1, duration_s=0.5), {**files, TESTS: SLEEPS.encode()})
+    assert [each.over for each in runs if not each.node] == [True]
 
 
 ALARM = """
