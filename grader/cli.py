@@ -15,6 +15,7 @@ from grader.classroom import cli as classroom
 from grader.common.interpreter import clean_own
 from grader.common.log_commands import protect_output
 from grader.common.needed_command import needed_command
+from grader.common.standard_streams import make_usable
 from grader.common.system_errors import refusal
 from grader.errors import GraderError
 from grader.exercise.completion import steps as known_steps
@@ -192,6 +193,7 @@ book.add_to(app)
 def main() -> None:
     """Run the command. An error is printed as a sentence. Decision 9 in docs/design.md lists the exit codes."""
     clean_own()
+    make_usable()
     protect_output()
     words = sys.argv[1:]
     if "_GRADER_COMPLETE" in os.environ:  # the shell requests completions (grader.ros.shell)

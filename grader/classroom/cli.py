@@ -59,14 +59,14 @@ def grade(
     jobs: Annotated[
         Optional[int],  # noqa: UP045
         typer.Option(
-            min=1, help="Number of submissions to grade in parallel. Default: as many as processors and memory allow."
+            min=1,
+            help="Number of submissions to grade in parallel. Default: as many as processors and memory allow.",
+            metavar="N",
         ),
     ] = None,
     engine: Annotated[
         str,
-        typer.Option(
-            help="Grade on this machine (local) or with Dask (dask://HOST:PORT).", metavar="local|dask://HOST:PORT"
-        ),
+        typer.Option(help="Grade on this machine (local) or with Dask (dask://HOST:PORT).", metavar="ENGINE"),
     ] = "local",
     out: Annotated[
         Path,
@@ -94,7 +94,12 @@ def grade(
             metavar="FILE.csv",
         ),
     ] = None,
-    clock: Annotated[Clock, typer.Option(help="auto: simulated time, or wall time in doubtful cases.")] = Clock.auto,
+    clock: Annotated[
+        Clock,
+        typer.Option(
+            help="auto, simulated or wall. auto: simulated time, or wall time in doubtful cases.", metavar="CLOCK"
+        ),
+    ] = Clock.auto,
     seed: Annotated[Optional[int], typer.Option(help="Seed for a random start pose of the turtle.")] = None,  # noqa: UP045
     explain: Annotated[
         bool,

@@ -10,6 +10,7 @@ from shlex import quote
 from typing import TYPE_CHECKING
 
 from grader.checks.exercises import exercise_of_folder, find_exercise, title_of
+from grader.common.standard_streams import has_signs
 from grader.common.words import a_list, count
 from grader.errors import GraderError, UsageError
 from grader.exercise.model import catalogue
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 
 PART_ONE, PART_TWO = "Part one: topics", "Part two: beyond topics"
 FIRST_OF_PART_TWO = "08"
+_ROOM_FOR_TITLES = 60
+"""The narrowest terminal on which the status has the titles of the steps (columns)."""
 
 
 @dataclass(frozen=True)
@@ -166,17 +169,21 @@ def print_status(folder: Path | None, console: Console) -> None:
     root = progress.workspace_of(folder)
     known = progress.load(root)
     table = Table(box=None, pad_edge=False)
-    for heading in ("", "step", "", "points", "hints"):
-        table.add_column(heading)
+    titled = console.width >= _ROOM_FOR_TITLES
+    for heading in ("", "step", *([""] if titled else []), "points", "hints"):
+        # The id of a step is what a learner types, so it is never cut.
+        table.add_column(heading, min_width=max(map(len, catalogue())) if heading == "step" else None)
     begins = {part[0]: title for title, part in parts().items()}
     for name, file in catalogue().items():
         if name in begins:
             table.add_row("", begins[name], style="bold")
         step = known.step(name)
-        sign = "✓" if step.passed else ("→" if name == known.current else "·")
+        done, current, other = "✓→·" if has_signs(console.encoding) else "+>-"
+        sign = done if step.passed else (current if name == known.current else other)
         points = f"{step.points:g}/{step.max:g}" if step.max else ""
         style = "green" if step.passed else ("bold" if name == known.current else "dim")
-        table.add_row(sign, name, title_of(file), points, str(len(step.read) or ""), style=style)
+        title = [title_of(file)] if titled else []
+        table.add_row(sign, name, *title, points, str(len(step.read) or ""), style=style)
     console.print(table)
     passed = sum(known.step(name).passed for name in catalogue())
     console.print(f"\n{passed} of {count(len(catalogue()), 'step')} passed, in {root}", soft_wrap=True)

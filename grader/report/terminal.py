@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from grader.checks.outcome import Outcome, Status
+from grader.common.standard_streams import has_signs
 from grader.common.words import count, printable
 from grader.report.certainty import cause_label
 from grader.report.verdict import UNCONFINED, tone, verdict
@@ -100,7 +101,7 @@ def _look(outcome: Outcome) -> str:
 def _check(outcome: Outcome, console: Console, shown: str) -> None:
     """Print one check. If the message of the previous check (`shown`) was the same, the message is not repeated."""
     look = _look(outcome)
-    signs = SIGNS if console.encoding.lower().startswith("utf") else ASCII_SIGNS
+    signs = SIGNS if has_signs(console.encoding) else ASCII_SIGNS
     head = Text(f"{signs[look]} ", style=STYLES[look])
     head.append(printable(outcome.title), style="" if look == "passed" else "bold")
     if outcome.max:

@@ -161,7 +161,7 @@ def _one_at_a_time(tell: Callable[[str], None]) -> Iterator[None]:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            tell("Waiting for another process that is building the turtlesim interfaces.")
+            tell("Waiting for another process, which is building the turtlesim interfaces")
             fcntl.flock(lock, fcntl.LOCK_EX)
         yield
 
@@ -170,7 +170,7 @@ def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> 
     # These folders are left over from builds that were killed, since only the process that holds the lock builds.
     for leftover in prefix.parent.glob(f"{_TEMPORARY}*"):
         shutil.rmtree(leftover, ignore_errors=True)
-    tell("Building the turtlesim interfaces, once; this takes about ten seconds.")
+    tell("Building the turtlesim interfaces, once; this can take a minute")
     with tempfile.TemporaryDirectory(prefix=_TEMPORARY, dir=_place_to_build(prefix.parent)) as name:
         folder = Path(name)
         env = installation.environment(ros, home=folder)

@@ -12,6 +12,7 @@ import sys
 from contextlib import suppress
 from typing import TYPE_CHECKING, NoReturn
 
+from grader.common.standard_streams import make_usable
 from grader.common.system_errors import refusal
 from grader.errors import GraderError
 from grader.ros.startup import hand_over, see_to_environment
@@ -35,6 +36,7 @@ class _EndedError(KeyboardInterrupt):
 
 def main() -> NoReturn:
     """Run `ros2` and exit with its exit code."""
+    make_usable()
     code = run()
     with suppress(OSError):
         sys.stderr.flush()

@@ -17,7 +17,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, TextIO, Tuple
 
 from grader.common import interpreter, package_managers
 from grader.common.package_managers import Need
@@ -206,6 +206,15 @@ def requested_python(name: str) -> machine.Python:
     return python
 
 
+def wait_for(lock: TextIO) -> None:
+    """Wait until no other set-up of this folder is running."""
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        say("Waiting for another process, which is setting up this folder")
+        fcntl.flock(lock, fcntl.LOCK_EX)
+
+
 def main(arguments: Sequence[str]) -> int:
     """Update .venv. Return the exit code."""
     requested = read_arguments(arguments)
@@ -215,7 +224,7 @@ def main(arguments: Sequence[str]) -> int:
         print(problem, file=sys.stderr)
         return MACHINE_BROKEN
     with (ROOT / "requirements.lock").open() as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)  # A second `make` waits for the first one.
+        wait_for(lock)
         remove_incomplete(ROOT / "grader")
         if os.getuid() == 0:
             # Cells run as another user, who must be able to read .venv and the grader.

@@ -269,6 +269,16 @@ def test_the_parts_of_the_course_are_shown_with_their_steps() -> None:
     assert text.index("Part one: topics") < text.index(FIRST)
 
 
+@pytest.mark.parametrize("width", [40, 59, 60, 200])
+def test_the_status_never_cuts_what_a_learner_types(width: int) -> None:
+    passed(FIRST)
+    said = Console(width=width, record=True, file=io.StringIO())
+    steps.print_status(None, said)
+    text = said.export_text()
+    assert "…" not in text
+    assert [name for name in catalogue() if name not in text] == []
+
+
 @pytest.mark.parametrize("name", [file.parent.name for file in course_folder().glob("*/afterwards.md")])
 def test_each_question_of_a_lesson_has_an_answer(name: str) -> None:
     folder = find_exercise(name).folder

@@ -44,6 +44,17 @@ def test_what_root_sets_up_can_be_read_by_the_user_of_a_cell(
     assert (during, module.stat().st_mode & 0o777) == (mask, mode)
 
 
+def test_a_second_set_up_says_that_it_waits_for_the_first(tmp_path: Path) -> None:
+    code = "import sys; from grader.setup.bootstrap import wait_for; wait_for(open(sys.argv[1])); print('mine')"
+    file = tmp_path / "lock"
+    with file.open("w") as first:
+        bootstrap.wait_for(first)
+        second = subprocess.Popen([sys.executable, "-c", code, str(file)], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+        assert second.stdout is not None
+        assert second.stdout.readline() == "Waiting for another process, which is setting up this folder\n"
+    assert second.communicate()[0] == "mine\n"
+
+
 def test_second_set_up_does_nothing(course: Course) -> None:
     course.set_up()
     assert course.set_up() == 0

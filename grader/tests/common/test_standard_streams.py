@@ -1,0 +1,58 @@
+"""Commands whose standard streams are closed, or have no code for ✓ and →."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader.common import xdg
+from grader.common.standard_streams import has_signs
+
+BIN = Path(sys.executable).parent
+ASCII_LOCALE = {"LC_ALL": "POSIX", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"}
+COMMANDS = ("grader --help", "grader status", "grader env", "ros2 pkg list")
+
+
+def run(line: str, home: Path, **env: str) -> subprocess.CompletedProcess[str]:
+    # The cache contains turtlesim's messages, which would be built again.
+    places = {"HOME": str(home), "PATH": f"{BIN}:/usr/bin:/bin", "XDG_CACHE_HOME": str(xdg.cache().parent)}
+    return subprocess.run(["sh", "-c", line], env={**places, **env}, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("closed", ["<&-", ">&-", ">&- <&-"])
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_closed_stream_is_no_error(tmp_path: Path, command: str, closed: str) -> None:
+    done = run(f"{command} {closed}", tmp_path)
+    assert (done.returncode, "rror" in done.stderr) == (0, False), done.stderr
+
+
+def test_no_file_takes_the_place_of_a_closed_standard_output(tmp_path: Path) -> None:
+    code = (
+        "import os, subprocess, sys; from grader.common.standard_streams import make_usable; make_usable(); "
+        f"file = open({str(tmp_path / 'file')!r}, 'w'); print('lost'); subprocess.call(['echo', 'lost too'])"
+    )
+    done = run(f'"{sys.executable}" -c "{code}" >&-', tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / "file").read_text() == ""
+
+
+@pytest.mark.parametrize("env", [{"PYTHONIOENCODING": "ascii"}, ASCII_LOCALE])
+def test_the_status_has_signs_of_its_own_without_unicode(tmp_path: Path, env: dict[str, str]) -> None:
+    done = run("grader status", tmp_path, **env)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "-  01-first-node" in done.stdout
+
+
+def test_characters_that_an_encoding_lacks_are_replaced(tmp_path: Path) -> None:
+    folder = tmp_path / "Übung"
+    done = run(f"grader status --workspace '{folder}'", tmp_path, PYTHONIOENCODING="ascii")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "?bung" in done.stdout
+
+
+@pytest.mark.parametrize(("encoding", "has"), [("utf-8", True), ("UTF-16", True), ("ascii", False), ("latin-1", False)])
+def test_only_unicode_has_signs(encoding: str, has: bool) -> None:
+    assert has_signs(encoding) is has
