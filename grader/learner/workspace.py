@@ -178,7 +178,7 @@ def _package_files(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, 
 
 
 def lacking_text(path: str, lines: Sequence[str]) -> str:
-    """Return the sentence that asks the learner to add `lines` to the package file `path`, and says where."""
+    """Return the sentence that tells the learner to add `lines` to the package file `path`, and where in this file."""
     one = len(lines) == 1
     what, these = ("one more line", "this line") if one else ("more lines", "these lines")
     if all(_ENTRY_POINT.fullmatch(line) for line in lines):

@@ -45,7 +45,7 @@ def _covered(outcome: Outcome, number: int) -> Outcome:
 
 
 def evidence_for_students(evidence: Evidence) -> Evidence:
-    """Return the evidence without hidden checks and without the trials that only hidden checks use."""
+    """Return the evidence without hidden checks, and without trials (except the first) that only hidden checks use."""
     exercise = evidence.exercise
     shown = tuple(spec for spec in exercise.checks if not spec.hidden)
     trials = {exercise.trials[0].id, *(spec.trial for spec in shown)}

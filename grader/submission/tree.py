@@ -84,7 +84,7 @@ class Tree:
 
 @contextmanager
 def open_folder(name: str, parent: int | None = None, *, follow: bool = False) -> Iterator[int]:
-    """Open a folder and return its descriptor.
+    """Open a folder, and yield its descriptor.
 
     With `parent`, the name is looked up in the folder with this descriptor. With `follow`, the name may be a link.
     """

@@ -23,7 +23,7 @@ class LateAnswers:
         self._waiting: deque[tuple[float, Callable[[float], None]]] = deque()
 
     def delay(self, service: Service, handle: Callable[[Any, Any, float], Any]) -> None:
-        """Make the service call `handle(request, response, waited_s)` and send the response when the answer is due."""
+        """When an answer of the service is due, call `handle(request, response, waited_s)` and send the response."""
         answer, empty = service.send_response, service.srv_type.Response
         taken: list[Any] = []
 

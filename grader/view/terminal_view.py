@@ -1,4 +1,4 @@
-"""The view in a terminal: the turtle as half blocks, the topics next to it, and keys that drive.
+"""The view in a terminal: the turtle as half blocks, the topics next to it, and keys that drive the turtle.
 
 A terminal does not report when a key is released. A held key repeats, so a key counts as released when it stops
 repeating.

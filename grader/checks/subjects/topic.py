@@ -137,7 +137,7 @@ def _why_silent(evidence: Evidence) -> Cause:
 
 
 def _publisher_line(evidence: Evidence, topic: str) -> Where | None:
-    """Return the line that creates the publisher of this topic, or None if the source code does not show it."""
+    """Return the line that creates the publisher of this topic, or any publisher, or else the node's file, or None."""
     calls = evidence.code.calls("create_publisher")
     for call in calls:
         value = evaluate(call.argument(1, "topic"), call.module.names)

@@ -42,7 +42,7 @@ def blank_request(type_name: str) -> str:
 
 
 def services(node: Node) -> list[Service]:
-    """Return the services that can be called. Services of actions are omitted."""
+    """Return the services that can be called. Hidden services, such as those of actions, are omitted."""
     found = [
         {"name": name, "type": types[0], "request": blank_request(types[0])}
         for name, types in node.get_service_names_and_types()
