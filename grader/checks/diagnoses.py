@@ -214,7 +214,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "rejects-right": "a test fails on the correct node",
         "bench-wall-time": "the tests advance the clock of a node that uses the time of day",
         "bench-not-spun": "nothing happened in the node under test, because no executor runs it",
-        "bench-clock-stands": "the tests do not advance the node's clock, so its timer never calls the node",
+        "bench-clock-stands": "the tests do not advance the node's clock, so the timer's callback never runs",
         "bench-clock-not-started": "the tests send a pose before the node's clock starts, so one command is missing",
         "bench-loses-calls": "the clock advances, but the tests spin too rarely for the timer",
         "bench-no-pose": "the node under test received no pose",

@@ -22,7 +22,7 @@ class NodeEvents:
     poses: int = 0
     """The number of poses that the node received."""
     calls: int = 0
-    """The number of times that its timer called the node."""
+    """The number of times that the callback of its timer ran."""
     commands: int = 0
     """The number of commands that the node published."""
     first_s: float | None = None
@@ -30,7 +30,7 @@ class NodeEvents:
     clock_s: float | None = None
     """The time (s) of the node's clock when something happened last, at most LATEST_S. None if nothing happened."""
     all_calls: int = 0
-    """The number of times that the timers of all nodes of the run called them."""
+    """The number of times that the callbacks of the timers ran, in all nodes of the run together."""
 
 
 @dataclass(frozen=True)

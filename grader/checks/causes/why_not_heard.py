@@ -1,4 +1,4 @@
-"""Explain why a student's test has received no message: what happened in the node under test shows the mistake."""
+"""Explain, from what happened in the node under test, why a student's test has received no message."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ def why_not_heard(run: NodeRun, code: TestCode, right: Behaviour) -> Cause | Non
         return _not_called(events, run, code, right)
     if not events.poses:
         text = (
-            f"The timer called the node {count(events.calls, 'time')}, but no pose had arrived on {right.listens}. "
-            "Does the bench publish a Pose on this topic, and spin after that?"
+            f"The callback of the node's timer ran {count(events.calls, 'time')}, but no pose had arrived on "
+            f"{right.listens}. Does the bench publish a Pose on this topic, and spin after that?"
         )
         return Cause("bench-no-pose", text, _place(code, run, "create_publisher"))
     if not events.commands:
@@ -54,7 +54,7 @@ def why_not_heard(run: NodeRun, code: TestCode, right: Behaviour) -> Cause | Non
 
 
 def _too_few(events: NodeEvents, run: NodeRun, code: TestCode, right: Behaviour) -> Cause | None:
-    """Return the reason why a test has received fewer commands than it wants, if the calls of the timer show it."""
+    """Return the reason why a test has received fewer commands than it wants, if the node's timer shows the reason."""
     counted = COUNTED.match(run.message)
     if counted is None or int(counted["received"]) >= int(counted["wanted"]):
         return None
@@ -66,15 +66,15 @@ def _too_few(events: NodeEvents, run: NodeRun, code: TestCode, right: Behaviour)
     if events.calls >= due - 1:
         return None
     text = (
-        f"The node's clock advanced by {due * right.period_s:.1f} s, but the timer called the node only "
-        f"{count(events.calls, 'time')}. Each call of spin_once runs at most one callback, and a step longer than the "
-        "period loses calls."
+        f"The node's clock advanced by {due * right.period_s:.1f} s, but the timer's callback ran only "
+        f"{count(events.calls, 'time')}. Each call of spin_once runs at most one callback. If one step of the clock "
+        "is longer than the timer's period, some calls are lost."
     )
     return Cause("bench-loses-calls", text, _place(code, run, "spin_once"))
 
 
 def why_not_called(run: NodeRun | None, code: TestCode, right: Behaviour) -> Cause | None:
-    """Return the reason why no test of a run let the timer of a node call it, or None if a test did."""
+    """Return the reason why the callback of a node's timer ran in no test of a run, or None if it ran in a test."""
     if run is None or run.events is None or run.events.all_calls:
         return None
     if _moves_the_wrong_clock(run.events, code):
@@ -88,30 +88,31 @@ def _moves_the_wrong_clock(events: NodeEvents, code: TestCode) -> bool:
 
 
 def _not_called(events: NodeEvents, run: NodeRun, code: TestCode, right: Behaviour) -> Cause:
-    """Return the reason why the timer has never called the node."""
+    """Return the reason why the callback of the timer has never run."""
     if events.clock_s is None:
         return Cause("bench-not-spun", NOT_SPUN, _place(code, run, "add_node"))
     text = (
-        f"A pose arrived when the node's clock showed {events.clock_s:g} s, but the timer has not called the node: the "
-        f"clock was not advanced by a period. Advance it in steps of {right.period_s:g} s, and spin after each step."
+        f"A pose arrived when the node's clock showed {events.clock_s:g} s, but the callback of its timer has not run. "
+        f"The clock was not advanced by a whole period. Advance it in steps of {right.period_s:g} s, and spin after "
+        "each step."
     )
     return Cause("bench-clock-stands", text, _place(code, run, OVERRIDE))
 
 
 OVERRIDE = "set_ros_time_override"
 NOT_SPUN = (
-    "The node has received no pose, and its timer has not called it. Is the node in the executor, and does the bench "
-    "call spin_once after each step of the clock?"
+    "The node has received no pose, and the callback of its timer has not run. Is the node in the executor, and "
+    "does the bench call spin_once after each step of the clock?"
 )
 WALL_TIME = (
     f"The node's clock shows the time of day, so {OVERRIDE} does not move it. Set the node's parameter use_sim_time to "
     "True first."
 )
 NOT_STARTED = (
-    "The pose arrived when the node's clock showed 0 s, which counts as not set: the first period of the timer begins "
-    "with the first step. Advance the clock by one step before the tests begin."
+    "The pose arrived when the node's clock showed 0 s, which counts as not set. The first period of the timer begins "
+    "with the first step of the clock. Advance the clock by one step before the tests begin."
 )
-LATE = "The pose arrived after the timer had called the node for the last time. Advance the clock after the pose."
+LATE = "The pose arrived after the last run of the timer's callback. Advance the clock after the pose."
 
 
 def _place(code: TestCode, run: NodeRun, call: str) -> Where | None:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grader.trial.observed import Call, Goal
 
 SAME_TIME_S = 0.1
-"""If a goal begins or ends within this time of a call (s), the goal can be active or inactive when the call arrives."""
+"""If a goal begins or ends within this time (s) of a call, the goal can be active or inactive when the call arrives."""
 
 
 @dataclass(frozen=True, kw_only=True)

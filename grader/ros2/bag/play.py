@@ -20,8 +20,10 @@ def add(parser: argparse.ArgumentParser) -> None:
         "-r", "--rate", type=above_zero, default=1.0, help="multiply the speed by this factor (default: 1.0)"
     )
     parser.add_argument("--topics", default=[], metavar="topic", nargs="+", help="play only these topics")
-    parser.add_argument("-e", "--regex", default="", help="play only topics that contain this regular expression")
-    parser.add_argument("-x", "--exclude-regex", default="", help="exclude topics that contain this regular expression")
+    parser.add_argument("-e", "--regex", default="", help="play only topics whose names match this regular expression")
+    parser.add_argument(
+        "-x", "--exclude-regex", default="", help="exclude topics whose names match this regular expression"
+    )
     parser.add_argument("--exclude-topics", default=[], metavar="topic", nargs="+", help="exclude these topics")
     parser.add_argument(
         "-l",

@@ -100,8 +100,8 @@ def _add_topics(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("-a", "--all", action="store_true", help="record all topics except hidden ones")
     parser.add_argument("--all-topics", action="store_true", help="record all topics except hidden ones")
-    parser.add_argument("-e", "--regex", default="", help="record the topics that contain this regular expression")
-    parser.add_argument("--exclude-regex", default="", help="exclude topics that contain this regular expression")
+    parser.add_argument("-e", "--regex", default="", help="record the topics whose names match this regular expression")
+    parser.add_argument("--exclude-regex", default="", help="exclude topics whose names match this regular expression")
     parser.add_argument(
         "--exclude-topic-types",
         default=[],
