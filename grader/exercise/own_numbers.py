@@ -89,7 +89,7 @@ def to_toml(numbers: OwnNumbers) -> str:
         char if char.isprintable() and char not in '"\\' else f"\\U{ord(char):08X}" for char in numbers.student
     )
     lines = [
-        "# Your own numbers. They come from your id: do not change this file, and write the numbers into your node.",
+        "# Your own numbers. They come from your id: do not change this file. The lesson says where to write them.",
         f'student = "{escaped}"',
         *(
             f'{name} = "{value}"' if isinstance(value, str) else f"{name} = {value}"

@@ -29,6 +29,8 @@ WIDE = 120
 On a narrower terminal, a unified diff is shown.
 """
 
+OTHER_NUMBERS = "The solution has the numbers of an example student. Your own numbers are right in your files."
+
 
 def print_solution(step: str, folder: Path | None, console: Console) -> None:
     """Print where the learner's files differ from the solution, and answer the questions under "To think about".
@@ -51,6 +53,8 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
     ours = {path: text for path, text in texts.items() if path in asked}
     theirs = _texts(workspace.work_folder(exercise, root))
     same = [path for path in ours if theirs.get(path) == ours[path]]
+    if exercise.numbers is not None and len(same) < len(ours):
+        console.print(OTHER_NUMBERS, soft_wrap=True, markup=False)
     for path in ours:
         if path not in same:
             _print_file(path, theirs.get(path, ""), ours[path], console)

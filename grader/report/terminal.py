@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 RESULTS = {"passes": "the check then passes", "further": "the node gets further", "refuted": "the check still fails"}
-HIDDEN = "A hidden check shows no details."
+HIDDEN = "This check is hidden, so the report shows no details."
+SAME = "The reason is the same as for the previous check."
 NARROW = 50
 """On a terminal with fewer columns than this, text is not indented under its label."""
 
@@ -45,7 +46,7 @@ def render(report: Report, console: Console, *, brief: bool = False, verbose: bo
     for outcome in report.outcomes:
         if not (brief and _look(outcome) in ("passed", "skipped")):
             _check(outcome, console, shown)
-        shown = outcome.finding.observed
+        shown = "" if outcome.hidden else outcome.finding.observed
     console.print()
     if brief:
         amount = count(len(report.with_status(Status.PASSED)), "check")
@@ -99,7 +100,10 @@ def _look(outcome: Outcome) -> str:
 
 
 def _check(outcome: Outcome, console: Console, shown: str) -> None:
-    """Print one check. If the message of the previous check (`shown`) was the same, the message is not repeated."""
+    """Print one check. If the message of the previous check (`shown`) was the same, the message is not repeated.
+
+    A failed check then refers to the previous check.
+    """
     look = _look(outcome)
     signs = SIGNS if has_signs(console.encoding) else ASCII_SIGNS
     head = Text(f"{signs[look]} ", style=STYLES[look])
@@ -112,6 +116,8 @@ def _check(outcome: Outcome, console: Console, shown: str) -> None:
         _details(console, [("", HIDDEN)])
         return
     if look == "passed" or outcome.finding.observed == shown:
+        if look == "failed":
+            _details(console, [("", SAME)])
         return
     finding = outcome.finding
     if look == "skipped":

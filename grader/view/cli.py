@@ -5,9 +5,12 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import TYPE_CHECKING, Annotated, Optional
 
 import typer
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 PANEL = "Learn"
 Image = Annotated[
@@ -43,11 +46,12 @@ def sim(
     from grader.ros.installation import find_ros, users_environment, who_hears
     from grader.ros.underlay import with_turtlesim
 
+    # typer does not support options with an optional value.
+    where = context.args.pop(0) if view and context.args[:1] in (["page"], ["terminal"]) else "page"
+    refuse_unknown(context.args)
     check_writable(image)
     with progress() as tell:
         ros = with_turtlesim(find_ros(), tell)
-    # typer does not support options with an optional value.
-    where = context.args.pop(0) if view and context.args[:1] in (["page"], ["terminal"]) else "page"
     given = [("--image", image), ("--view", where if view else None), ("--port", port)]
     options = [text for name, value in given if value is not None for text in (name, str(value))]
     env = users_environment(ros)
@@ -56,3 +60,16 @@ def sim(
         "-m", "grader.view.turtlesim_node", *options, *context.args, python=str(ros.python), env=env, searches=True
     )
     os.execve(start.argv[0], start.argv, start.env)
+
+
+def refuse_unknown(arguments: Sequence[str]) -> None:
+    """Raise UsageError for an argument that is neither an option of the command nor for ROS 2."""
+    from grader.common.words import shorten
+    from grader.errors import UsageError
+
+    if not arguments or arguments[0] == "--ros-args":
+        return
+    message = f"`grader sim` has no argument {shorten(arguments[0], 60)}. `grader sim --help` lists the options."
+    if arguments[0].partition("=")[0] == "--domain":
+        message = "`grader sim` has no option --domain. `grader shell --domain N` opens a shell with domain N."
+    raise UsageError(message)

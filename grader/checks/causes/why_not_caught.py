@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.waiting import waits_in_callback
+from grader.checks.causes.why_not_reached import why_not_reached, wrong_turn
 from grader.checks.causes.why_silent import why_nothing
 from grader.checks.causes.why_unasked import why_unasked
 from grader.common.lazy import np
@@ -56,6 +57,9 @@ def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
     text = f"The turtle still moved in the last {STILL_S:.0f} s of the trial."
     if left:
         near_m, name = min((_nearest_m(evidence, track), track.turtle) for track in left)
+        known = why_not_reached(evidence, name, near_m)
+        if known is not None:
+            return known
         text += f" The turtle came as near as {near_m:.1f} m to {shorten(name)}." if np.isfinite(near_m) else ""
     return Cause("too-slow", text, evidence.place("publish"))
 
@@ -80,6 +84,10 @@ def _never_drives(evidence: Evidence, left: list[Track]) -> Cause:
         text = "linear.x is 0 in every command, so the turtle only turns."
         if not any(any(command.linear) or any(command.angular) for command in evidence.commands):
             text = "All commands that arrived contained only zeros."
+        elif not any(command.linear[0] for command in evidence.commands):
+            known = wrong_turn(evidence)
+            if known is not None:
+                return known
         if any(command.linear[0] for command in evidence.commands):
             text = "Commands arrived, but the turtle stayed where it was."
         return Cause("never-drives", text, evidence.place("publish"))

@@ -28,6 +28,7 @@ LATE_S = 1.05
 """The maximum delay of an announcement (s): two periods of the topic."""
 AT_ONCE_S = 0.1
 """The maximum time between the last announcement of a turtle and its removal (s)."""
+EMPTY = "At this time, no target was left. The node publishes even then, with an empty string."
 NOT_IN_NAMES = re.compile(r"\W")
 OFTEN = 3
 """The maximum number of messages, as a multiple of the timer's messages. A node may also publish after each change."""
@@ -69,6 +70,9 @@ def announces(evidence: Evidence, params: Announces) -> Finding:
         if crash is not None:
             return crash_finding(evidence, crash, end_observed(evidence), expected)
         cause = Cause("timer-period", "Publish each time the timer fires.", evidence.place("create_timer"))
+        late_s, until_s = begin_s + 1.4 * params.period_s, begin_s + longest_s
+        if not any(is_there(track, late_s, until_s) for track in evidence.recording.tracks):
+            cause = Cause("silent-when-empty", EMPTY, where)
         finding = failed(observed, expected, waits_in_callback(evidence) or cause, near_edge=most.near(longest_s))
         return unless_starved(finding, evidence.recording, off=longest_s - 1.4 * params.period_s, per_s=1.0)
     often = OFTEN * (times_s[-1] - times_s[0]) / params.period_s

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 NUMBER = re.compile(r"(?P<number>[-+]?\d{1,19}(?:\.\d{1,15})?(?:[eE][-+]?\d{1,2})?)\s*(?P<unit>[A-Za-z/%]*)", re.ASCII)
 EXAMPLE = {"messages": '"1250"', "duration": '"12.5 s"', "rate": '"10.0 Hz"', "radius": '"1.00 m"'}
+ROUNDED = 0.02
+"""The relative error of an answer, or of its inverse, that has been rounded."""
+HUNDREDTH = 0.0101
 UNITS = {"messages": "", "duration": "s", "rate": "Hz", "radius": "m"}
 
 
@@ -77,7 +80,8 @@ def bag_answer(evidence: Evidence, params: BagAnswer) -> Finding:
     if params.quantity == "messages" and value == total:
         counts = Cause("all-messages", "Only the messages of the topic with the poses count.", where)
         return failed(observed, "The value in your bag.", counts)
-    return failed(observed, "The value in your bag.", _why(params.quantity, value, band).at(where))
+    count = len(evidence.bag(params.bag).poses.get(params.topic, Poses()).t_s)
+    return failed(observed, "The value in your bag.", _why(params.quantity, value, truth, count).at(where))
 
 
 def _truth(evidence: Evidence, params: BagAnswer) -> float:
@@ -93,12 +97,16 @@ def _truth(evidence: Evidence, params: BagAnswer) -> float:
     return (len(poses.t_s) - 1) / duration_s if duration_s else 0.0
 
 
-def _why(quantity: str, value: float, band: Band) -> Cause:
+def _why(quantity: str, value: float, truth: float, count: int) -> Cause:
+    band = Band.around(truth, truth * ROUNDED)
     if any(band.holds(value * factor) for factor in (1e-9, 1e9)):
         return Cause("nanoseconds", "Time stamps in a bag are in nanoseconds. A second has 1,000,000,000 nanoseconds.")
     if quantity == "rate" and value and band.holds(1.0 / value):
         cause = "This is the period, the time between two messages in seconds. The rate is 1 divided by the period."
         return Cause("period-for-rate", cause)
+    if quantity == "rate" and count and abs(value * (count - 1) / count - truth) <= HUNDREDTH:
+        cause = "This is the number of messages divided by the duration. n messages have only n - 1 intervals."
+        return Cause("rate-off-by-one", cause)
     if quantity == "radius" and band.holds(value / 2.0):
         return Cause("diameter", "This is the diameter, twice the radius.")
     source = "`ros2 bag info`" if quantity == "duration" else "Your own program"

@@ -82,7 +82,9 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
         cause = why_killed(evidence.from_trial(other.id), uncaught, params.service)
         return failed(observed, expected, cause)
     if len(gone) == len(tracks) >= params.turtles:
-        return passed(f"All {count(len(gone), 'target')} were caught, the last one at {gone[-1].gone_s:.0f} s.")
+        if len(gone) == 1:
+            return passed(f"The only target was caught at {gone[0].gone_s:.0f} s.")
+        return passed(f"All {len(gone)} targets were caught, the last one at {gone[-1].gone_s:.0f} s.")
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_observed(evidence), expected)
@@ -146,7 +148,8 @@ def nearest_first(evidence: Evidence, _: NoParams) -> Finding:
             if nearest_m < chosen_m - NEARER_M:
                 return _other_order(evidence, track, chosen_m, found, nearest_m, from_s, gone, expected)
         from_s = track.gone_s or 0.0
-    return passed(f"{count(len(gone), 'target')} were caught, the nearest first.")
+    were = "was" if len(gone) == 1 else "were"
+    return passed(f"{count(len(gone), 'target')} {were} caught, the nearest first.")
 
 
 def _other_order(

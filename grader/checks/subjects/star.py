@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 BY_GOALS = "rotate_absolute"
+TOGETHER_S = 0.03
+"""Two commands that arrive within this time were sent in the same call (s)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +47,8 @@ def star(evidence: Evidence, params: Star) -> Finding:
     amount = int(params.sides)
     expected = (
         f"The turtle drives {amount} straight sides of {params.side_m:g} m: the first with a heading of "
-        f"{params.heading_deg:g} degrees, and each following side {params.corner_deg:g} degrees further to the left."
+        f"{params.heading_deg:g} degrees, and each following side {abs(params.corner_deg):g} degrees further to the "
+        f"{'left' if params.corner_deg > 0 else 'right'}."
     )
     where, trajectory = evidence.place("publish"), evidence.trajectory
     others = [name for name in evidence.recording.interventions if name in (MOVING | ALWAYS) - {BY_GOALS}]
@@ -87,6 +91,11 @@ def _measured(evidence: Evidence, params: Star, sides: Sides, expected: str) -> 
                 "The node sends no command with zeros at the end of a side, so the turtle continues. Publish a command "
                 "with zeros after each side."
             )
+        if length < params.side_m and _is_cut(evidence):
+            text = (
+                "The command with zeros arrives together with the last command of the side, so that command has no "
+                "effect. Send the zeros when the timer fires the next time."
+            )
         return failed(observed, expected, Cause("side-length", text, where), near_edge=near)
     for index, heading in enumerate(sides.headings[:amount]):
         off = math.degrees(heading) - params.heading_deg - index * params.corner_deg
@@ -107,6 +116,14 @@ def _measured(evidence: Evidence, params: Star, sides: Sides, expected: str) -> 
         return failed(observed, expected, Cause("drives-on", text, where))
     rest = no_standstill(evidence, expected)
     return rest or passed(f"The turtle drew a star of {amount} sides.", near_edge=near or closed.near(gap))
+
+
+def _is_cut(evidence: Evidence) -> bool:
+    """Return whether commands with zeros arrive together with a command that drives the turtle."""
+    pairs = list(pairwise(evidence.commands))
+    ends = [later for before, later in pairs if before.linear[0] and not later.linear[0]]
+    cut = [later for before, later in pairs if later in ends and later.t_s - before.t_s < TOGETHER_S]
+    return bool(ends) and len(cut) == len(ends)
 
 
 def requested_star(evidence: Evidence, params: Star) -> Requested:

@@ -16,7 +16,7 @@ from grader.errors import MachineError, UsageError
 from grader.exercise.model import catalogue, course_folder
 from grader.exercise.own_numbers import draw_numbers, from_toml
 from grader.learner import progress, steps, workspace
-from grader.learner.compare import print_solution
+from grader.learner.compare import OTHER_NUMBERS, print_solution
 from grader.learner.progress import Progress, StepProgress
 from grader.tests.report.reports import report
 
@@ -260,6 +260,15 @@ def test_the_solution_does_not_show_the_nodes_of_earlier_steps() -> None:
     assert "test/test_wall_guard.py" in text
     assert "wall_guard.py" in text
     assert [name for name in ("two_pens", "tunable_circle", "draw_star", "circle_fit") if f"{name}.py" in text] == []
+
+
+@pytest.mark.parametrize(("step", "tells"), [("10", True), ("01", False)])
+def test_the_solution_says_that_its_numbers_are_not_the_learners(step: str, *, tells: bool) -> None:
+    steps.start(step, None)
+    passed(find_exercise(step).id)
+    said = Console(width=100, record=True, file=io.StringIO())
+    print_solution(step, None, said)
+    assert (OTHER_NUMBERS in said.export_text()) == tells
 
 
 def test_the_parts_of_the_course_are_shown_with_their_steps() -> None:

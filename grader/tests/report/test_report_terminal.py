@@ -12,7 +12,7 @@ from rich.console import Console
 
 from grader.checks.cause import Cause
 from grader.checks.outcome import Status, failed, passed
-from grader.report.terminal import HIDDEN, render
+from grader.report.terminal import HIDDEN, SAME, render
 from grader.report.verdict import UNCONFINED
 from grader.submission.where import Where
 from grader.tests.report.reports import report
@@ -139,6 +139,17 @@ def test_an_error_has_no_points_so_far_and_says_what_to_do() -> None:
 def test_the_same_cause_of_several_checks_is_printed_once() -> None:
     assert reported(report("error")).count("The disk is full") == 1
     assert reported(report("skipped")).count("Not judged, because") == 1
+
+
+@pytest.mark.parametrize(("hidden", "amount"), [(False, 1), (True, 0)])
+def test_a_cross_is_never_without_text(*, hidden: bool, amount: int) -> None:
+    """A check with the reason of the previous one refers to it, unless the previous one is hidden."""
+    made = report("failed")
+    bad = next(outcome for outcome in made.outcomes if outcome.status is Status.FAILED)
+    twice = (replace(bad, hidden=hidden), replace(bad, title="Another check"))
+    text = reported(replace(made, outcomes=twice))
+    assert text.count(SAME) == amount
+    assert text.count(f"seen: {bad.finding.observed}") == 1
 
 
 def test_signs_are_ascii_if_the_stream_knows_no_others() -> None:

@@ -62,6 +62,15 @@ def test_a_turtle_is_announced_again_and_again() -> None:
     assert diagnosis(of_announces(given(messages=once))) == "timer-period"
 
 
+@pytest.mark.parametrize(("gone_s", "diagnosed"), [(4.2, "silent-when-empty"), (6.0, "timer-period")])
+def test_a_node_is_silent_when_no_target_is_left(gone_s: float, diagnosed: str) -> None:
+    early = tuple(said(1.0 + 0.5 * number, " ".join(PLACES)) for number in range(7))
+    finding = of_announces(given(calls=[catch()], gone=dict.fromkeys(PLACES, gone_s), messages=early))
+    assert diagnosis(finding) == diagnosed
+    words = "At this time, no target was left. The node publishes even then, with an empty string."
+    assert (words in told(finding)) == (diagnosed == "silent-when-empty")
+
+
 TIMES = [1.0 + 0.5 * number for number in range(18)]
 RIGHT = tuple(said(t_s, names_at(t_s)) for t_s in TIMES)
 

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
         ("duration", '"13 s"', "wrong-answer"),
         ("duration", '"long"', "answer-form"),
         ("rate", '"0.016 Hz"', "period-for-rate"),
+        ("rate", '"62.50 Hz"', None),
+        ("rate", '"62.57 Hz"', "rate-off-by-one"),
+        ("rate", '"62.7 Hz"', "wrong-answer"),
         ("radius", '"2.2 m"', "diameter"),
         ("messages", "696", None),
         ("messages", '"696"', None),
@@ -56,6 +59,8 @@ def about(check: str, answer: str) -> str:
         ("The value in your bag.", "duration", '"13 s"', '"11.1 s"'),
         ("Time stamps in a bag are in nanoseconds.", "duration", '"11123267399 s"', '"1112326739 s"'),
         ("This is the period, the time between two messages", "rate", '"0.016 Hz"', '"0.032 Hz"'),
+        ("This is the number of messages divided by the duration.", "rate", '"62.57 Hz"', '"62.7 Hz"'),
+        ("n messages have only n - 1 intervals.", "rate", '"62.57 Hz"', '"62.39 Hz"'),
         ("This is the diameter, twice the radius.", "radius", '"2.2 m"', '"3.3 m"'),
         (
             "`ros2 bag info` shows the right value. Is the answer about an earlier bag?",

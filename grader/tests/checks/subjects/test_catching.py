@@ -204,6 +204,12 @@ def about_order(*tracks: Track) -> str:
     return told(found(NEAREST_FIRST, given(*tracks)))
 
 
+@pytest.mark.parametrize(("tracks", "only"), [((NEAR,), True), ((NEAR, FAR), False)])
+def test_a_single_target_is_described_in_the_singular(tracks: tuple[Track, ...], *, only: bool) -> None:
+    assert ("The only target was caught at 1 s." in about(*tracks, turtles=1)) == only
+    assert ("1 target was caught, the nearest first." in about_order(*tracks)) == only
+
+
 B_FIRST = (at("a", 6.5, 9.0), at("b", 9.0, 3.4))
 LATER = Track("b", ((3.0, 9.0, 5.544445, 0.0),), 3.4)
 

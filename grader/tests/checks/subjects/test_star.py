@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -65,6 +66,9 @@ def about(commands: list[Timed], heading_deg: float = 0.0, **changes: Any) -> st
 
 
 CURVED = [(t_s, speed, turn or 1.0) for t_s, speed, turn in star()]
+LASTS = [before[0] for before, after in pairwise(star()) if before[1] and not after[1]]
+CUT = sorted([*star(), *((t_s + 0.001, 0.0, 0.0) for t_s in LASTS)])
+"""The zeros at the end of each side are sent in the same call as the last command of the side."""
 LONG = [(t_s, 3.0 * speed, turn) for t_s, speed, turn in star()]
 
 
@@ -78,6 +82,10 @@ LONG = [(t_s, 3.0 * speed, turn) for t_s, speed, turn in star()]
         ("% of the trajectory is curved.", CURVED, star()),
         ("Side 1 is 1.60 m long.", star(ticks=8), star()),
         ("Side 2 has a heading of 130 degrees.", star(turn=130.0), star()),
+        ("Side 1 is 1.80 m long.", CUT, star()),
+        ("The command with zeros arrives together with the last command of the side", CUT, star(ticks=8)),
+        ("Send the zeros when the timer fires the next time.", CUT, star(ticks=8)),
+        ("each following side 144 degrees further to the left.", star(ticks=8), star()),
         ("The heading of a goal is absolute: 0 is to the right", star(turn=130.0), star(ticks=8)),
         ("After the last side, the turtle drives 2.0 m further.", star(sides=6), star()),
         ("After the last side, the node needs a state in which it does nothing.", star(sides=6), star(sides=4)),

@@ -1,0 +1,131 @@
+"""Explain why a turtle that drives until the end does not reach or does not catch a target."""
+
+from __future__ import annotations
+
+import ast
+import math
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.own_values import drawn_numbers
+from grader.common.lazy import np
+from grader.common.words import shorten
+from grader.evidence.targets import is_there, place_at
+from grader.exercise.own_numbers import OwnNumbers
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from grader.evidence.evidence import Evidence
+
+CATCH = "/catch"
+TURNS_RAD_S = 0.1
+"""A smaller angular velocity is not a turn (rad/s)."""
+ASIDE_RAD = 0.3
+"""A target within this angle is straight ahead or straight behind, so that each direction is right (rad)."""
+MOST = 0.8
+"""The share of the commands in which the turtle must turn or face away from the target."""
+FEWEST, FEWEST_AWAY = 10, 3
+"""The minimum numbers of turns, and of turns away from the target, from which a conclusion is drawn."""
+
+
+def why_not_reached(evidence: Evidence, name: str, near_m: float) -> Cause | None:
+    """Return the reason why the target that turtle1 came nearest to (m) was not caught, or None if it is unknown."""
+    reach_m = _own_reach_m(evidence)
+    asked = any(call.service == CATCH and call.request["name"] == name for call in evidence.recording.calls)
+    if reach_m is not None and near_m < reach_m and not asked:
+        text = (
+            f"The turtle came as near as {near_m:.2f} m to {shorten(name)}, and your reach is {reach_m:g} m, but the "
+            f"node did not call {CATCH} for it. Which distance does the node compare with?"
+        )
+        return Cause("reach-too-small", text, _constant(evidence, "REACH") or evidence.place("call_async"))
+    return _farthest(evidence) or wrong_turn(evidence)
+
+
+def _own_reach_m(evidence: Evidence) -> float | None:
+    drawn = drawn_numbers(evidence) if evidence.exercise.numbers is not None else None
+    value = drawn.values.get("reach_m") if isinstance(drawn, OwnNumbers) else None
+    return None if value is None else float(value)
+
+
+def _constant(evidence: Evidence, name: str) -> Where | None:
+    """Return the line that assigns a constant with this name."""
+    for module in evidence.code.modules:
+        for node in module.body:
+            if isinstance(node, ast.Assign) and any(isinstance(t, ast.Name) and t.id == name for t in node.targets):
+                return Where(module.file, node.lineno)
+    return None
+
+
+def _wrong_angle(evidence: Evidence) -> Cause | None:
+    """Return the cause if the source computes the direction to a target from swapped arguments, or in degrees."""
+    for call in evidence.code.calls("atan2"):
+        axes = [_axes(argument) for argument in call.node.args]
+        if axes == [{"x"}, {"y"}]:
+            text = "math.atan2 takes the difference in y first, and then the difference in x."
+            return Cause("atan2-swapped", text, call.where)
+    degrees = next(iter(evidence.code.calls("degrees") + evidence.code.calls("rad2deg")), None)
+    if degrees is None:
+        return None
+    text = "The heading theta and angular.z are in radians, but this line converts an angle to degrees."
+    return Cause("angle-in-degrees", text, degrees.where)
+
+
+def _axes(node: ast.expr) -> set[str]:
+    """Return the coordinates, "x" and "y", that the names in an expression such as `place.x - x0` or `dx` mean."""
+    names = [each.id for each in ast.walk(node) if isinstance(each, ast.Name)]
+    names += [each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute)]
+    return {axis for axis in ("x", "y") if {axis, f"d{axis}", f"delta_{axis}", f"{axis}_diff"} & set(names)}
+
+
+def _farthest(evidence: Evidence) -> Cause | None:
+    """Return the cause if the node chooses a target with max and a key."""
+    chosen = [call for call in evidence.code.calls("max") if any(each.arg == "key" for each in call.node.keywords)]
+    if not chosen or evidence.code.calls("min"):
+        return None
+    text = "max with a key returns the target with the largest distance."
+    return Cause("farthest-chosen", text, chosen[0].where)
+
+
+def wrong_turn(evidence: Evidence) -> Cause | None:
+    """Return the cause if the source computes a wrong angle, or if turtle1 turned away from the nearest target."""
+    return _wrong_angle(evidence) or _turns_away(evidence)
+
+
+def _turns_away(evidence: Evidence) -> Cause | None:
+    """Return the cause if, in most commands, turtle1 turned away from the nearest target or faced away from it."""
+    turns = list(_turns(evidence))
+    away, faced = turns.count("away"), turns.count("behind")
+    if away < FEWEST_AWAY or len(turns) < FEWEST or away + faced < MOST * len(turns):
+        return None
+    text = (
+        f"In {away + faced} of {len(turns)} commands, the turtle turned away from the nearest target, or faced away "
+        "from it. A positive angular.z turns to the left: the error is the direction to the target minus theta."
+    )
+    return Cause("turns-away", text, evidence.code.assigned("angular", "z") or evidence.place("publish"))
+
+
+def _turns(evidence: Evidence) -> Iterator[str]:
+    """Yield, for each command that turned turtle1, where the nearest target was.
+
+    The target was ahead, behind, on the side to which the turtle turned ("towards"), or on the other side ("away").
+    """
+    recording = evidence.recording
+    frames = recording.frames
+    for command in evidence.commands:
+        turn = command.angular[2]
+        there = [track for track in recording.tracks if is_there(track, command.t_s, command.t_s)]
+        index = min(int(np.searchsorted(frames.t_s, command.t_s)), len(frames.t_s) - 1)
+        if abs(turn) < TURNS_RAD_S or not there or index < 0:
+            continue
+        x, y = float(frames.x[index]), float(frames.y[index])
+        places = [place_at(track, command.t_s) for track in there]
+        to_x, to_y = min(places, key=lambda place: math.hypot(place[0] - x, place[1] - y))
+        error = math.remainder(math.atan2(to_y - y, to_x - x) - float(frames.theta[index]), math.tau)
+        if abs(error) <= ASIDE_RAD:
+            yield "ahead"
+        elif abs(error) >= math.pi - ASIDE_RAD:
+            yield "behind"
+        else:
+            yield "away" if turn * error < 0 else "towards"
