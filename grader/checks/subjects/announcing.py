@@ -62,16 +62,18 @@ def announces(evidence: Evidence, params: Announces) -> Finding:
         if finding is not None:
             return finding
     times_s = [*(message.t_s for message in heard), activity.end_s(evidence.recording)]
-    begin_s, longest_s = max(((at_s, later_s - at_s) for at_s, later_s in pairwise(times_s)), key=lambda gap: gap[1])
     most = Band.at_most(1.4 * params.period_s)
+    gaps = sorted(((later_s - at_s, at_s) for at_s, later_s in pairwise(times_s)), reverse=True)
+    # A node that is silent only without targets has another mistake than a node whose timer is wrong.
+    with_targets = [gap for gap in gaps if not most.holds(gap[0]) and _has_targets(evidence, *gap, most)]
+    longest_s, begin_s = (with_targets or gaps)[0]
     if not most.holds(longest_s):
         observed = f"After the message at {begin_s:.1f} s, no message arrived for {longest_s:.1f} s."
         crash = crash_of(evidence)
         if crash is not None:
             return crash_finding(evidence, crash, end_observed(evidence), expected)
         cause = Cause("timer-period", "Publish each time the timer fires.", evidence.place("create_timer"))
-        late_s, until_s = begin_s + 1.4 * params.period_s, begin_s + longest_s
-        if not any(is_there(track, late_s, until_s) for track in evidence.recording.tracks):
+        if not with_targets:
             cause = Cause("silent-when-empty", EMPTY, where)
         finding = failed(observed, expected, waits_in_callback(evidence) or cause, near_edge=most.near(longest_s))
         return unless_starved(finding, evidence.recording, off=longest_s - 1.4 * params.period_s, per_s=1.0)
@@ -81,6 +83,12 @@ def announces(evidence: Evidence, params: Announces) -> Finding:
         cause = Cause("timer-period", "Publish in the callback of one timer.", evidence.place("create_timer"))
         return failed(observed, expected, cause)
     return passed("The node announces the remaining targets.", near_edge=most.near(longest_s))
+
+
+def _has_targets(evidence: Evidence, gap_s: float, begin_s: float, most: Band) -> bool:
+    """Return whether a target existed when the next announcement was late."""
+    late_s = begin_s + (most.high or 0.0)
+    return any(is_there(track, late_s, begin_s + gap_s) for track in evidence.recording.tracks)
 
 
 def _wrong_names(evidence: Evidence, message: Announcement, heard: list[Announcement], expected: str) -> Finding | None:

@@ -191,6 +191,10 @@ def _not_killed(
     if heard and not any(name in message.names for message in heard):
         text = f"{name} was never announced. Perhaps {name} is not in the list of the remaining turtles."
         return failed(f"{name} was caught, but it still exists.", expected, Cause("target-unannounced", text, where))
+    before = [message for message in heard if message.t_s < caught_s]
+    if before and name not in before[-1].names:
+        text = f"The message before the call did not name {name}. Was {name} removed from the list too early?"
+        return failed(f"{name} was caught, but it still exists.", expected, Cause("target-unannounced", text, where))
     why = waits_in_callback(evidence) or why_unasked(evidence, "/kill")
     if why.diagnosis == "service-not-called":
         why = Cause("not-killed", "The callback of the service must send a request to /kill.", where)

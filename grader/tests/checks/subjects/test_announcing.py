@@ -71,6 +71,12 @@ def test_a_node_is_silent_when_no_target_is_left(gone_s: float, diagnosed: str) 
     assert (words in told(finding)) == (diagnosed == "silent-when-empty")
 
 
+def test_a_node_that_is_silent_with_targets_too_has_a_wrong_timer() -> None:
+    rare = tuple(said(t_s, " ".join(PLACES)) for t_s in (1.0, 2.5, 3.0, 3.5, 4.0))
+    finding = of_announces(given(calls=[catch()], gone=dict.fromkeys(PLACES, 4.2), messages=rare))
+    assert (diagnosis(finding), finding.observed[:27]) == ("timer-period", "After the message at 1.0 s,")
+
+
 TIMES = [1.0 + 0.5 * number for number in range(18)]
 RIGHT = tuple(said(t_s, names_at(t_s)) for t_s in TIMES)
 

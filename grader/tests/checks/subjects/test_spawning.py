@@ -172,6 +172,14 @@ def test_a_turtle_that_was_never_announced_is_told(names: str, *, found: bool) -
     assert ("target2 was never announced. Perhaps target2 is not in the list" in reported) == found
 
 
+@pytest.mark.parametrize(("before", "found"), [("target1 target3", True), ("target1 target2", False)])
+def test_a_turtle_that_was_forgotten_too_early_is_told(before: str, *, found: bool) -> None:
+    messages = (said(1.0, "target1 target2"), said(CAUGHT_S - 0.5, before))
+    reported = told(of_removes(given(calls=[catch()], gone={}, messages=messages)))
+    words = "The message before the call did not name target2. Was target2 removed from the list too early?"
+    assert (words in reported) == found
+
+
 def test_places_are_compared_with_those_of_another_trial() -> None:
     words = "Draw the places with random, but without random.seed, which makes the numbers the same each time."
     same, other = given(), given(calls=[spawn(0.5, "target1", 4.0, 4.0)])
