@@ -64,7 +64,7 @@ def sources_of(ids: set[str], checks: Path | None) -> dict[str, Sources]:
     files = catalogue()
     private = _private_files(checks, files) if checks else {}
     if checks and not private.keys() & ids:
-        message = f"{checks} has checks for {a_list(sorted(private))}, and none for {a_list(sorted(ids))}."
+        message = f"{checks} has checks for {a_list(sorted(private))}, but none for {a_list(sorted(ids))}."
         raise UsageError(message)
     return {
         name: Sources(

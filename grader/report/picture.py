@@ -62,7 +62,7 @@ def _png(evidence: Evidence, report: Report) -> bytes:
 
 
 def draw_picture(evidence: Evidence, report: Report) -> Image.Image:
-    """Return the picture of every trial as one image. If there is no trajectory to draw, the picture says so."""
+    """Return one image with the pictures of all trials. If there is no trajectory to draw, the picture says so."""
     trials = [each for each in evidence.views() if not each.trial.calls and not each.trial.beside] or [evidence]
     panels = _panels(len(trials))
     page = _page(panels)

@@ -28,7 +28,7 @@ _VERSION = re.compile(r"(0|[1-9]\d*)(\.(0|[1-9]\d*))*")
 _POINT = re.compile(r"(?P<name>[A-Za-z0-9]\w*)\s*=\s*(?P<target>[A-Za-z_][\w.]*:[A-Za-z_]\w*)")
 _IMPORTED = frozenset({"setuptools", "os"})
 _CALLED = frozenset({"setup", "setuptools.setup", "find_packages", "setuptools.find_packages", "os.path.join"})
-"""Any other call can read the modules of the package, or do something else for some modules only."""
+"""The functions that a plain setup.py calls. Any other function could depend on the modules of the package."""
 _ONLY_METADATA = frozenset(
     {
         *("author", "author_email", "maintainer", "maintainer_email", "url", "description", "long_description"),
@@ -77,7 +77,7 @@ def read_plain_setup(setup_py: bytes, setup_cfg: bytes, paths: Collection[str]) 
 
 
 def _only_call(module: Module) -> ast.Call | None:
-    """Return the call of setup(), or None if the module has other calls, or other statements than assignments."""
+    """Return the call of setup(), or None if the module has calls or statements that a plain setup.py does not have."""
     calls: list[ast.Call] = []
     for statement in module.body:
         if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):

@@ -80,7 +80,7 @@ class Stream:
     dropped: int = 0
 
     def read(self, now_s: float) -> int:
-        """Read all available output, and return the number of bytes."""
+        """Read available output, and return the number of bytes."""
         size = 0
         for _ in range(64):
             try:

@@ -65,7 +65,7 @@ class WallTrial(Simulation):
         return self._crowded
 
     def _discover(self) -> None:
-        """Wait until the node is in the graph and its topics are recorded, or until it has exited.
+        """Wait until the node is in the graph and its topics are recorded, until it has exited, or for DISCOVERY_S.
 
         The first command ends the wait immediately, since the turtle moves after this command.
         """

@@ -150,7 +150,7 @@ def _other_success(evidence: Evidence, goals: list[Goal], call: Call) -> Cause:
 
 
 def _always_true(evidence: Evidence) -> bool:
-    """Return whether the node sets `success` to nothing but True."""
+    """Return whether all assignments to an attribute `success` assign True. Also True if there are none."""
     assigned = [node for module in evidence.code.modules for node in module.nodes if isinstance(node, ast.Assign)]
     values = [
         node.value
