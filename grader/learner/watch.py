@@ -56,7 +56,7 @@ class _Sources(DefaultFilter):
 
 
 def _identity(folder: Path) -> tuple[int, int] | None:
-    """Return the device and the inode of the folder at this path, or None if the path is not a folder."""
+    """Return the device and the inode of the folder at this path, or None if there is none."""
     try:
         status = folder.stat()
     except OSError:

@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 def check_writable(file: Path | None) -> None:
-    """Check that a file can be written, before time is spent on its content.
+    """Check that the folder of a file exists, and that the file is not a folder, before time is spent on its content.
 
-    Raises UsageError if writing is impossible.
+    Raises UsageError otherwise.
     """
     if file is not None and not file.absolute().parent.is_dir():
         message = f"There is no folder {file.absolute().parent} to write {file.name} to."

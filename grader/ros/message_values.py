@@ -167,7 +167,7 @@ def field(value: Any, path: str, *, complete: bool = True) -> Any:  # noqa: ANN4
     The result is None if `complete` is false and the element of an array is missing.
 
     Raises:
-        Ros2Error: the message has no such field.
+        Ros2Error: the message has no such field or element.
     """
     for part in re.findall(r"[^.\[\]]+|\[\d+\]", path):
         if part.startswith("["):

@@ -19,10 +19,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the state.
+    """Print the state of the given lifecycle node, or of all lifecycle nodes.
 
     Raises:
-        Ros2Error: the node does not exist or does not respond.
+        Ros2Error: the given node does not exist or does not respond.
     """
     from grader.graph.discovery import cli_node
 
