@@ -116,7 +116,7 @@ class Patience:
 
 
 def _has_log(pid: int) -> bool:
-    """Return whether rclpy is initialized. Then a thread writes the log every few seconds, and wakes no other thread."""
+    """Return whether rclpy is initialized. Then a thread writes the log every few seconds. It wakes no other."""
     threads = Threads(pid, of_dds)
     try:
         return bool(threads.look().runs)
