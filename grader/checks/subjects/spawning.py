@@ -195,6 +195,13 @@ def _not_killed(
     if before and name not in before[-1].names:
         text = f"The message before the call did not name {name}. Was {name} removed from the list too early?"
         return failed(f"{name} was caught, but it still exists.", expected, Cause("target-unannounced", text, where))
+    killed = [call for call in calls_of(evidence) if call.service == "/kill" and call.t_s < caught_s]
+    if killed:
+        text = (
+            f"The node called /kill for {shorten(str(killed[-1].request['name']))}, but not for {name}. Was {name} "
+            "still in the list of the remaining turtles?"
+        )
+        return failed(f"{name} was caught, but it still exists.", expected, Cause("target-unannounced", text, where))
     why = waits_in_callback(evidence) or why_unasked(evidence, "/kill")
     if why.diagnosis == "service-not-called":
         why = Cause("not-killed", "The callback of the service must send a request to /kill.", where)

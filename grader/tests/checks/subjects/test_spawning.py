@@ -180,6 +180,14 @@ def test_a_turtle_that_was_forgotten_too_early_is_told(before: str, *, found: bo
     assert (words in reported) == found
 
 
+@pytest.mark.parametrize(("killed_s", "found"), [(1.0, True), (None, False)])
+def test_a_turtle_that_is_spared_although_others_are_killed_is_told(killed_s: float | None, *, found: bool) -> None:
+    kills = [] if killed_s is None else [replace(kill("target1"), t_s=killed_s)]
+    reported = told(of_removes(given(calls=[*kills, catch()], gone={})))
+    words = "The node called /kill for target1, but not for target2. Was target2 still in the list of the remaining"
+    assert (words in reported) == found
+
+
 def test_places_are_compared_with_those_of_another_trial() -> None:
     words = "Draw the places with random, but without random.seed, which makes the numbers the same each time."
     same, other = given(), given(calls=[spawn(0.5, "target1", 4.0, 4.0)])
