@@ -11,10 +11,14 @@ finishes (grader/submission/reader.py). Therefore, code that forks must hold the
 from __future__ import annotations
 
 import importlib
+import os
 import sys
 import threading
+from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
+
+from grader.errors import MachineError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -39,9 +43,27 @@ class _Lazy:
         return getattr(self.load(), attribute)
 
     def load(self) -> ModuleType:
-        """Import the module now, unless it has already been imported."""
+        """Import the module now, unless it has already been imported.
+
+        Raises:
+            MachineError: the module cannot be imported. No submission can cause this.
+        """
         with IMPORTING:
-            return importlib.import_module(self._name)
+            try:
+                return importlib.import_module(self._name)
+            except ImportError as error:
+                raise MachineError(_why_not_imported(self._name, error)) from error
+
+
+def _why_not_imported(name: str, error: ImportError) -> str:
+    """Return why a module cannot be imported, and what to do."""
+    top = name.partition(".")[0]
+    why = " ".join(str(error).split())[:200].rstrip(".")
+    entries = [entry for entry in os.environ.get("PYTHONPATH", "").split(os.pathsep) if entry]
+    hiding = next((entry for entry in entries if any(Path(entry).glob(f"{top}*"))), None)
+    if hiding is not None:
+        return f"{top} in {hiding} cannot be imported: {why}. PYTHONPATH names this folder: remove the folder from it."
+    return f"{top} cannot be imported: {why}. Run `make demo` in the course's folder."
 
 
 class _LazyCatkin(_Lazy):
@@ -53,7 +75,7 @@ class _LazyCatkin(_Lazy):
     def load(self) -> ModuleType:
         with IMPORTING:
             sys.modules.setdefault(_CONDITION, _WithoutParser(_CONDITION))
-            return importlib.import_module(self._name)
+            return super().load()
 
 
 class _WithoutParser(ModuleType):

@@ -114,8 +114,20 @@ def test_the_example_is_a_check_of_the_course(kind: Kind[Any]) -> None:
     assert check.pop("title", kind.title) == spec.title
     assert tuple(check.pop("needs", ())) == spec.needs
     assert check.pop("trial", exercise.trials[0].id) == spec.trial
+    own = with_own(check)
     given = {
-        name: Own(value["own"]) if isinstance(value, dict) and "own" in value else kind.parameters()[name].accept(value)
-        for name, value in check.items()
+        name: value if isinstance(value, Own) else kind.parameters()[name].accept(value) for name, value in own.items()
     }
     assert {**kind.defaults(), **given} == spec.params
+
+
+def with_own(table: dict[str, Any]) -> dict[str, Any]:
+    """Return the table with an Own in place of each value `{ own = "name" }`, also in tables inside the table."""
+    return {
+        name: value
+        if not isinstance(value, dict)
+        else Own(value["own"])
+        if value.keys() == {"own"}
+        else with_own(value)
+        for name, value in table.items()
+    }

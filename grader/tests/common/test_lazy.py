@@ -2,10 +2,14 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from typing import TYPE_CHECKING
 
 import pytest
 
 from grader.common.lazy import np
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 START = "import sys, grader.cli, grader.grading.grade, grader.evidence.recording_format, grader.report.terminal\n"
 
@@ -59,3 +63,17 @@ def test_the_parser_of_conditions_is_imported_only_for_a_condition(attribute: st
     code = PARSING.format(attribute=attribute)
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == printed
+
+
+@pytest.mark.parametrize(("hidden", "told"), [(True, "PYTHONPATH names this folder"), (False, "Run `make demo`")])
+def test_a_module_that_cannot_be_imported_is_the_fault_of_the_machine(
+    tmp_path: Path, *, hidden: bool, told: str
+) -> None:
+    (tmp_path / "numpy.py").write_text("raise ImportError('this numpy is\\nbroken')\n")
+    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from grader.common.lazy import np; np.hypot"
+    env = {"PYTHONPATH": str(tmp_path) if hidden else ""}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=env, check=False)
+    told_last = done.stderr.splitlines()[-1]
+    assert "MachineError: numpy" in told_last
+    assert "cannot be imported: this numpy is broken. " in told_last
+    assert told in told_last
