@@ -25,7 +25,7 @@ FAILS = re.compile(r"grader check exercises/\S+|grader check$")
 ELSEWHERE = {
     *("--security-opt", "--privileged", "--ros-args", "--params-file"),
     # Options of the benchmarks.
-    *("--again", "--keep"),
+    *("--again", "--keep", "--table"),
     # Options of the real `ros2 bag`, which ours does not have according to docs/ros2-differences.md.
     *(f"--{name.replace('_', '-')}" for name in NOT_HERE),
     *("--clock-topics", "--publish-service-requests"),
