@@ -11,7 +11,7 @@ import re
 import sys
 from typing import TYPE_CHECKING, Any
 
-from grader.submission.constants import dotted, evaluate
+from grader.submission.constants import dotted, evaluate, written
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -30,9 +30,10 @@ SECTION = "options.extras_require"
 
 def extras_of_setup(given: ast.expr, module: Module) -> tuple[str, ...] | None:
     """Return the names of the packages for tests in this argument `extras_require`, or None if it is not constant."""
-    table = _resolved(given, module)
+    table = written(given, module.names)
     if isinstance(table, ast.Dict):
-        pairs = [(None if key is None else evaluate(key, module.names), value) for key, value in _items(table)]
+        keys = (None if key is None else evaluate(key, module.names) for key in table.keys)
+        pairs = list(zip(keys, table.values, strict=True))
     elif isinstance(table, ast.Call) and dotted(table.func) == "dict" and not table.args:
         pairs = [(each.arg, each.value) for each in table.keywords]
     else:
@@ -85,18 +86,9 @@ def _of_setup_cfg(text: str) -> Iterator[str]:
                 yield value
 
 
-def _items(table: ast.Dict) -> Iterator[tuple[ast.expr | None, ast.expr]]:
-    return zip(table.keys, table.values, strict=True)
-
-
-def _resolved(node: ast.expr, module: Module) -> ast.expr | None:
-    """Return the expression itself or, for a name, the expression that it refers to."""
-    return module.names.get(node.id) if isinstance(node, ast.Name) else node
-
-
 def _lines(node: ast.expr, module: Module) -> Iterator[str]:
     """Yield the requirements of a list, a tuple, a set, or a string with one requirement per line."""
-    listed = _resolved(node, module)
+    listed = written(node, module.names)
     parts = listed.elts if isinstance(listed, ast.List | ast.Tuple | ast.Set) else [] if listed is None else [listed]
     for part in parts:
         value = evaluate(part, module.names)

@@ -79,8 +79,8 @@ def postponed(names: Iterable[str] = POSTPONED) -> Iterator[list[Postponed]]:
     try:
         yield modules
     finally:
-        if sys.modules[_NOT_NEEDED] is None:
-            del sys.modules[_NOT_NEEDED]
+        if sys.modules.get(_NOT_NEEDED) is None:
+            sys.modules.pop(_NOT_NEEDED, None)
         for module in modules:
             if sys.modules.get(module.__name__) is module:
                 del sys.modules[module.__name__]

@@ -18,8 +18,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from grader.evidence.evidence import Evidence
+    from grader.submission.code import Call
 
 CATCH = "/catch"
+LEVELS = ("debug", "info", "warning", "warn", "error", "fatal")
+"""The methods of a logger that log a line."""
 TURNS_RAD_S = 0.1
 """A smaller angular velocity is not a turn (rad/s)."""
 ASIDE_RAD = 0.3
@@ -65,11 +68,21 @@ def _wrong_angle(evidence: Evidence) -> Cause | None:
         if axes == [{"x"}, {"y"}]:
             text = "math.atan2 takes the difference in y first, and then the difference in x."
             return Cause("atan2-swapped", text, call.where)
-    degrees = next(iter(evidence.code.calls("degrees") + evidence.code.calls("rad2deg")), None)
+    converted = evidence.code.calls("degrees") + evidence.code.calls("rad2deg")
+    # A line of the log may show degrees to its reader.
+    degrees = next((call for call in converted if not any(_contains(log, call) for log in _logs(evidence))), None)
     if degrees is None:
         return None
     text = "The heading theta and angular.z are in radians, but this line converts an angle to degrees."
     return Cause("angle-in-degrees", text, degrees.where)
+
+
+def _logs(evidence: Evidence) -> list[Call]:
+    return [call for name in (*LEVELS, "print") for call in evidence.code.calls(name)]
+
+
+def _contains(outer: Call, inner: Call) -> bool:
+    return any(node is inner.node for node in ast.walk(outer.node))
 
 
 def _axes(node: ast.expr) -> set[str]:
@@ -81,11 +94,16 @@ def _axes(node: ast.expr) -> set[str]:
 
 def _farthest(evidence: Evidence) -> Cause | None:
     """Return the cause if the node chooses a target with max and a key."""
-    chosen = [call for call in evidence.code.calls("max") if any(each.arg == "key" for each in call.node.keywords)]
+    chosen = [call for call in evidence.code.calls("max") if (key := call.argument(99, "key")) and not _negates(key)]
     if not chosen or evidence.code.calls("min"):
         return None
     text = "max with a key returns the target with the largest distance."
     return Cause("farthest-chosen", text, chosen[0].where)
+
+
+def _negates(key: ast.expr) -> bool:
+    """Return whether the key has a minus sign: the largest negative distance is the smallest distance."""
+    return any(isinstance(node, ast.USub) for node in ast.walk(key))
 
 
 def wrong_turn(evidence: Evidence) -> Cause | None:

@@ -70,8 +70,9 @@ def test_a_module_that_cannot_be_imported_is_the_fault_of_the_machine(
     tmp_path: Path, *, hidden: bool, told: str
 ) -> None:
     (tmp_path / "numpy.py").write_text("raise ImportError('this numpy is\\nbroken')\n")
+    (tmp_path / "other" / "numpydoc").mkdir(parents=True)
     code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from grader.common.lazy import np; np.hypot"
-    env = {"PYTHONPATH": str(tmp_path) if hidden else ""}
+    env = {"PYTHONPATH": str(tmp_path if hidden else tmp_path / "other")}
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=env, check=False)
     told_last = done.stderr.splitlines()[-1]
     assert "MachineError: numpy" in told_last

@@ -55,6 +55,9 @@ def cause(
 
 SWAPPED = NODE.replace("atan2(dy, dx)", "atan2(place.x - self.pose.x, place.y - self.pose.y)")
 DEGREES = NODE.replace("math.atan2(dy, dx)", "math.degrees(math.atan2(dy, dx))")
+LOGGED = NODE.replace(
+    "        self.publisher", "        self.get_logger().info(f'{math.degrees(1.0)}')\n        self.publisher"
+)
 MOST = NODE.replace("min(", "max(")
 
 
@@ -72,6 +75,8 @@ MOST = NODE.replace("min(", "max(")
             cause(DEGREES),
             cause(NODE.replace("4.0 *", "radians(4.0) *")),
         ),
+        ("angle-in-degrees", cause(DEGREES), cause(LOGGED)),
+        ("farthest-chosen", cause(MOST), cause(MOST.replace("=self.distance", "=lambda name: -self.distance(name)"))),
         ("farthest-chosen my_robot_controller/draw_circle.py:8: ", cause(MOST), cause()),
         ("max with a key returns the target with the", cause(MOST), cause(NODE.replace("4.0 *", "max(4.0, 5.0) *"))),
         ("turns-away my_robot_controller/draw_circle.py:11: ", cause(commands=RIGHT_TURN), cause(commands=LEFT_TURN)),
