@@ -1,8 +1,11 @@
-"""Skip a test, or fail in CI, if a program that the test needs is missing."""
+"""Skip a test, or fail in CI, if a program or a permission that the test needs is missing."""
 
 from __future__ import annotations
 
 import os
+import stat
+import sys
+from pathlib import Path
 from typing import NoReturn
 
 import pytest
@@ -14,3 +17,10 @@ def give_up(program: str, package: str) -> NoReturn:
     if os.environ.get("CI") == "true":
         pytest.fail(f"this cannot be tested, since {reason}")
     pytest.skip(reason)
+
+
+def need_reachable_python() -> None:
+    """Skip the test if an ordinary user cannot reach this Python, as in a clone made with `git clone . $(mktemp -d)`."""
+    for folder in Path(sys.executable).parents:
+        if not folder.stat().st_mode & stat.S_IXOTH:
+            pytest.skip(f"only the owner of {folder} can enter this folder")

@@ -162,6 +162,7 @@ import pathlib, sys
 from grader.checks.exercises import find_exercise
 from grader.classroom.content import fingerprint, read
 from grader.classroom.find_submissions import find_submissions, passed_over
+from grader.tests.lacking import need_reachable_python
 folder = pathlib.Path(sys.argv[1])
 for found in find_submissions([folder], sys.argv[2], folder):
     exercise = find_exercise(sys.argv[2])
@@ -172,6 +173,7 @@ passed_over([folder], folder)
 
 
 def test_a_folder_without_permission_is_reported(tmp_path: Path) -> None:
+    need_reachable_python()
     a_closed_folder(tmp_path)
     start = interpreter("-c", LOOK)
     # root can enter every folder
