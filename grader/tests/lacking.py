@@ -20,7 +20,7 @@ def give_up(program: str, package: str) -> NoReturn:
 
 
 def need_reachable_python() -> None:
-    """Skip the test if an ordinary user cannot reach this Python, as in a clone made with `git clone . $(mktemp -d)`."""
+    """Skip the test if an ordinary user cannot reach this Python, as after `git clone . $(mktemp -d)`."""
     for folder in Path(sys.executable).parents:
         if not folder.stat().st_mode & stat.S_IXOTH:
             pytest.skip(f"only the owner of {folder} can enter this folder")

@@ -23,6 +23,7 @@ from grader.common.interpreter import interpreter
 from grader.errors import DiskError, MachineError, UsageError
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import STEP, grade, rows
+from grader.tests.lacking import need_reachable_python
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -162,7 +163,6 @@ import pathlib, sys
 from grader.checks.exercises import find_exercise
 from grader.classroom.content import fingerprint, read
 from grader.classroom.find_submissions import find_submissions, passed_over
-from grader.tests.lacking import need_reachable_python
 folder = pathlib.Path(sys.argv[1])
 for found in find_submissions([folder], sys.argv[2], folder):
     exercise = find_exercise(sys.argv[2])

@@ -23,6 +23,7 @@ from grader.sandbox import bubblewrap
 from grader.submission import reader
 from grader.submission.reader import read
 from grader.tests.case import ROOT
+from grader.tests.lacking import need_reachable_python
 from grader.tests.observed_host import USER
 
 if TYPE_CHECKING:
@@ -164,7 +165,6 @@ def test_it_changes_nothing_even_without_the_filter(tmp_path: Path, monkeypatch:
 ORDINARY = """
 from pathlib import Path
 from grader.submission import reader
-from grader.tests.lacking import need_reachable_python
 reader.allow_only_reading = lambda _: False
 print(reader.is_confined(), reader.read(Path.read_text, Path("/etc/hostname")) == Path("/etc/hostname").read_text())
 """
