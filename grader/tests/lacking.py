@@ -1,4 +1,4 @@
-"""Skip a test, or fail in CI, if a program or a permission that the test needs is missing."""
+"""Skip a test if the machine lacks something that the test needs. In CI, a missing program is a failure."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def give_up(program: str, package: str) -> NoReturn:
 
 
 def need_reachable_python() -> None:
-    """Skip the test if an ordinary user cannot reach this Python, as after `git clone . $(mktemp -d)`."""
+    """Skip the test if an ordinary user cannot reach this Python, as after `git clone . $(mktemp -d)`, also in CI."""
     for folder in Path(sys.executable).parents:
         if not folder.stat().st_mode & stat.S_IXOTH:
             pytest.skip(f"only the owner of {folder} can enter this folder")
