@@ -9,6 +9,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.why_rate import WITHOUT_PAUSE, period_of_zero
 from grader.checks.kinds import KINDS
 from grader.checks.outcome import Finding, Outcome, Status, failed
+from grader.checks.starved import unless_too_busy
 from grader.common.words import shorten
 from grader.errors import MachineError, UnreadableError
 from grader.evidence.stage import STAGES
@@ -170,7 +171,11 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
     if not made:
         return Finding(Status.SKIPPED, "Not judged, because the node was not run.")
     try:
-        return kind.judge(evidence, spec.params)
+        finding = kind.judge(evidence, spec.params)
+        if finding.status is not Status.FAILED or kind.stage != "trial" or evidence.run.recording is None:
+            return finding
+        of_files = kind.judge_early(evidence, spec.params) is not None
+        return finding if of_files else unless_too_busy(finding, evidence.recording)
     except MachineError as error:
         return Finding(Status.ERROR, str(error))
     except Exception as error:  # an exception in one check must not discard the other outcomes of a whole class

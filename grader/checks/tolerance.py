@@ -3,12 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
-from grader.checks.outcome import Finding, Status
-
-if TYPE_CHECKING:
-    from grader.trial.recording import Recording
 
 NEAR = 0.2
 """A value is near an edge if its distance to the edge is at most this fraction of the tolerance."""
@@ -57,15 +51,3 @@ class Band:
         near_low = self.low is not None and abs(value - self.low) <= NEAR * self.low_width
         near_high = self.high is not None and abs(value - self.high) <= NEAR * self.high_width
         return near_low or near_high
-
-
-def unless_starved(finding: Finding, recording: Recording, off: float, per_s: float) -> Finding:
-    """Return the finding, or an error finding if stalls of the machine can explain the failure.
-
-    `off` is the distance of the value from its tolerance range, and `per_s` is the change of the value per second.
-    While the machine stalls, the turtle continues with its last command.
-    """
-    if finding.status is Status.FAILED and recording.stalls and off <= per_s * recording.stalled_s:
-        message = "The machine was too busy to judge the check in wall time. Try again when the machine is less busy."
-        return Finding(Status.ERROR, message)
-    return finding

@@ -98,20 +98,20 @@ class Guard:
         """
         return sum(ready_s for pid, ready_s in self._ready.copy().items() if pid != but)
 
-    def waited_s(self) -> float:
-        """Return how long the processes of the cell have waited for a processor, in total (s).
+    def waited_s(self, *, of: int | None = None) -> float:
+        """Return how long the processes of the cell, or only the process `of`, have waited for a processor (s).
 
         Only the first thread of each process is counted.
         """
-        return sum(self._waited.copy().values())
+        return sum(waited_s for pid, waited_s in self._waited.copy().items() if of in (None, pid))
 
     def _worked_so_far_s(self) -> float:
-        return sum(map(_cpu_s, family(self._pid)))
+        return sum(map(cpu_s, family(self._pid)))
 
     def _run(self) -> None:
         while not self._closed.wait(EVERY_S):
             processes = list(family(self._pid))
-            self._worked.append((time.monotonic(), sum(map(_cpu_s, processes))))
+            self._worked.append((time.monotonic(), sum(map(cpu_s, processes))))
             for process in processes:
                 ran_s, waited_s = _ran_and_waited_s(process)
                 self._ready[process] = max(ran_s + waited_s, self._ready.get(process, 0.0))
@@ -178,7 +178,7 @@ def _waiting_bytes(pid: int) -> int:
     return total
 
 
-def _cpu_s(pid: int) -> float:
+def cpu_s(pid: int) -> float:
     """Return the CPU time of the process and of its exited children (s)."""
     try:
         fields = _read(f"/proc/{pid}/stat").rpartition(")")[2].split()

@@ -34,7 +34,9 @@ FULL = 0.25
 only halfway."""
 STOP_S = 3.0
 """The maximum time that the node may take to exit after SIGINT (s). After this time, the grader sends SIGTERM and, 1 s
-later, SIGKILL."""
+later, SIGKILL. The time for which the node waits for a processor does not count."""
+MOST_WAITED_S = 12.0
+"""The maximum time that does not count because the node waits for a processor (s)."""
 
 
 class LaunchError(Exception):
@@ -138,6 +140,7 @@ class NodeProcess:
         self._full = FULL * min(enlarge(stream.fd) for stream in self._streams)
         self.pid = 0
         self._interrupted: float | None = None
+        self._waited_before_s = 0.0
         self._by = "itself"
 
     def __enter__(self) -> NodeProcess:  # noqa: PYI034 - typing.Self is Python 3.11's
@@ -206,6 +209,7 @@ class NodeProcess:
                 self._process.wait(STOP_S)
         if not self.ended():
             self._interrupted = time.monotonic()
+            self._waited_before_s = self._waited_s()
             self._by = "SIGINT"
             self._signal(signal.SIGINT)
 
@@ -214,8 +218,8 @@ class NodeProcess:
 
         Call this method repeatedly after SIGINT.
         """
-        assert self._interrupted is not None
-        passed = time.monotonic() - self._interrupted
+        passed = self._stopping_s()
+        assert passed is not None
         if passed > STOP_S + 1.0 and self._by != "SIGKILL":
             self._by = "SIGKILL"
             self._process.kill()  # this ends the whole cell, because of --die-with-parent
@@ -227,10 +231,21 @@ class NodeProcess:
     def end(self, now_s: float) -> ProcessEnd:
         """Return how the process of the node ended. Call this method only after `ended` has returned True."""
         code = self._process.returncode
-        stopped = None if self._interrupted is None else time.monotonic() - self._interrupted
+        stopped = self._stopping_s()
         # Like a shell, bwrap reports a signal as 128 + the signal number.
         exit_code = 128 - code if code > 128 else code
         return ProcessEnd(self._by, exit_code, now_s, stopped, self._out_of)  # type: ignore[arg-type]
+
+    def _stopping_s(self) -> float | None:
+        """Return the time since SIGINT without the time for which the node waited for a processor (s), or None."""
+        if self._interrupted is None:
+            return None
+        passed_s = time.monotonic() - self._interrupted
+        waited_s = self._waited_s() - self._waited_before_s
+        return max(0.0, passed_s - min(waited_s, MOST_WAITED_S))
+
+    def _waited_s(self) -> float:
+        return self._guard.waited_s(of=self.pid) if self._guard is not None else 0.0
 
     def _over(self, what: str) -> None:
         self._out_of = what

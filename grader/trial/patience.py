@@ -1,4 +1,4 @@
-"""Time limits for a node in simulated time. The limits apply to CPU time, so the load of the machine has no effect."""
+"""Time limits for a node. The limits apply to CPU time and to sleep, so the load of the machine has no effect."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ if TYPE_CHECKING:
     from grader.trial.node_group import GroupThreads
     from grader.trial.rest import Threads
 
-ASLEEP_S = 20.0
-"""The maximum time that a node may sleep before it waits for its clock (s)."""
-WORKED_S = 20.0
-"""The maximum CPU time that a node may use before it waits for its clock (s)."""
+HANDSHAKE_LIMIT_S = 20.0
+"""The maximum time that a node may sleep before it waits for its clock, and the maximum CPU time that it may use before
+(s)."""
 HANDSHAKE_S = 100.0
 """The maximum wall time until a node waits for its clock (s). A node can reach this limit only on a crowded machine.
 The limit for the whole trial is slightly higher (trial.py)."""
@@ -27,11 +26,13 @@ REQUEST_EVERY_S = 0.02
 class HandshakePatience:
     """The time limit for a node to reach the point at which it waits for its clock.
 
-    Time during which the node works or waits for the grader does not count.
+    Time during which the node works or waits for the grader does not count. `limit_s` is the maximum time that the node
+    may sleep, and the maximum CPU time that it may use (s).
     """
 
-    def __init__(self, now_s: float) -> None:
+    def __init__(self, now_s: float, limit_s: float = HANDSHAKE_LIMIT_S) -> None:
         self._begun_s = self._cpu_observed_s = now_s
+        self._limit_s = limit_s
         self._asleep_s = 0.0
 
     def ended(self, now_s: float, *, asleep: bool, wrote: bool, worked_s: float) -> bool:
@@ -44,7 +45,7 @@ class HandshakePatience:
         if asleep and not wrote:
             self._asleep_s += now_s - self._cpu_observed_s
         self._cpu_observed_s = now_s
-        return self._asleep_s > ASLEEP_S or worked_s > WORKED_S or now_s - self._begun_s > HANDSHAKE_S
+        return max(self._asleep_s, worked_s) > self._limit_s or now_s - self._begun_s > HANDSHAKE_S
 
 
 class TickPatience:

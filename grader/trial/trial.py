@@ -13,7 +13,6 @@ from contextlib import ExitStack, suppress
 from dataclasses import asdict, dataclass, field, replace
 from functools import cache
 from pathlib import Path
-from threading import Timer
 from typing import IO, TYPE_CHECKING, Any
 
 import grader
@@ -29,6 +28,7 @@ from grader.trial.inputs import Inputs
 from grader.trial.own_domain import own_domain
 from grader.trial.process_group import ProcessGroup
 from grader.trial.recording_json import from_json
+from grader.trial.time_limit import TimeLimit
 
 if TYPE_CHECKING:
     from grader.trial.recording import ClockName, Pose, Recording
@@ -112,7 +112,6 @@ class Trial:
         self._ready = False
         self._domain: int | None = None
         self._group = ControlGroup()
-        self._timer = Timer(0.0, lambda: None)
 
     def __enter__(self) -> Trial:  # noqa: PYI034 - typing.Self is Python 3.11's
         self.start()
@@ -148,7 +147,7 @@ class Trial:
         if not self._ready:
             self._limit()
             self._answer("ready")
-            self._timer.cancel()  # the node may be started much later
+            self._time_limit.cancel()  # the node may be started much later
             self._ready = True
 
     def suspend(self) -> None:
@@ -235,6 +234,7 @@ class Trial:
         )
         # Kill the whole process group, because a child of bubblewrap may outlive it while bubblewrap is starting.
         self._processes = ProcessGroup(self._process.pid)
+        self._time_limit = TimeLimit(self._processes)
         self._stack.callback(self._end)
         plan = asdict(self._plan) | {"start": [self._plan.start.x, self._plan.start.y, self._plan.start.theta]}
         where = {"home": str(self._home), "domain": self._domain, "in_cell": self._in_cell}
@@ -244,13 +244,10 @@ class Trial:
     def _limit(self) -> None:
         # The grader never waits forever. The limits of the trial itself are much lower.
         self._processes.resume()
-        self._timer.cancel()
-        self._timer = Timer(120.0 + 6.0 * self._plan.duration_s, self._processes.kill)
-        self._timer.daemon = True
-        self._timer.start()
-        self._stack.callback(self._timer.cancel)
+        self._time_limit.start(120.0 + 6.0 * self._plan.duration_s)
 
     def _end(self) -> None:
+        self._time_limit.cancel()
         self._processes.kill()
         for pipe in (self._process.stdin, self._process.stdout):
             if pipe is not None:
@@ -290,11 +287,14 @@ class Trial:
         message = f"The simulator failed. {refused}" if refused else unknown
         raise MachineError(message)
 
-    def _how_it_ended(self) -> OverwhelmedError:
+    def _how_it_ended(self) -> OverwhelmedError | MachineError:
         try:
             code = self._process.wait(5.0)
         except subprocess.TimeoutExpired:
             return OverwhelmedError("it no longer answered", hung=True)
+        if self._time_limit.starved:
+            message = "The machine was too busy to finish the trial in time. Try again when the machine is less busy."
+            return MachineError(message)
         if code == -signal.SIGKILL:
             return OverwhelmedError("it was still busy long after the end of the trial", hung=True)
         return OverwhelmedError(f"it ended with exit code {code}")

@@ -14,8 +14,9 @@ from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_silent import why_nothing
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
+from grader.checks.starved import unless_starved
 from grader.checks.subjects.services import calls_of
-from grader.checks.tolerance import Band, unless_starved
+from grader.checks.tolerance import Band
 from grader.common.words import a_list, shorten
 from grader.evidence import activity
 from grader.evidence.targets import announcements, is_there

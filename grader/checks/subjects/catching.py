@@ -15,8 +15,8 @@ from grader.checks.causes.why_not_caught import why_not_caught
 from grader.checks.causes.why_unasked import why_unasked
 from grader.checks.kind import Kind, NoParams, number, string
 from grader.checks.outcome import Finding, failed, passed
+from grader.checks.starved import unless_starved
 from grader.checks.subjects.services import calls_of
-from grader.checks.tolerance import unless_starved
 from grader.common.words import a_list, count, shorten
 from grader.evidence import activity
 from grader.evidence.interventions import KILL, RESET, moved_by

@@ -11,9 +11,10 @@ from grader.checks.causes.too_soon import too_soon
 from grader.checks.kind import Kind, choice, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.requested import Requested, first_heading
+from grader.checks.starved import unless_starved
 from grader.checks.subjects.path import CircleParams, expected_centre, not_driven
 from grader.checks.subjects.standstill import ZEROS, no_standstill
-from grader.checks.tolerance import Band, unless_starved
+from grader.checks.tolerance import Band
 from grader.common.lazy import np
 from grader.evidence.circle_fit import Circle, fit_circle
 from grader.evidence.trajectory import RESTS_M, STRAIGHT_RAD

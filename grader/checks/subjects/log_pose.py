@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.kind import Kind, number, string
-from grader.checks.outcome import Finding, Status, failed, passed
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.starved import too_busy
 from grader.common.lazy import np
 from grader.common.words import shorten
 from grader.evidence import student_log
@@ -200,10 +201,7 @@ def _trusted(recording: Recording, format_: str) -> list[Line]:
 
 def _too_few(evidence: Evidence, text_: str) -> Finding:
     if len(student_log.in_format(evidence.recording, text_)) >= FEWEST:
-        return Finding(
-            Status.ERROR,
-            "The machine was too busy to judge the check in wall time. Try again when the machine is less busy.",
-        )
+        return too_busy()
     expected = f"The log has at least {FEWEST} lines in this format."
     where = evidence.place("info")
     return failed("There are too few lines to compare.", expected, Cause("too-few-log-lines", where=where))

@@ -12,9 +12,10 @@ from grader.checks.causes.too_soon import too_soon
 from grader.checks.kind import Kind, choice, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.requested import Requested, first_heading
+from grader.checks.starved import unless_starved
 from grader.checks.subjects.path import not_driven
 from grader.checks.subjects.standstill import ZEROS, no_standstill, silent_while_moving
-from grader.checks.tolerance import Band, unless_starved
+from grader.checks.tolerance import Band
 from grader.common.lazy import np
 from grader.common.words import count
 from grader.evidence.trajectory import RESTS_M, STRAIGHT_RAD

@@ -134,3 +134,10 @@ def test_where_all_fail_the_one_that_was_disturbed_least_counts() -> None:
 def test_a_stall_disturbs_less_than_a_crowd() -> None:
     stalled = replace(WRONG, stalls=((1.0, 1.3),))
     assert stalls(graded(Trials([crowded(WRONG), stalled, crowded(WRONG)]))) == stalled.stalls
+
+
+def test_a_node_that_is_starved_in_every_trial_is_not_blamed() -> None:
+    late = crowded(recording(every(0.5, 2.0, 1.0, first_s=6.0), clock="wall"), (0.0, 5.5))
+    found = graded(Trials([late] * WALL_TRIALS))
+    assert Status.ERROR in statuses(found)
+    assert Status.FAILED not in statuses(found)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import time
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
+from unittest.mock import patch
 
 import rclpy
 from geometry_msgs.msg import Twist
@@ -14,12 +16,16 @@ from turtlesim.action import RotateAbsolute
 from turtlesim.srv import Spawn
 
 from grader.tests.waiting import until
+from grader.trial import wall
 from grader.trial.inputs import Inputs
 from grader.trial.recording import Pose
+from grader.trial.rest import Look
 from grader.trial.silent_servers import SilentServers
 from grader.trial.simulated import QUIET_S
 from grader.trial.wall import WallTrial
 from grader.trial.without_node import AloneTrial
+
+LIMIT_S = 0.25
 
 
 def what_one_spin_handles() -> dict[str, Any]:
@@ -45,9 +51,11 @@ def a_line_while_the_graph_is_looked_at() -> list[float]:
     written: list[str] = []
     taken_in_s: list[float] = []
 
-    def read(now_s: float) -> None:
-        taken_in_s.extend([now_s] * len(written))
+    def read(now_s: float) -> int:
+        size = len(written)
+        taken_in_s.extend([now_s] * size)
         written.clear()
+        return size
 
     stage: Any = WallTrial.__new__(WallTrial)
     stage.node = SimpleNamespace(pids=(1,), ended=lambda: False, read_output=read)
@@ -70,6 +78,28 @@ def a_node_that_drives_before_it_is_found() -> int:
     stage.students_nodes = lambda: ["/draw_square"]
     stage._discover()
     return len(commands)
+
+
+def who_is_found_after_the_limit() -> dict[str, bool]:
+    """Return whether the clock waits for a node that starts after the time limit.
+
+    In one case, the node has slept for this time. In the other case, it has waited for a processor.
+    """
+
+    def found(*, asleep: bool) -> bool:
+        begun_s = time.monotonic()
+        stage: Any = WallTrial.__new__(WallTrial)
+        stage.node = SimpleNamespace(pids=(1,), ended=lambda: False, read_output=lambda _: 0)
+        stage.recorder = SimpleNamespace(commands=[])
+        stage.follow_graph = lambda: False
+        stage.spin = lambda timeout_s=0.0: time.sleep(timeout_s)
+        stage.all_nodes_found = lambda: time.monotonic() - begun_s > 4.0 * LIMIT_S
+        threads = SimpleNamespace(look=lambda: Look(asleep, ()), run_time_s=lambda: 0.0, close=lambda: None)
+        with patch.object(wall, "DISCOVERY_S", LIMIT_S), patch.object(wall, "GroupThreads", lambda _: threads):
+            stage._discover()
+        return bool(stage.all_nodes_found())
+
+    return {"asleep": found(asleep=True), "waiting": found(asleep=False)}
 
 
 def who_may_act() -> bool:

@@ -2,17 +2,24 @@ from __future__ import annotations
 
 import fcntl
 import os
+import time
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.trial.node_process import FULL, PIPE, Stream, enlarge
+from grader.sandbox.limits import Limits
+from grader.sandbox.usage import Guard
+from grader.tests.waiting import until
+from grader.trial import node_process
+from grader.trial.node_process import FULL, PIPE, NodeProcess, Stream, enlarge
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 PAGE = os.sysconf("SC_PAGE_SIZE")
+SLOW = r"""printf '\0ready\n'; read order; trap 'sleep 1; exit 0' INT; echo waits; while :; do sleep 0.05; done"""
+"""A node that takes a second to stop."""
 
 
 @pytest.fixture
@@ -56,3 +63,24 @@ def test_a_pipe_that_may_not_grow_is_used_as_it_is(
 
     monkeypatch.setattr(fcntl, "fcntl", refuses)
     assert enlarge(pipe[0]) == size == real(pipe[1], fcntl.F_GETPIPE_SZ)
+
+
+@pytest.mark.parametrize(("waited_s", "by"), [(0.0, "SIGTERM"), (60.0, "SIGINT")], ids=["idle", "crowded"])
+def test_waiting_for_a_processor_after_ctrl_c_does_not_count(
+    monkeypatch: pytest.MonkeyPatch, waited_s: float, by: str
+) -> None:
+    waits = iter([0.0])
+    monkeypatch.setattr(Guard, "waited_s", lambda *_, **__: next(waits, waited_s))
+    monkeypatch.setattr(node_process, "STOP_S", 0.2)
+    with NodeProcess(lambda *_: ["sh", "-c", SLOW], Limits(processes=50, cpu_s=60), in_cell=False) as process:
+        process.await_ready()
+        process.start({}, b"")
+        until(lambda: process.read_output(0.0) > 0)
+        process.interrupt()
+        while not process.ended():
+            process.escalate()
+            time.sleep(0.01)
+        end = process.end(0.0)
+    assert end.by == by
+    assert end.stop_s is not None
+    assert (end.stop_s < 0.2) == (by == "SIGINT")

@@ -42,7 +42,7 @@ def test_a_trial_that_is_ready_may_wait_for_its_turn_as_long_as_it_takes(monkeyp
             limits.append(self)
             super().start()
 
-    monkeypatch.setattr("grader.trial.trial.Timer", Limit)
+    monkeypatch.setattr("grader.trial.time_limit.Timer", Limit)
     starter = ["sh", "-c", """read plan; echo '{"ready": true}'; read order"""]
     monkeypatch.setattr("grader.sandbox.bubblewrap.room", lambda *_, **__: starter)
     with Trial(Plan("simulated", Pose(5.5, 5.5, 0.0), None, 1.0), find_ros(), in_cell=True) as trial:

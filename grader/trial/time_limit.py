@@ -1,0 +1,51 @@
+"""The time limit of a whole trial, which only ends trials that would never end on their own."""
+
+from __future__ import annotations
+
+import os
+import time
+from threading import Timer
+from typing import TYPE_CHECKING
+
+from grader.sandbox.usage import cpu_s, family
+from grader.trial.crowd import Others
+
+if TYPE_CHECKING:
+    from grader.trial.process_group import ProcessGroup
+
+MOST_BY_OTHERS = 0.75
+"""If other programs used at least this share of the processors, the machine may be the reason why a trial did not end
+in time. A node that keeps the simulator busy gets at least half of the processors beside other trials of a class."""
+
+
+class TimeLimit:
+    """Kills the processes of a trial when they take too long. `starved` then says whether the machine was too busy."""
+
+    def __init__(self, processes: ProcessGroup) -> None:
+        self._processes = processes
+        self._timer = Timer(0.0, lambda: None)
+        self._others = Others()
+        self._worked_before_s = self._begun_s = 0.0
+        self.starved = False
+
+    def start(self, seconds: float) -> None:
+        """Kill the processes after this time (s). A limit that was started earlier no longer applies."""
+        self.cancel()
+        self._others, self._worked_before_s, self._begun_s = Others(), self._worked_s(), time.monotonic()
+        self._timer = Timer(seconds, self._end)
+        self._timer.daemon = True
+        self._timer.start()
+
+    def cancel(self) -> None:
+        """Do not kill the processes any more."""
+        self._timer.cancel()
+
+    def _end(self) -> None:
+        worked_s = self._worked_s() - self._worked_before_s
+        passed_s = time.monotonic() - self._begun_s
+        others_s = self._others.worked_s(but_s=worked_s)
+        self.starved = others_s >= MOST_BY_OTHERS * len(os.sched_getaffinity(0)) * passed_s
+        self._processes.kill()
+
+    def _worked_s(self) -> float:
+        return sum(map(cpu_s, family(self._processes.leader)))
