@@ -139,7 +139,9 @@ def run(
     The beginning and the end of standard error are kept.
 
     With `watch`, the child is killed when its processes exceed these limits together, and the time for which they wait
-    for a processor does not count. On a crowded machine, the child may take up to MOST_TIME times `timeout_s`.
+    for a processor does not count. On a crowded machine, the child may take up to MOST_TIME times `timeout_s`. The CPU
+    time of its processes together has the limit `timeout_s`, too, so that they gain no time by keeping the processors
+    busy.
 
         done = run(["cat"], stdin=b"text", timeout_s=60.0, most_stdout=1000, most_stderr=1000)
     """
@@ -153,8 +155,12 @@ def run(
         guard = Guard(child.pid, watch, over.append) if watch is not None else None
 
         def left() -> float:
-            waited_s = guard.waited_s() if guard is not None else 0.0
-            return begun + timeout_s + min(waited_s, (MOST_TIME - 1) * timeout_s) - time.monotonic()
+            now = time.monotonic()
+            if guard is None:
+                return begun + timeout_s - now
+            if guard.worked_s(begun, now) >= timeout_s:
+                return 0.0
+            return begun + timeout_s + min(guard.waited_s(), (MOST_TIME - 1) * timeout_s) - now
 
         in_time = False
         try:

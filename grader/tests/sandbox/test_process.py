@@ -72,3 +72,11 @@ def test_a_child_on_a_crowded_machine_is_ended_after_three_times_its_limit(monke
     done = run(["sleep", "1000"], timeout_s=0.2, most_stdout=100, most_stderr=100, watch=Limits())
     assert done.timed_out
     assert time.monotonic() - begun >= 0.6
+
+
+def test_processes_gain_no_time_by_keeping_the_processors_busy(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("grader.sandbox.process.MOST_TIME", 20)
+    busy = "for number in 1 2 3 4 5 6 7 8; do while :; do :; done & done; wait"
+    done = run(["sh", "-c", busy], timeout_s=1.0, most_stdout=100, most_stderr=100, watch=Limits())
+    assert done.timed_out
+    assert done.seconds < 20
