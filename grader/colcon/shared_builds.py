@@ -43,7 +43,7 @@ _USUAL_FOLDER = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
 
 
 class SharedBuilds:
-    """A replacement for `runner.build` that reuses the builds of packages with the same files except their modules.
+    """A replacement for `runner.build` that reuses the build of a package whose files, except modules, are the same.
 
     `runs` counts the builds with colcon. With a `store`, builds in cells are also reused by later commands.
     """

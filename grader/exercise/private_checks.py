@@ -3,7 +3,7 @@
 Such a file modifies the exercise.toml of the course:
 
     schema = 2
-    [[check]]       If the id is in the course, the keys replace the keys of the course's check (all of its keys if the
+    [[check]]       If the id is in the course, these keys override those of the course's check (all of its keys if the
                     kind differs). A new id adds a check. The check is hidden unless it has `hidden = false`.
     [[trial]]       A trial is replaced or added in the same way, by its id.
 """

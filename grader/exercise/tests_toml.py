@@ -52,7 +52,8 @@ def unknown_numbers(trials: Sequence[TrialSpec], numbers: NumbersSpec | None) ->
         for name in tests.own:
             drawn = options.get(name, ())
             if not drawn or isinstance(drawn[0], str) or not isinstance(getattr(tests.right, name, None), float):
-                yield f'[trial.tests]: "own" contains {shorten(name)}; it must be a number of the node and [numbers].'
+                found = f'[trial.tests]: "own" contains {shorten(name)}'
+                yield f"{found}; it must name a number of the node, and a list of numbers in [numbers]."
 
 
 def _broken(table: Table, right: Behaviour) -> NodeUnderTest:

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Synced:
-    """The result of a sync: the number of changed scores and of submissions, and the work that was not judged."""
+    """The result of a sync: how many submissions and changed scores there are, and the work that was not judged."""
 
     submissions: int
     changed: int

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 PART_ONE, PART_TWO = "Part one: topics", "Part two: beyond topics"
 FIRST_OF_PART_TWO = "08"
 _ROOM_FOR_TITLES = 60
-"""The narrowest terminal on which the status has the titles of the steps (columns)."""
+"""The minimum width of a terminal (columns) on which the status shows the titles of the steps."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Find the only package in a folder, or explain to a beginner why there is not exactly one.
 
-As in colcon, a folder that contains package.xml or setup.py is a package, and all folders below the folder belong to
-the package.
+As in colcon, a folder that contains package.xml or setup.py is a package, and all folders below it belong to the
+package.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 FINER = 4
 """The factor by which the canvas is drawn larger before it is scaled down, which makes the edges smooth."""
 _TURTLE_PX = 11
-"""The minimum length of a turtle in pixels of the terminal, at which its direction is visible."""
+"""The minimum length of a turtle (pixels of the terminal). On a shorter turtle, its direction would not be visible."""
 _SHELL, _SKIN, _EDGE = (47, 125, 50), (124, 197, 118), (255, 255, 255)
 
 Rgb = tuple[int, int, int]

@@ -101,7 +101,7 @@ class CrashScene:
         return [node for node in self.nodes if isinstance(node, Function) and node.name == name]
 
     def at(self, node: ast.AST | int | None) -> Where | None:
-        """Return the place of a node or line of this module, or the place of the exception if `node` is None."""
+        """Return the place of a syntax node or a line, or the place of the exception if `node` is None."""
         if node is None or self.module is None:
             return self.crash.where
         return Where(self.module.file, node if isinstance(node, int) else getattr(node, "lineno", None))

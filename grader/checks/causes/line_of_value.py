@@ -21,7 +21,9 @@ OTHER_FIELD = {
     "linear": re.compile("ang|turn|rot|yaw|omega|steer", re.IGNORECASE),
     "angular": re.compile("lin|forw|drive|speed$", re.IGNORECASE),
 }
-"""Maps a part of a Twist to names that belong to its other part. Such a name is wrong where it is assigned."""
+"""Maps a part of a Twist to patterns of names that belong to the other part.
+
+If a value comes from such a name, the mistake is the assignment to the field."""
 
 
 def line_of_value(evidence: Evidence, field: str, value: float) -> Where | None:

@@ -76,7 +76,7 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
 NOT_CLOSED = re.compile(r"does not match opening parenthesis '(?P<bracket>.)' on line (?P<line>\d+)")
 NO_BODY = re.compile(r"expected an indented block after .* on line (?P<line>\d+)")
 OUTSIDE = re.compile(r"\s*(?:def|class|async def|@|if __name__)\b|\s*@")
-"""The beginning of a line that cannot belong to the body that is missing."""
+"""Matches a line that begins something new, so it cannot be the body that Python expects."""
 ENTRY_POINT = re.compile(r"\s*\w+\s*=\s*[\w.]+:\w+\s*,?\s*")
 OTHER_LANGUAGES = (
     (r"\s*else\s+if\b.*", "Python spells else if as one word: elif."),

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 CALL = "call_async"
 NOTHING = (None, False)
-"""Values by which an attribute says that no call is under way."""
+"""The values of an attribute that mean that the node is not waiting for a response."""
 
 
 def why_again(evidence: Evidence) -> Cause:

@@ -91,8 +91,8 @@ def _of_ros(message: str, where: Where | None) -> Cause | None:
         return Cause("not-shut-down", text, where)
     if NOT_YET.search(message):
         text = (
-            "A node exists between rclpy.init and rclpy.shutdown. A fixture calls rclpy.init before the yield and "
-            "rclpy.shutdown after it."
+            "A node can exist only between rclpy.init and rclpy.shutdown. A fixture calls rclpy.init before the yield "
+            "and rclpy.shutdown after it."
         )
         return Cause("no-init", text, where)
     if OUTSIDE.search(last_error(message)):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 
-EXPECTED = "A ROS 2 node does regular work in a timer callback."
+EXPECTED = "A ROS 2 node does periodic work in the callback of a timer."
 ALWAYS = ("True", "1", "rclpy.ok()")
 SENDS = frozenset({"publish", "info"})
 WAITS = frozenset({"sleep"})

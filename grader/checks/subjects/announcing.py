@@ -114,7 +114,7 @@ def _wrong_names(evidence: Evidence, message: Announcement, heard: list[Announce
         return failed(f'{at} is "{shorten(message.text)}".', expected, Cause("target-format", text, where))
     if strange:
         text = "Remove a name when its turtle is caught, and add a name when the response from /spawn arrives."
-        observed = f"{at} names {a_list([shorten(name) for name in strange])}, which does not exist."
+        observed = f"{at} names {a_list([shorten(name) for name in strange])}, but no such turtle exists."
         return failed(observed, expected, Cause("still-announced", text, where))
     missing = sorted(throughout - called - set(message.names))
     if missing:

@@ -170,7 +170,7 @@ def _why(answer: str, find: str, truth: Collection[str], others: Collection[str]
     if any(each.lower() == answer.lower() for each in truth):
         return Cause("capitals", "Upper and lower case matter.")
     if not truth:
-        return Cause("wrong-answer", f"During the trial, there was no {find} as the question describes it.")
+        return Cause("wrong-answer", f"During the trial, no {find} matched the description in the question.")
     if answer in others:
         return Cause("answer-another", f"This {find} exists, but it is not the one that the question asks for.")
     return Cause("wrong-answer", KEEP_LOOKING)
@@ -181,9 +181,7 @@ class AnswerRate:
     """The mean rate (Hz) of the messages whose type name ends with `type_ends`."""
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
-    type_ends: str = string(
-        "the end of a type name", about="The messages whose type ends with this string are measured."
-    )
+    type_ends: str = string("the end of a type name", about="Only messages whose type ends with this string count.")
     tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error of the answer.")
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 NUMBER = re.compile(r"(?P<number>[-+]?\d{1,19}(?:\.\d{1,15})?(?:[eE][-+]?\d{1,2})?)\s*(?P<unit>[A-Za-z/%]*)", re.ASCII)
 EXAMPLE = {"messages": '"1250"', "duration": '"12.5 s"', "rate": '"10.0 Hz"', "radius": '"1.00 m"'}
 ROUNDED = 0.02
-"""The relative error of an answer, or of its inverse, that has been rounded."""
+"""The maximum relative error that rounding may cause, in an answer or in its inverse."""
 HUNDREDTH = 0.0101
 UNITS = {"messages": "", "duration": "s", "rate": "Hz", "radius": "m"}
 

@@ -200,6 +200,6 @@ SAYS_WHETHER_ACTIVE = Kind(
     "The response says whether there was a goal",
     SaysWhetherActive,
     says_whether_active,
-    about="In the responses to each `[[trial.call]]` of the service, `success` says whether a goal of "
+    about="In the response to each `[[trial.call]]` of the service, `success` says whether a goal of "
     "`/turtle1/rotate_absolute` was active.",
 )

@@ -239,7 +239,7 @@ CATCHES = Kind(
     "All turtles are caught",
     Catches,
     catches,
-    about="All turtles except turtle1 are removed before the end, and only velocity commands moved turtle1.",
+    about="All turtles except turtle1 are removed before the end, and only velocity commands move turtle1.",
     drives=True,
 )
 NEAREST_FIRST = Kind(

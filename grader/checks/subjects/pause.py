@@ -36,7 +36,7 @@ class Pause:
 
     from_s: float = number(at_least=0, about="The start of the pause, on the trial's clock.")
     until_s: float = number(above=0, about="The end of the pause, on the trial's clock.")
-    within_s: float = number(0.5, above=0, about="The maximum time to stop, and to continue.")
+    within_s: float = number(0.5, above=0, about="The maximum time until the turtle stops, and until it continues.")
     goes_on: float = number(
         1.0, at_least=0, at_most=1, about="1 if the turtle must continue after the pause, and 0 if it must not."
     )
@@ -46,8 +46,8 @@ def pause(evidence: Evidence, params: Pause) -> Finding:
     """The turtle moves, and then stops and continues within the allowed times."""
     trajectory = evidence.trajectory
     within = Band.at_most(params.within_s)
-    expected = f"At {params.from_s:g} s, the turtle has {params.within_s:g} s to stop."
-    expected += f" At {params.until_s:g} s, the turtle continues." if params.goes_on else ""
+    expected = f"The pause begins at {params.from_s:g} s, and the turtle has {params.within_s:g} s to stop."
+    expected += f" The turtle continues at {params.until_s:g} s." if params.goes_on else ""
     where = evidence.place("create_service")
     moved = moved_otherwise(evidence, expected)
     if moved is not None:

@@ -195,8 +195,8 @@ PRINTS = Kind(
     "The program prints the content of the bag",
     Printed,
     prints,
-    about="The executable, started with the name of a `[[trial.bag]]`, prints a line in the format, with the right "
-    "numbers of the poses in the bag. The executable ends with exit code 0.",
+    about="The executable, started with the name of a `[[trial.bag]]`, prints a line in the given format, with the "
+    "right numbers for the poses in the bag, and ends with exit code 0.",
 )
 ENDS = Kind(
     "ends_with_message",

@@ -116,7 +116,9 @@ def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:
     expected = f"The poses show at least {params.turns:g} turn on a circle with a radius of {params.radius_m:g} m."
     x, y = np.array(poses.x), np.array(poses.y)
     if len(x) < 2:
-        return failed(f"The bag has no path on {params.topic}.", expected, Cause("bag-topic", where=where))
+        return failed(
+            f"The bag contains fewer than two poses on {params.topic}.", expected, Cause("bag-topic", where=where)
+        )
     if max(np.ptp(x), np.ptp(y)) < STILL_M:
         cause = (
             "Nothing moved the turtle during the recording. Start the recording, then a node that drives the turtle."

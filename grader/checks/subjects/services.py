@@ -196,7 +196,7 @@ def wrong_fields(given: Any, fields: Iterable[tuple[str, Any]]) -> list[str]:  #
 
 
 def _difference(given: Any, fields: Iterable[tuple[str, Any]]) -> tuple[int, float]:  # noqa: ANN401 - a request
-    """Return the number of fields with other values, and the sum of the differences between numbers."""
+    """Return the number of fields whose values differ, and the sum of the differences between numbers."""
     pairs = [(given.get(name), value) for name, value in fields]
     numbers = [(has, value) for has, value in pairs if isinstance(has, int | float) and isinstance(value, int | float)]
     return len(wrong_fields(given, fields)), sum(abs(has - value) for has, value in numbers)

@@ -179,7 +179,7 @@ def _drives_on(evidence: Evidence, params: Square, sides: Sides, sign: float, ex
     if unfinished:
         cause = "At the end of the trial, the turtle was still turning: the square took too long."
     elif silent_while_moving(evidence):
-        cause = f"The last command is not 0, so the turtle continues for one second. {ZEROS}"
+        cause = f"The last command has values other than 0, so the turtle continues for one second. {ZEROS}"
     return failed(observed, "After four sides, the turtle stands still.", Cause("drives-on", cause, where))
 
 

@@ -32,7 +32,7 @@ def no_standstill(evidence: Evidence, expected: str) -> Finding | None:
         cause = f"Small speeds are not 0. {ZEROS}" if max(linear, angular) < 0.1 else ZEROS
         return failed(f"The turtle still {what} at the end.", expected, Cause("still-moving", cause, where))
     if silent_while_moving(evidence):
-        observed = "The last command is not 0. The turtle stopped only because no more commands arrived."
+        observed = "The last command has values other than 0. The turtle stopped only because no more commands arrived."
         return failed(observed, expected, Cause("still-moving", ZEROS, where))
     return None
 

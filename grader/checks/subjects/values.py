@@ -175,7 +175,7 @@ def _why(six: Six, wanted: Six, off: list[int]) -> tuple[Cause, str]:
 
 
 OF_A_NUMBER = frozenset({"wrong-value", "wrong-sign", "degrees", "values-swapped"})
-"""The diagnoses of a number that is wrong where it is written, such as in the call of a function."""
+"""Diagnoses of a wrong number, which must be changed where the number is written, for example in a function call."""
 MEANING = "linear.x is the forward speed, and angular.z is how fast the turtle turns to the left."
 
 

@@ -28,7 +28,7 @@ def cause(message: str, *, over: bool = False) -> str:
         (
             "E   rclpy.exceptions.NotInitializedException: no init",
             "E   InitializedException: no",
-            "A node exists between rclpy.init and rclpy.shutdown. A fixture calls rclpy.init before the yield and",
+            "A node can exist only between rclpy.init and rclpy.shutdown. A fixture calls rclpy.init before the",
         ),
         (
             "E   _tkinter.TclError: no display name and no $DISPLAY environment variable",

@@ -105,7 +105,7 @@ NEVER_NAMED = tuple(said(t_s, "target1") for t_s in TIMES)
             with_one("mouse"),
         ),
         (
-            "The message at 2.1 s names target9, which does not exist.",
+            "The message at 2.1 s names target9, but no such turtle exists.",
             with_one("target1 target2 target3 target9"),
             with_one("target1 target2 target3"),
         ),

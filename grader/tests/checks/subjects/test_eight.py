@@ -203,7 +203,7 @@ def found_eight(commands: list[Timed]) -> Finding:
 
 
 def test_a_last_command_that_is_not_zero_is_told() -> None:
-    words = "The last command is not 0. The turtle stopped only because no more commands arrived."
+    words = "The last command has values other than 0. The turtle stopped only because no more commands arrived."
     driving = [each for each in legs(lobe(1), lobe(-1)) if each[1]]
     last_s = driving[-1][0]
     nearly = [*driving[:-1], (last_s, 1e-2, 0.0)]

@@ -185,7 +185,7 @@ def test_a_square_that_the_end_of_the_trial_cuts_short_took_too_long(rest_s: flo
 @pytest.mark.parametrize(("rest_s", "found"), [(3.0, True), (0.1, False)])
 def test_a_turtle_without_a_command_with_zeros_continues(rest_s: float, *, found: bool) -> None:
     given = cut(LAST[-1][0] + rest_s)
-    assert ("The last command is not 0, so the turtle continues for one second." in given) == found
+    assert ("The last command has values other than 0, so the turtle continues for one second." in given) == found
 
 
 def cut(end_s: float) -> str:
