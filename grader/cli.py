@@ -12,11 +12,13 @@ import typer
 from grader.authoring import cli as authoring
 from grader.book import cli as book
 from grader.classroom import cli as classroom
+from grader.common.command_help import App
 from grader.common.interpreter import clean_own
 from grader.common.log_commands import protect_output
 from grader.common.needed_command import needed_command
 from grader.common.standard_streams import make_usable
 from grader.common.system_errors import refusal
+from grader.common.terminal_text import RED, say
 from grader.errors import GraderError
 from grader.exercise.completion import steps as known_steps
 from grader.gradebook import cli as gradebook
@@ -35,7 +37,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
     from grader.submission.package import Submission
 
-app = typer.Typer(
+app = App(
     name="grader",
     help="Grade ROS 2 packages: build them with colcon, run them with a headless turtlesim, and judge what the turtle "
     "did.",
@@ -71,7 +73,7 @@ ExerciseId = Annotated[
 
 @app.command(
     rich_help_panel=LEARN,
-    epilog="Example: grader check ~/ros2_ws/src/my_robot_controller --exercise 03-circle-publisher",
+    epilog="Example: grader check ~/ros2_ws/src/my_robot_controller --exercise 03",
 )
 def check(
     submission: Annotated[
@@ -205,7 +207,7 @@ def main() -> None:
     try:
         needed_command(app, words)()
     except GraderError as error:
-        typer.secho(f"grader: {error}", err=True, fg=typer.colors.RED if sys.stderr.isatty() else None)
+        say(f"grader: {error}", style=RED)
         sys.exit(error.exit_code)
     except KeyboardInterrupt:
         sys.exit(130)
@@ -222,16 +224,15 @@ def main() -> None:
 
             refused = bootstrap.outdated(error)
         if refused:
-            typer.secho(f"grader: {refused}", err=True)
+            say(f"grader: {refused}")
             _drop_unwritten()
             sys.exit(3)
         reported = (
             f"grader: internal error in the grader, not a problem with your work: {type(error).__name__}: {error}"
         )
-        typer.secho(
+        say(
             f"{reported}\nPut GRADER_DEBUG=1 before the command to see where the error happened. "
-            "Please report the error.",
-            err=True,
+            "Please report the error."
         )
         sys.exit(3)
 

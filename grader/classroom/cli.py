@@ -8,13 +8,15 @@ from typing import Annotated, Optional
 
 import typer
 
+from grader.common.command_help import App
+from grader.common.terminal_text import say
 from grader.errors import UsageError
 from grader.exercise.completion import steps as known_steps
 
 PANEL = "Teach"
 """The heading of these commands in --help."""
 
-gradescope = typer.Typer(name="gradescope", help="Grade with Gradescope.", no_args_is_help=True)
+gradescope = App(name="gradescope", help="Grade with Gradescope.", no_args_is_help=True)
 
 
 class Clock(str, Enum):
@@ -29,8 +31,7 @@ def add_to(app: typer.Typer) -> None:
     """Add `grader grade` and `grader gradescope build` to the typer application `app`."""
     app.command(
         rich_help_panel=PANEL,
-        epilog="Example: grader grade submitted --exercise 03-circle-publisher --out grades  (then open "
-        "grades/summary.csv)",
+        epilog="Example: grader grade submitted --exercise 03-circle-publisher --out grades",
     )(grade)
     gradescope.command(
         rich_help_panel=PANEL, epilog="Example: grader gradescope build 03-circle-publisher autograder.zip"
@@ -140,7 +141,7 @@ def grade(
     try:
         graded = grade_class(request, typer.echo, lambda text: typer.echo(f"{text} ...", err=True))
     except KeyboardInterrupt:
-        typer.echo(f"\nStopped. The results so far are in {out}. Run the same command again to continue.", err=True)
+        say(f"\nStopped. The results so far are in {out}. Run the same command again to continue.")
         raise
     typer.echo(f"Marks: {out / 'summary.csv'}\nThe class: {out / 'index.html'}")
     raise typer.Exit(exit_code(graded, fail_under))

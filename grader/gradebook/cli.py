@@ -8,10 +8,11 @@ from typing import Annotated, Optional
 import typer
 
 from grader.classroom.cli import PANEL
+from grader.common.command_help import App
 
-gradebook = typer.Typer(name="gradebook", help="nbgrader's gradebook.", no_args_is_help=True)
-classes = typer.Typer(name="class", help="Manage a class that hands in notebooks.", no_args_is_help=True)
-kernel = typer.Typer(name="kernel", help="Install the course's kernel for Jupyter.", no_args_is_help=True)
+gradebook = App(name="gradebook", help="nbgrader's gradebook.", no_args_is_help=True)
+classes = App(name="class", help="Manage a class that hands in notebooks.", no_args_is_help=True)
+kernel = App(name="kernel", help="Install the course's kernel for Jupyter.", no_args_is_help=True)
 
 
 def add_to(app: typer.Typer) -> None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Optional
 
 import typer
 
+from grader.common.terminal_text import say
 from grader.exercise.completion import steps as known_steps
 from grader.exercise.completion import steps_or_next
 
@@ -58,7 +60,7 @@ def start(
     from grader.learner import steps
 
     begun = steps.start(step, workspace, student=student, fresh=fresh)
-    typer.echo(steps.begin_message(begun))
+    say(steps.begin_message(begun), sys.stdout)
 
 
 def run(

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.common.interpreter import interpreter
+from grader.common.terminal_text import say
 from grader.common.words import nearest
 from grader.errors import MachineError, UsageError
 from grader.learner.exercise_argument import meant
@@ -81,18 +82,13 @@ def run(program: Program, *, view: bool) -> int:
             return 1
         script = overlay / "lib" / program.package / program.executable
         if not script.is_file():
-            print(
+            say(
                 f"\nThe package has no executable {program.executable}. See the list console_scripts in "
-                f"{program.folder / 'setup.py'}.",
-                file=sys.stderr,
+                f"{program.folder / 'setup.py'}."
             )
             return 1
         with nullcontext() if _beside_another(env) else _turtlesim(env, view=view):
-            print(
-                f"{program.executable} is running. Press Ctrl-C to stop the program and turtlesim.\n",
-                file=sys.stderr,
-                flush=True,
-            )
+            say(f"{program.executable} is running. Press Ctrl-C to stop the program and turtlesim.\n")
             return _until_it_ends(program, script, _with_overlay(env, overlay, program.folder))
 
 
@@ -119,7 +115,7 @@ def _built(program: Program, place: Path, env: Mapping[str, str]) -> Path | None
     if done.returncode == 0 and overlay.is_dir():
         return overlay
     print(done.stdout.rstrip(), file=sys.stderr)
-    print("\nThe package could not be built. See the messages of colcon above.", file=sys.stderr)
+    say("\nThe package could not be built. See the messages of colcon above.")
     return None
 
 
@@ -151,7 +147,7 @@ def turtle_is_there(env: Mapping[str, str]) -> bool:
 def _beside_another(env: Mapping[str, str]) -> bool:
     there = turtle_is_there(env)
     if there:
-        print("A turtlesim is already running, and the node uses it.", file=sys.stderr)
+        say("A turtlesim is already running, and the node uses it.")
     return there
 
 
@@ -198,12 +194,12 @@ def _until_it_ends(program: Program, script: Path, env: Mapping[str, str]) -> in
                 node.send_signal(signal.SIGINT)
             interrupted = True
         except subprocess.TimeoutExpired:
-            print(f"\n{program.executable} did not end after Ctrl-C, so it was killed.", file=sys.stderr)
+            say(f"\n{program.executable} did not end after Ctrl-C, so it was killed.")
             node.kill()
     if interrupted:
         return 0
     how = "without an error." if code == 0 else f"with exit code {code}. The lines above show where and why."
-    print(f"\n{program.executable} has ended {how}", file=sys.stderr)
+    say(f"\n{program.executable} has ended {how}")
     return 0 if code == 0 else 1
 
 
@@ -222,4 +218,4 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 
 
 def _tell(text: str) -> None:
-    print(f"{text} ...", file=sys.stderr, flush=True)
+    say(f"{text} ...")

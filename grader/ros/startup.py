@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.common.interpreter import interpreter
+from grader.common.terminal_text import say
 from grader.ros import index
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def see_to_environment(needed: Collection[str]) -> None:
         return
     from grader.ros import shell
 
-    wanted = shell.users_environment(None, lambda text: print(f"{text} ...", file=sys.stderr, flush=True))
+    wanted = shell.users_environment(None, lambda text: say(f"{text} ..."))
     command = str(Path(sys.argv[0]).absolute())
     again = interpreter(command, *sys.argv[1:], env={**wanted, _STARTED_AGAIN: "1"}, searches=True)
     os.execve(again.argv[0], again.argv, again.env)

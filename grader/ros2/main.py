@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from grader.common.standard_streams import make_usable
 from grader.common.system_errors import refusal
+from grader.common.terminal_text import say
 from grader.errors import GraderError
 from grader.ros.startup import hand_over, see_to_environment
 from grader.ros2.parser import make_parser
@@ -84,7 +85,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
 def _report(text: str) -> None:
     """Print to standard error, unless the terminal has been closed."""
     with suppress(OSError):
-        print(text, file=sys.stderr)
+        say(text)
 
 
 def _run_verb(words: list[str]) -> int:

@@ -9,8 +9,10 @@ import argparse
 import importlib
 import os
 import re
-from typing import TYPE_CHECKING, NoReturn
+import sys
+from typing import TYPE_CHECKING, Any, NoReturn
 
+from grader.common.terminal_text import hanging, say
 from grader.ros.failure import did_you_mean
 from grader.ros2.groups import GROUPS
 
@@ -37,7 +39,28 @@ class _Formatter(argparse.RawDescriptionHelpFormatter):
             width = int(columns) if columns.isdecimal() and int(columns) else os.get_terminal_size(1).columns
         except OSError:
             width = 80
-        super().__init__(prog, width=(width or 80) - 2)
+        self._narrow = 0 < width < 80
+        # With argparse's own limit of 24 columns for the options, a narrow terminal has few columns for their texts.
+        super().__init__(prog, width=(width or 80) - 2, max_help_position=6 if self._narrow else 24)
+
+    def _format_usage(self, usage: Any, actions: Any, groups: Any, prefix: Any) -> str:  # noqa: ANN401 - as argparse
+        if not self._narrow:
+            return super()._format_usage(usage, actions, groups, prefix)
+        # argparse indents the options by the length of the command's name, which leaves no room for long options.
+        width, self._width = self._width, sys.maxsize
+        line = super()._format_usage(usage, actions, groups, prefix).strip()
+        self._width = width
+        return hanging(line, width, rest="    ") + "\n\n"
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        if not self._narrow:
+            return super()._fill_text(text, width, indent)
+        rest = {True: f"{indent}    ", False: indent}
+        return "\n".join(hanging(line, width, indent, rest["  " in line]) for line in text.splitlines()) + "\n"
+
+    def _format_action_invocation(self, action: argparse.Action) -> str:
+        invocation = super()._format_action_invocation(action)
+        return hanging(invocation, self._width - 2, rest="    ") if self._narrow else invocation
 
 
 class Parser(argparse.ArgumentParser):
@@ -48,6 +71,12 @@ class Parser(argparse.ArgumentParser):
         match = _CHOICE.search(message)
         choices = re.findall(r"[\w-]+", match[2]) if match else []
         super().error(did_you_mean(match[1], choices, message) if match else message)
+
+    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
+        """Print an error message, if there is one, and exit with this code."""
+        if message:
+            say(message.rstrip("\n"))
+        super().exit(status)
 
 
 def make_parser(words: Sequence[str]) -> Parser:

@@ -17,12 +17,12 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, TextIO, Tuple
+from typing import Dict, List, NamedTuple, Optional, Sequence, TextIO, Tuple
 
-from grader.common import interpreter, package_managers
+from grader.common import interpreter, package_managers, terminal_text
 from grader.common.package_managers import Need
 from grader.common.readable_by_all import make_readable
-from grader.setup import machine, setup_errors
+from grader.setup import installers, machine, setup_errors
 from grader.setup.compiled_modules import remove_incomplete
 from grader.setup.provide import provide
 from grader.setup.setup_errors import MACHINE_BROKEN
@@ -110,23 +110,7 @@ def stands(stamp: Stamp, ros: Optional[machine.SourcedRos], wanted: Optional[mac
 
 def say(text: str) -> None:
     """Print a heading of the set-up, in bold on a terminal."""
-    bold = sys.stdout.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
-    print(f"\033[1m{text}\033[0m" if bold else text, flush=True)
-
-
-def clean_environment(env: Mapping[str, str]) -> Dict[str, str]:
-    """Return the environment without variables of a sourced ROS 2 or active venv, which would mislead installers."""
-    foreign = {
-        "PYTHONPATH",
-        "PYTHONHOME",
-        "VIRTUAL_ENV",
-        "PIP_TARGET",
-        "PIP_PREFIX",
-        "PIP_USER",
-        "PIP_REQUIRE_VIRTUALENV",
-    }
-    # This variable keeps the ROS 2 wheels from starting every interpreter twice.
-    return {**{name: env[name] for name in env if name not in foreign}, "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
+    terminal_text.say(text, sys.stdout, style=terminal_text.BOLD)
 
 
 def look(
@@ -158,7 +142,7 @@ def report_missing(needs: Sequence[Need], why: str) -> bool:
     root = os.getuid() == 0
     manager = package_managers.find_manager(os.environ.get("PATH", ""))
     if not all(need.lost for need in needs):
-        print(machine.lack_message(needs, manager, root=root, why=why), file=sys.stderr)
+        terminal_text.say(machine.lack_message(needs, manager, root=root, why=why))
         return True
     for need in needs:
         reason = f" It was not installed: {why.rstrip('.')}." if why else ""
@@ -175,7 +159,7 @@ def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool
         say(f"ROS 2 Jazzy is sourced from {ros.prefix}: it is used, and no other ROS 2 is installed")
         options.append("--system-site-packages")
     making = interpreter.interpreter(
-        "-m", "venv", *options, str(VENV), python=python.path, env=clean_environment(os.environ)
+        "-m", "venv", *options, str(VENV), python=python.path, env=installers.environment(os.environ)
     )
     try:
         # Show the output only if the command fails, because the output contains the reason.
@@ -184,7 +168,7 @@ def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool
         said = error.output.decode(errors="replace")
         known = setup_errors.of_output(said, VENV)
         unknown = f"{said}Python could not create {VENV}. Its messages are above."
-        print(known or unknown, file=sys.stderr)
+        terminal_text.say(known or unknown)
         return False
     return True
 
@@ -221,7 +205,7 @@ def main(arguments: Sequence[str]) -> int:
     ros = machine.sourced_ros(os.environ, VENV)
     problem = machine.platform_problem(platform.system(), platform.machine(), platform.libc_ver(), ros)
     if problem:
-        print(problem, file=sys.stderr)
+        terminal_text.say(problem)
         return MACHINE_BROKEN
     with (ROOT / "requirements.lock").open() as lock:
         wait_for(lock)
@@ -263,7 +247,7 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
                 f"own ROS 2 replaces it"
             )
         if machine.is_offline(os.environ):
-            print(setup_errors.NO_NETWORK.format("it has no network"), file=sys.stderr)
+            terminal_text.say(setup_errors.NO_NETWORK.format("it has no network"))
             return MACHINE_BROKEN
         begin = time.monotonic()
         if not make_venv(python, ros):
@@ -273,7 +257,7 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
     install = interpreter.interpreter(
         *("-m", "grader.setup.install", json.dumps(stamp._asdict() if stamp else {})),
         python=str(PYTHON),
-        env=clean_environment(os.environ),
+        env=installers.environment(os.environ),
         root=ROOT,
     )
     return subprocess.call(install.argv, env=install.env, cwd=str(ROOT))

@@ -13,6 +13,7 @@ import sys
 import time
 from pathlib import Path
 
+from grader.common import terminal_text
 from grader.common.interpreter import interpreter
 from grader.setup.bootstrap import ROOT, STAMP, read_stamp, say
 from grader.setup.setup_errors import MACHINE_BROKEN, guarded
@@ -44,7 +45,7 @@ def main(arguments: list[str] | None = None) -> int:
     checking = interpreter("-m", "grader.cli", *command[1:])
     done = subprocess.run(checking.argv, env=checking.env, cwd=ROOT, check=False)
     if done.returncode != (0 if side == "solutions" else 1):
-        print(closing_words(done.returncode))
+        terminal_text.say(closing_words(done.returncode), sys.stdout)
         return done.returncode
     print()
     say("Duration of each stage")

@@ -20,7 +20,10 @@ from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Literal
 
+from rich.text import Text
+
 from grader.common import package_managers, xdg
+from grader.common.terminal_text import hanging
 from grader.errors import MachineError
 from grader.ros import underlay
 from grader.ros.installation import DISTRO, Ros, find_ros
@@ -42,6 +45,8 @@ GIB = 1024**3
 LEAST_DISK = GIB // 4
 LITTLE_DISK = 2 * GIB
 LITTLE_MEMORY = 1 * GIB
+NARROW = 60
+"""On a terminal with fewer columns than this, the details begin at the fourth column."""
 
 
 @dataclass(frozen=True)
@@ -91,11 +96,14 @@ def exit_code(lines: Iterable[Line]) -> int:
 def render(lines: Iterable[Line], console: Console) -> None:
     """Print the lines, as plain text if the console is not a terminal."""
     styles = {"ok": "green", "advice": "yellow", "broken": "bold red"}
+    width = console.width if console.is_terminal else None
+    indent = " " * (4 if width and width < NARROW else 20)
     for line in lines:
-        console.print(f"{line.state:<8}", style=styles[line.state], end="", highlight=False)
-        console.print(f"{line.subject:<12}{line.observed}", markup=False, highlight=False, soft_wrap=True)
+        shown = Text(hanging(line.observed, width, f"{line.state:<8}{line.subject:<12}", indent))
+        shown.stylize(styles[line.state], 0, 8)
+        console.print(shown, soft_wrap=True)
         if line.todo:
-            console.print(f"{'':<20}-> {line.todo}", markup=False, highlight=False, soft_wrap=True)
+            console.print(Text(hanging(line.todo, width, f"{indent}-> ", indent)), soft_wrap=True)
 
 
 # --- what is installed -------------------------------------------------------------------------------------

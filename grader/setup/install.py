@@ -19,9 +19,10 @@ from importlib import metadata
 from pathlib import Path
 from typing import NamedTuple
 
+from grader.common import terminal_text
 from grader.common.interpreter import clean, interpreter
 from grader.errors import MachineError
-from grader.setup import lock, setup_errors
+from grader.setup import installers, lock, setup_errors
 from grader.setup.bootstrap import ROOT, STAMP, Stamp, say, write_stamp
 from grader.setup.uv import uv
 
@@ -57,7 +58,7 @@ def main(stamp: Stamp) -> int:
     try:
         seconds = {**stamp.seconds, **install(stamp.parts, sourced=stamp.ros != "wheels")}
     except MachineError as error:
-        print(f"\n{error}", file=sys.stderr)
+        terminal_text.say(f"\n{error}")
         return setup_errors.MACHINE_BROKEN
     write_stamp(stamp._replace(seconds=seconds))
     say("Set up: " + ", ".join(f"{name} {value:.0f} s" for name, value in seconds.items()))
@@ -143,7 +144,8 @@ def _pip(requirements: Path) -> None:
     Raises: MachineError: pip failed.
     """
     options = ("--disable-pip-version-check", "--no-input", "--retries", "2", "--progress-bar", "off", *_OPTIONS)
-    done = _run(*interpreter("-m", "pip", "install", *options, "-r", str(requirements)))
+    env = {**installers.of_configuration(os.environ), **os.environ, "PIP_CONFIG_FILE": os.devnull}
+    done = _run(*interpreter("-m", "pip", "install", *options, "-r", str(requirements), env=env))
     if done.code != 0:
         known = setup_errors.of_output(done.said, STAMP.parent)
         network = setup_errors.offline(done.said)

@@ -17,6 +17,7 @@ from grader.common import package_managers
 from grader.common.interpreter import clean, interpreter
 from grader.common.package_managers import Need
 from grader.common.system_errors import of_the_machine
+from grader.setup import installers
 
 OLDEST, NEWEST = (3, 10), (3, 14)
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -126,7 +127,7 @@ def is_offline(env: Mapping[str, str], root: Path = Path("/")) -> bool:
     """
     settings = ("PIP_", "UV_", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY")
     home = Path(env.get("HOME", "/nowhere"))
-    files = [root / "etc/pip.conf", home / ".config/pip/pip.conf", home / ".pip/pip.conf", home / ".config/uv/uv.toml"]
+    files = [*installers.configuration_files(env, root), home / ".config/uv/uv.toml"]
     if any(name.upper().startswith(settings) for name in env) or any(file.exists() for file in files):
         return False
     try:

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Callable, List, Optional
 
 from grader.common.system_errors import refusal, sentence
+from grader.common.terminal_text import say
 
 ROOT = Path(__file__).resolve().parents[2]
 MACHINE_BROKEN = 3
@@ -43,7 +44,7 @@ def guarded(main: Callable[[], int]) -> int:
         code = main()
         sys.stdout.flush()
     except KeyboardInterrupt:
-        print("\nStopped. The same command continues from here; the downloads are kept.", file=sys.stderr)
+        say("\nStopped. The same command continues from here; the downloads are kept.")
         return 130
     except BrokenPipeError:
         _silence()  # the reader of the output has exited
@@ -52,7 +53,7 @@ def guarded(main: Callable[[], int]) -> int:
         if os.environ.get("GRADER_DEBUG"):
             raise
         fault = f"An error in the set-up itself: {type(error).__name__}: {error}. GRADER_DEBUG=1 prints the traceback."
-        print(of_error(error) or fault, file=sys.stderr)
+        say(of_error(error) or fault)
         _silence()
         return MACHINE_BROKEN
     return code

@@ -8,6 +8,7 @@ import signal
 import socket
 import sys
 
+from grader.common.terminal_text import say
 from grader.errors import GraderError
 
 
@@ -44,7 +45,7 @@ def main() -> int:
 
         asyncio.run(serve())
     except GraderError as error:
-        print(f"The view has stopped: {error}", file=sys.stderr)
+        say(f"The view has stopped: {error}")
         return error.exit_code
     return 0
 

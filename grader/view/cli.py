@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Optional
 
 import typer
+
+from grader.common.terminal_text import say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,7 +24,7 @@ def add_to(app: typer.Typer) -> None:
     """Add the command `grader sim` to the typer application `app`."""
     app.command(
         context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
-        epilog="Examples: grader sim --view; in a terminal without a browser: grader sim --view terminal",
+        epilog="Examples: grader sim --view; grader sim --view terminal",
         rich_help_panel=PANEL,
     )(sim)
 
@@ -55,7 +56,7 @@ def sim(
     given = [("--image", image), ("--view", where if view else None), ("--port", port)]
     options = [text for name, value in given if value is not None for text in (name, str(value))]
     env = users_environment(ros)
-    print(f"turtlesim in {who_hears(env)}. Press Ctrl-C to stop turtlesim.", file=sys.stderr, flush=True)
+    say(f"turtlesim in {who_hears(env)}. Press Ctrl-C to stop turtlesim.")
     start = interpreter(
         "-m", "grader.view.turtlesim_node", *options, *context.args, python=str(ros.python), env=env, searches=True
     )

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common.terminal_text import say
 from grader.errors import GraderError, MachineError, UsageError
 from grader.graph.graph import Show, picture, to_dot, to_text
 from grader.graph.layout import Format, render
@@ -51,7 +52,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         see_to_environment({"rclpy"})
         return _run(options)
     except GraderError as error:
-        print(f"rqt_graph: {error}", file=sys.stderr)
+        say(f"rqt_graph: {error}")
         return error.exit_code
     except KeyboardInterrupt:
         return 130
@@ -120,7 +121,7 @@ def _run(options: argparse.Namespace) -> int:
         print(_NOTHING.format(domain=os.environ.get("ROS_DOMAIN_ID", "0")), file=sys.stderr)
         return 1
     if not complete:
-        print(_MISSING, file=sys.stderr)
+        say(_MISSING)
     if options.output is not None:
         _write(options.output, drawn)
     else:
@@ -158,7 +159,7 @@ def _shown_live(show: Show, port: int | None) -> bool:
     try:
         see_that_it_can_be_served()
     except MachineError as error:
-        print(f"rqt_graph: {error}", file=sys.stderr)
+        say(f"rqt_graph: {error}")
         return False
     from grader.view.page import Page
 
@@ -169,7 +170,7 @@ def _shown_live(show: Show, port: int | None) -> bool:
 
     print(f"The graph, live until Ctrl-C: {place.address.url}", flush=True)
     if elsewhere:
-        print(browser.from_elsewhere(place.address.port), file=sys.stderr, flush=True)
+        say(browser.from_elsewhere(place.address.port))
     shown = asyncio.run(serve())
     # From now on, Python handles Ctrl-C again.
     signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -57,11 +57,13 @@ RUNS_FIRST = (
         "common/package_managers.py",
         "common/readable_by_all.py",
         "common/system_errors.py",
+        "common/terminal_text.py",
     ),
     *(
         "setup/__init__.py",
         "setup/bootstrap.py",
         "setup/compiled_modules.py",
+        "setup/installers.py",
         "setup/machine.py",
         "setup/provide.py",
         "setup/setup_errors.py",

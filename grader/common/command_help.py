@@ -1,0 +1,105 @@
+"""The help of the command `grader`: on narrow terminals, one column without boxes instead of typer's tables.
+
+In a table with four columns, a terminal of 40 columns leaves 8 columns for the text.
+"""
+
+from __future__ import annotations
+
+import shutil
+import textwrap
+from typing import TYPE_CHECKING, Any
+
+import typer
+from typer.core import TyperArgument, TyperCommand, TyperGroup
+
+from grader.common.terminal_text import example
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+WIDE = 80
+"""The number of columns that typer's tables need."""
+
+
+class Command(TyperCommand):
+    """A command whose help fits every terminal."""
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:  # noqa: ANN401 - typer brings its own click
+        """Print the help of the command."""
+        _format_help(self, super().format_help, ctx, formatter)
+
+
+class Group(TyperGroup):
+    """A group of commands whose help fits every terminal."""
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:  # noqa: ANN401 - as above
+        """Print the help of the group."""
+        _format_help(self, super().format_help, ctx, formatter)
+
+
+class App(typer.Typer):
+    """A typer application whose help fits every terminal."""
+
+    def __init__(self, **options: Any) -> None:  # noqa: ANN401 - typer's options
+        super().__init__(cls=Group, **options)
+
+    def command(self, name: str | None = None, **options: Any) -> Callable[[Any], Any]:  # noqa: ANN401 - as above
+        """Return a decorator that adds a command to the application."""
+        return super().command(name, cls=Command, **options)
+
+
+def _format_help(
+    command: TyperCommand | TyperGroup,
+    wide: Callable[[Any, Any], None],
+    context: Any,  # noqa: ANN401 - as above
+    formatter: Any,  # noqa: ANN401 - as above
+) -> None:
+    width = shutil.get_terminal_size().columns
+    if width >= WIDE:
+        wide(context, formatter)
+    else:
+        formatter.write("\n".join(_narrow(command, context, width)))
+
+
+def _narrow(command: TyperCommand | TyperGroup, context: Any, width: int) -> Iterator[str]:  # noqa: ANN401 - as above
+    """Yield the lines of the help: usage, description, one section per panel, and examples."""
+    usage = f"Usage: {context.command_path} {' '.join(command.collect_usage_pieces(context))}"
+    yield from _wrapped(usage, width, "", "    ")
+    yield ""
+    yield from _wrapped(command.help or "", width)
+    for title, entries in _sections(command, context).items():
+        yield from ("", f"{title}:")
+        for name, text in entries:
+            yield from _wrapped(name, width, "  ")
+            yield from _wrapped(text, width, "      ")
+    if command.epilog:
+        title, _, commands = command.epilog.partition(": ")
+        yield from ("", f"{title}:")
+        for each in commands.split("; "):
+            yield from example(each, width)
+
+
+def _sections(command: TyperCommand | TyperGroup, context: Any) -> dict[str, list[tuple[str, str]]]:  # noqa: ANN401
+    """Return the names and descriptions of arguments, options and commands, under the titles of their panels."""
+    sections: dict[str, list[tuple[str, str]]] = {}
+    for param in command.get_params(context):
+        record = param.get_help_record(context)
+        if record:
+            title = "Arguments" if isinstance(param, TyperArgument) else "Options"
+            sections.setdefault(getattr(param, "rich_help_panel", None) or title, []).append(record)
+    for name, each in getattr(command, "commands", {}).items():
+        if not each.hidden:
+            title = getattr(each, "rich_help_panel", None) or "Commands"
+            sections.setdefault(title, []).append((name, each.short_help or each.help or ""))
+    return sections
+
+
+def _wrapped(text: str, width: int, first: str = "", rest: str | None = None) -> list[str]:
+    return textwrap.wrap(
+        " ".join(text.split()),
+        width,
+        initial_indent=first,
+        subsequent_indent=first if rest is None else rest,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )

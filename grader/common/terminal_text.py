@@ -1,0 +1,76 @@
+"""Messages on a terminal: lines that are broken between words, and colours.
+
+The set-up runs this module before anything is installed, so it uses the syntax of Python 3.6.
+"""
+
+import os
+import re
+import sys
+import textwrap
+from typing import List, Optional, TextIO
+
+_COMMAND = re.compile(r"`[^`]*`|\b(?:source|cd)(?= ['/~.<])[^,;]*|\bsudo [a-z][^,;]*")
+_OPTION = re.compile(r"(--[\w-]+) (?=[^-\s])")
+BOLD, RED = "1", "31"
+_SPACE = "\0"
+"""Stands for a space at which a line is not broken: inside a command, and between an option and its value."""
+
+
+def say(text: str, stream: Optional[TextIO] = None, style: str = "") -> None:
+    """Print a message for users, to standard error by default.
+
+    On a terminal, lines are broken between words, and the message has the style (`BOLD` or `RED`) if the user wants
+    colours.
+    """
+    stream = stream or sys.stderr
+    shown = wrapped(text, columns(stream))
+    print(f"\033[{style}m{shown}\033[0m" if style and has_colours(stream) else shown, file=stream, flush=True)
+
+
+def has_colours(stream: TextIO) -> bool:
+    """Return whether the stream is a terminal with colours, and the user wants them (https://no-color.org)."""
+    return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") not in ("dumb", "unknown")
+
+
+def columns(stream: TextIO) -> Optional[int]:
+    """Return the number of columns of a terminal, or None for a file or a pipe, in which lines have no limit."""
+    try:
+        if not stream.isatty():
+            return None
+        setting = os.environ.get("COLUMNS", "")
+        width = int(setting) if setting.isdecimal() else os.get_terminal_size(stream.fileno()).columns
+    except (OSError, ValueError):  # a closed stream, or one without a file descriptor
+        return None
+    return width or None
+
+
+def wrapped(text: str, width: Optional[int]) -> str:
+    """Return the text with line breaks between words, so that its lines have at most `width` columns.
+
+    What users copy is not broken: long words such as paths, commands, and indented lines, which contain commands or
+    code. The terminal itself breaks them, and joins them again when they are copied.
+    """
+    return "\n".join(line if line[:1].isspace() else hanging(line, width) for line in text.split("\n"))
+
+
+def hanging(line: str, width: Optional[int], first: str = "", rest: str = "") -> str:
+    """Return one line as `wrapped` does, with `first` before its first part and `rest` before all others."""
+    if width is None:
+        return first + line
+    together = _COMMAND.sub(lambda found: found[0].replace(" ", _SPACE), line)
+    return "\n".join(_broken(together, width, first, rest)) or line
+
+
+def example(command: str, width: int, indent: str = "  ") -> List[str]:
+    """Return the lines of an example, which are one command: all lines but the last end with a backslash."""
+    if len(indent + command) <= width:
+        return [indent + command]
+    *lines, last = _broken(_OPTION.sub("\\1" + _SPACE, command), width - 2, indent, indent * 2)
+    return [line + " \\" for line in lines] + [last]
+
+
+def _broken(text: str, width: int, first: str, rest: str) -> List[str]:
+    lines = textwrap.wrap(
+        text, width, initial_indent=first, subsequent_indent=rest, break_long_words=False, break_on_hyphens=False
+    )
+    return [line.replace(_SPACE, " ") for line in lines]
