@@ -66,6 +66,26 @@ def open_tag(data: bytes) -> tuple[str, int]:
     return opened[-1] if opened else ("", 1)
 
 
+def end_of_root(data: bytes) -> tuple[str, int] | None:
+    """Return the name of the first tag that contains all others, with the line where it ends, or None."""
+    parser = ParserCreate()
+    depth = [0]
+    ends: list[tuple[str, int]] = []
+
+    def ended(name: str) -> None:
+        depth[0] -= 1
+        if depth[0] == 0:
+            ends.append((name, parser.CurrentLineNumber))
+
+    def started(_name: str, _attributes: object) -> None:
+        depth[0] += 1
+
+    parser.StartElementHandler, parser.EndElementHandler = started, ended
+    with suppress(ExpatError):
+        parser.Parse(data, True)  # noqa: FBT003 (the argument means that no more data follows)
+    return ends[0] if ends else None
+
+
 def line_of(data: bytes, *patterns: str) -> int | None:
     """Return the first line (from 1) that matches a pattern, or None.
 

@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.indentation import why_indented
 from grader.checks.edit import applied, at
 from grader.checks.outcome import Finding, failed
 from grader.common.words import shorten
@@ -95,6 +96,11 @@ GAP = re.compile(r"""(?P<left>[\w.]+|"[^"]*"|'[^']*')(?=\s+(?P<right>[\w.]+|"[^"
 """Two values with only space between them. The match ends before the space."""
 NO_SPACE = re.compile(r"\s*(?P<keyword>def|class)(?P<rest>\w+\s*[(:].*)")
 """A line in which the keyword `def` or `class` is not followed by a space."""
+AND = "In Python, and is a word: write and, not &&."
+OR = "In Python, or is a word: write or, not ||."
+BLOCK = re.compile(r"\s*(?:def|class|if|elif|else|for|while|try|except|finally|with|async)\b.*(?P<sign>[;,.])\s*")
+"""A line that begins a block, but ends with another character in place of the colon."""
+SIGNS = {";": "a semicolon", ",": "a comma", ".": "a dot"}
 COMMA_FOR_DOT = (
     (r"\s*(?:from|import)\s+\w+(?:,\w+)+\s+import\b.*", "In a module name, write a dot, not a comma."),
     (
@@ -122,15 +128,13 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
     place = Where(file, unreadable.line)
     if file.rpartition("/")[2] == "setup.py" and ENTRY_POINT.fullmatch(line):
         return Cause("syntax-error", "An entry point is a string, so it needs quotation marks.", place)
-    glued = NO_SPACE.fullmatch(line)
-    if glued is not None:
-        fix = at(place, glued["keyword"] + glued["rest"], f"{glued['keyword']} {glued['rest']}")
-        changed = applied({file: data}, fix)
-        if changed is not None and _reads_further(file, changed[file], unreadable):
-            return Cause("syntax-error", f"A space is missing after {glued['keyword']}.", place).fixed_by(fix)
-    other_syntax = _other_syntax(line, unreadable.message)
-    if other_syntax is not None:
-        return other_syntax
+    known = (
+        _other_syntax(line, unreadable.message)
+        or _other_sign(file, unreadable, data)
+        or why_indented(file, unreadable, data)
+    )
+    if known is not None:
+        return known
     empty = NO_BODY.search(unreadable.message)
     if empty is not None and (OUTSIDE.match(line) or (unreadable.line or 0) > int(empty["line"]) + 1):
         text = (
@@ -146,6 +150,27 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
         if re.search(pattern, unreadable.message):
             return Cause(diagnosis, text).fixed_by(_fix(diagnosis, file, unreadable, data))
     return _no_comma(file, unreadable, data) or Cause("syntax-error", OTHERWISE)
+
+
+def _other_sign(file: str, unreadable: Unreadable, data: bytes) -> Cause | None:
+    """Return the cause if Python can read the line after a small change, such as a colon for a semicolon, else None."""
+    line, place = _line(unreadable, data), Where(file, unreadable.line)
+    block, glued = BLOCK.fullmatch(line), NO_SPACE.fullmatch(line)
+    right: dict[Cause, str] = {}
+    if glued is not None:
+        spaced = f"{line[: glued.end('keyword')]} {glued['rest']}"
+        right[Cause("syntax-error", f"A space is missing after {glued['keyword']}.", place)] = spaced
+    if block is not None:
+        at_end = f"This line ends with {SIGNS[block['sign']]}. A line that begins a block must end with a colon."
+        right[Cause("colon-missing", at_end, place)] = f"{line[: block.start('sign')]}:"
+    right[Cause("syntax-error", AND, place)] = re.sub(r"\s*&&\s*", " and ", line)
+    right[Cause("syntax-error", OR, place)] = re.sub(r"\s*\|\|\s*", " or ", line)
+    for cause, new in right.items():
+        edits = at(place, line, new) if new != line else ()
+        changed = applied({file: data}, edits) if edits else None
+        if changed is not None and _reads_further(file, changed[file], unreadable):
+            return cause.fixed_by(edits)
+    return None
 
 
 def _no_comma(file: str, unreadable: Unreadable, data: bytes) -> Cause | None:

@@ -266,13 +266,7 @@ def why_refused(scene: CrashScene) -> Cause | None:
     """Return the cause if rclpy refused a type, a period, a callback or a second call to init, else None."""
     text = scene.crash.message
     if "must only be called once" in text:
-        lines = [
-            node.lineno for node in scene.nodes if isinstance(node, ast.Call) and dotted(node.func) == "rclpy.init"
-        ]
-        more = (
-            f" rclpy.init is called in lines {a_list([str(line) for line in sorted(lines)])}." if len(lines) > 1 else ""
-        )
-        return Cause("init-twice", f"Call rclpy.init only once.{more}")
+        return Cause("init-twice", f"Call rclpy.init only once.{_calls_of_init(scene)}")
     if "called for existing topic name" in text:
         return Cause(
             "second-type", "A topic has one type. Two publishers with different types cannot use the same topic name."
@@ -285,6 +279,15 @@ def why_refused(scene: CrashScene) -> Cause | None:
         text = "The period is a time in seconds, so it cannot be negative."
         return Cause("timer-period-negative", text).fixed_by(fix)
     return None
+
+
+def _calls_of_init(scene: CrashScene) -> str:
+    """Return a sentence about the lines that call rclpy.init, or an empty string if there are fewer than two calls."""
+    calls = [node for node in scene.nodes if isinstance(node, ast.Call) and dotted(node.func) == "rclpy.init"]
+    lines = [str(line) for line in sorted({call.lineno for call in calls})]
+    if len(calls) < 2:
+        return ""
+    return f" rclpy.init is called {f'in lines {a_list(lines)}' if len(lines) > 1 else f'twice in line {lines[0]}'}."
 
 
 def _no_message(scene: CrashScene) -> Cause:

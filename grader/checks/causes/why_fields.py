@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.edit import at
+from grader.common.words import shorten
 from grader.submission.constants import dotted
 
 if TYPE_CHECKING:
@@ -67,10 +68,11 @@ def _as_float(scene: CrashScene, value: ast.Constant) -> tuple[Edit, ...]:
 
 def why_no_float(field: str, value: ast.expr | None) -> Cause | None:
     """Return the cause if the expression shows why its value is not a float, else None."""
+    shown = ast.unparse(value) if value is not None else ""
     if isinstance(value, ast.UnaryOp):
         value = value.operand
     if isinstance(value, ast.Constant | ast.JoinedStr):
-        known = _why_constant(field, value)
+        known = _why_constant(field, value, shown)
         if known is not None:
             return known
     if isinstance(value, ast.Tuple):
@@ -100,7 +102,7 @@ def why_no_float(field: str, value: ast.expr | None) -> Cause | None:
     return None
 
 
-def _why_constant(field: str, value: ast.Constant | ast.JoinedStr) -> Cause | None:
+def _why_constant(field: str, value: ast.Constant | ast.JoinedStr, shown: str) -> Cause | None:
     """Return the cause if a string, a bool, an integer or None is written where a float belongs, else None."""
     if isinstance(value, ast.JoinedStr):
         return Cause("string-for-number", f"The field {field} is a float, but an f-string is a string.")
@@ -109,7 +111,10 @@ def _why_constant(field: str, value: ast.Constant | ast.JoinedStr) -> Cause | No
     if isinstance(value.value, bool):
         return Cause("field-type", f"The field {field} is a float, not True or False.")
     if isinstance(value.value, int):
-        return Cause("int-for-float", f"The field {field} is a float. Write the number with a decimal point.")
+        text = (
+            f"The field {field} is a float, but {shorten(shown)} is an integer. Write the number with a decimal point."
+        )
+        return Cause("int-for-float", text)
     if value.value is None:
         return Cause("field-type", f"The field {field} is a float, and None is not a number.")
     return None

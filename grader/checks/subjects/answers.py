@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.kind import Kind, NoParams, choice, number, string, strings
-from grader.checks.outcome import Finding, failed, passed
+from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.tolerance import Band
 from grader.common.words import a_list, shorten
 from grader.errors import MachineError
@@ -130,6 +130,10 @@ def answer_graph(evidence: Evidence, params: GraphQuestion) -> Finding:
     answer = str(given)
     if answer in truth:
         return passed(f"{shorten(answer)} is right.")
+    if not truth:
+        # The node is not yet as the question describes it, and another check says why. No answer could be right.
+        text = f"Not judged, because during the trial no {params.find} matched the description in the question."
+        return Finding(Status.SKIPPED, text)
     expected = f"{params.answer} is the {params.find} that the question asks for, spelled as `ros2` prints it."
     why = _why(answer, params.find, truth, _all(evidence.recording, params.find))
     return _wrong(evidence, params.answer, answer, expected, why)
@@ -169,8 +173,6 @@ def _why(answer: str, find: str, truth: Collection[str], others: Collection[str]
         return Cause("type-without-package", text)
     if any(each.lower() == answer.lower() for each in truth):
         return Cause("capitals", "Upper and lower case matter.")
-    if not truth:
-        return Cause("wrong-answer", f"During the trial, no {find} matched the description in the question.")
     if answer in others:
         return Cause("answer-another", f"This {find} exists, but it is not the one that the question asks for.")
     return Cause("wrong-answer", KEEP_LOOKING)

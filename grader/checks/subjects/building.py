@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.bad_entry_point import bad_entry_point
 from grader.checks.causes.crash import read_tracebacks
+from grader.checks.causes.manifest_unread import why_not_read
 from grader.checks.causes.syntax import unreadable_observed, why_unreadable
 from grader.checks.causes.why_crashed import why_crashed
 from grader.checks.kind import Kind, NoParams
 from grader.checks.outcome import Finding, Status, failed, passed
-from grader.checks.subjects.package_xml import why_not_read
 from grader.common.words import a_list, shorten
 from grader.submission.code import import_path
 from grader.submission.package_xml import line_of
@@ -38,6 +38,7 @@ IGNORED = (
     "Delete the file, so that colcon finds the package."
 )
 EXPECTED = "`colcon build` succeeds and installs the package."
+OTHER_TYPE = "colcon reads the build type in package.xml, which is not ament_python."
 
 
 def plain_files(evidence: Evidence, _: NoParams) -> Finding:
@@ -129,7 +130,9 @@ def _broken(evidence: Evidence) -> Finding:
         marker = missing["file"].startswith("resource/")
         named = _line_of(evidence, r"['\"]resource/" if marker else rf"['\"/]{re.escape(last)}['\"]")
         return failed(f"`colcon build` failed{message}.", EXPECTED, Cause(diagnosis, cause, named or where))
-    return failed(f"`colcon build` failed{message}.", EXPECTED, Cause("build-failed", _other_type(evidence), where))
+    other = _other_type(evidence)
+    why = Cause("build-failed", OTHER_TYPE, other) if other is not None else Cause("build-failed", where=where)
+    return failed(f"`colcon build` failed{message}.", EXPECTED, why)
 
 
 def _line_of(evidence: Evidence, *patterns: str) -> Where | None:
@@ -151,12 +154,12 @@ def _raised(evidence: Evidence) -> Finding | None:
     return failed(f"setup.py failed: {crashes[0].observed}.", EXPECTED, Cause("setup-py-raises", why.text, why.where))
 
 
-def _other_type(evidence: Evidence) -> str:
-    """Return a cause if package.xml gives the package another build type, else an empty string."""
+def _other_type(evidence: Evidence) -> Where | None:
+    """Return the line of the build type in package.xml if the package has another build type, else None."""
     manifest = evidence.manifest
     if manifest is None or manifest.problem is not None or manifest.build_type == "ament_python":
-        return ""
-    return "colcon reads the build type in package.xml, which is not ament_python."
+        return None
+    return Where("package.xml", line_of(evidence.submission.files["package.xml"], "<build_type>", "<export>"))
 
 
 def _modules(evidence: Evidence) -> Finding:
@@ -180,7 +183,10 @@ def _modules(evidence: Evidence) -> Finding:
         return raised
     if missing:
         observed = "`colcon build` finished but installed none of the Python files."
-        cause = _other_type(evidence) or "The packages argument of setup() lists the folders to install."
+        other = _other_type(evidence)
+        if other is not None:
+            return failed(observed, EXPECTED, Cause("nothing-installed", OTHER_TYPE, other))
+        cause = "The packages argument of setup() lists the folders to install."
         setup = evidence.setup_py
         line = (setup.packages_line if setup is not None else None) or _setup_line(evidence)
         return failed(observed, EXPECTED, Cause("nothing-installed", cause, Where("setup.py", line)))

@@ -19,11 +19,13 @@ from grader.submission.package_xml import line_of
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterator
 
     from grader.evidence.evidence import Evidence
     from grader.submission.code import Module
 
+OTHER_ENDINGS = ("", ".txt", ".py.txt", ".PY", ".python")
+"""What the name of a file has at its end if .py is forgotten, or if an editor or a browser has added something."""
 DATA = (ast.Constant, ast.List, ast.Tuple, ast.Dict, ast.Set, ast.JoinedStr)
 """Expressions whose value is not callable."""
 
@@ -75,9 +77,6 @@ def _no_module(evidence: Evidence, module_name: str) -> Finding:
     files = evidence.submission.files
     executable = evidence.trial.executable
     observed = f"The entry point {executable} names the module {shorten(module_name)}, which does not exist."
-    modules = [
-        import_path(path)[: -len(".py")].replace("/", ".") for path in files if path.endswith(".py") and "/" in path
-    ]
     expected = "A module name has the form FOLDER.FILE."
     if module_name.endswith(".py"):
         cause = "Write the module name without the ending .py."
@@ -89,20 +88,43 @@ def _no_module(evidence: Evidence, module_name: str) -> Finding:
         cause = f"{shorten(last)} is a function in {file}. Write a colon between module and function, not a dot."
         why = Cause("entry-point-no-function", cause, line(evidence))
         return failed(observed, f"{FORM}.", why.fixed_by(at(why.where, module_name, f"{outer}:{last}")))
+    right = _similar_module(module_name, files)
     if module_name in evidence.exercise.package or "." not in module_name:
         cause = "Write the folder first, then a dot, then the file name without .py."
+    elif f"{last}.py" in files:
+        cause = f"{last}.py is next to setup.py. The file belongs in the folder {shorten(outer)}."
+    elif (other := _other_ending(module_name, files)) is not None:
+        cause = f"There is a file {shorten(other)}, but the name of a Python file must end with .py."
     else:
-        guess = nearest(module_name, modules)
         cause = (
-            f"A similar module exists: {shorten(guess)}."
-            if guess
+            f"A similar module exists: {shorten(right)}."
+            if right is not None
             else "Compare the module name with the names of your files."
         )
-        if f"{last}.py" in files:
-            cause = f"{last}.py is next to setup.py. The file belongs in the folder {shorten(outer)}."
-    right = nearest(module_name, modules, alike=0.7)
     fix = at(line(evidence), module_name, right) if right is not None else ()
     return failed(observed, expected, Cause("entry-point-module", cause, line(evidence)).fixed_by(fix))
+
+
+def _similar_module(name: str, files: Collection[str]) -> str | None:
+    """Return the module whose folder and file name are both the same or similar, or None."""
+    modules = [
+        import_path(path).removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+        for path in files
+        if path.endswith(".py") and "/" in path
+    ]
+    return nearest(name, [each for each in modules if _alike(name, each)])
+
+
+def _other_ending(name: str, files: Collection[str]) -> str | None:
+    """Return the file that would be this module if its name ended with .py, or None."""
+    path = name.replace(".", "/")
+    return next((each for each in files if import_path(each) in {path + ending for ending in OTHER_ENDINGS}), None)
+
+
+def _alike(module: str, other: str) -> bool:
+    """Return whether the folders of two modules, and the last parts of their names, are each the same or similar."""
+    (folder, _, name), (other_folder, _, other_name) = module.rpartition("."), other.rpartition(".")
+    return all(each == its or nearest(each, [its]) for each, its in ((folder, other_folder), (name, other_name)))
 
 
 def _is_installed(evidence: Evidence, file: str) -> bool:

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.manifest_unread import why_not_read
 from grader.checks.causes.ros_names import MODULE_OF, PACKAGE, SHARED_NAMES
 from grader.checks.kind import Kind, NoParams, choice, strings
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, nearest, shorten
 from grader.submission.code import import_path, imported_packages
-from grader.submission.package_xml import line_of, open_tag
+from grader.submission.package_xml import line_of
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -29,31 +30,10 @@ EXPECTED_BUILD_TYPE = f"A Python package has the build type {BUILD_TYPE}."
 CATKIN = "catkin"
 KNOWN = frozenset({module.partition(".")[0] for module in MODULE_OF.values()} | {"rclpy", "sensor_msgs", "nav_msgs"})
 """ROS 2 packages whose names are often misspelt."""
-XML = re.compile(
-    r"mismatched tag|not well-formed|no element found|junk after|unclosed|duplicate attribute|invalid XML|syntax error"
-    r"|invalid token|undefined entity"
-)
-"""Messages of an XML parser about text that is not valid XML."""
-BARE_AMPERSAND = re.compile(r"&(?!#?\w+;)")
-UNKNOWN_TAG = re.compile(
-    r"\(with format version (?P<format>\d)\) must not contain the following tags: (?P<tag>[^\s,]{1,60})"
-)
-TAGS = (
-    *("name", "version", "description", "maintainer", "license", "url", "author", "export"),
-    *("depend", "exec_depend", "build_depend", "build_export_depend", "buildtool_depend", "test_depend"),
-)
-"""The tags that a learner's package.xml may contain."""
-TWICE = re.compile(r"dependency on ['\"](?P<name>[^'\"]{1,100})['\"] is redundant")
-ROS_1_TAGS = re.compile(r"must not contain the following tags: .*\b(?P<tag>run_depend)\b")
 
 
 def _line(evidence: Evidence, *patterns: str) -> Where:
     return Where(FILE, line_of(evidence.submission.files[FILE], *patterns))
-
-
-def _last_line(evidence: Evidence, pattern: str) -> Where:
-    lines = _text(evidence).splitlines()
-    return Where(FILE, max((number for number, line in enumerate(lines, 1) if re.search(pattern, line)), default=None))
 
 
 def valid(evidence: Evidence, _: NoParams) -> Finding:
@@ -84,37 +64,6 @@ def valid(evidence: Evidence, _: NoParams) -> Finding:
             observed, EXPECTED_BUILD_TYPE, Cause("build-type", cause, _line(evidence, "<build_type>", "<export>"))
         )
     return passed(f"{FILE} is valid.")
-
-
-def why_not_read(evidence: Evidence, manifest: Manifest) -> Cause:
-    """Return the reason why catkin_pkg, and therefore colcon, cannot read package.xml."""
-    problem = manifest.problem or ""
-    tag = ROS_1_TAGS.search(problem)
-    if tag is not None:
-        cause = f"<{tag['tag']}> belongs to ROS 1. In format 3, use <depend> or <exec_depend>."
-        return Cause("package-xml-old-tag", cause, _line(evidence, f"<{tag['tag']}"))
-    twice = TWICE.search(problem)
-    if twice is not None:
-        cause = f"The package {shorten(twice['name'])} is declared twice. Remove one of the two lines."
-        return Cause("package-xml-invalid", cause, _last_line(evidence, rf">\s*{re.escape(twice['name'])}\s*<"))
-    other = UNKNOWN_TAG.search(problem)
-    if other is not None:
-        right = nearest(other["tag"], TAGS)
-        cause = f"Format {other['format']} of {FILE} has no tag <{shorten(other['tag'], 30)}>."
-        cause += f" There is a tag <{right}>." if right else ""
-        return Cause("package-xml-invalid", cause, _line(evidence, f"<{other['tag']}"))
-    if XML.search(problem):
-        cause = "Each <tag> needs a closing </tag> with the same name. Close the inner tag before the outer tag."
-        line = manifest.line
-        if "mismatched tag" in problem:
-            tag_, line = open_tag(evidence.submission.files[FILE])
-            cause = f"<{shorten(tag_, 30)}> in line {line} has no closing tag </{shorten(tag_, 30)}>."
-        elif BARE_AMPERSAND.search(_line_text(evidence, line)):
-            cause = "In XML, & begins the name of a character. Write &amp; for the character & itself."
-        elif "junk after" in problem:
-            cause = "Nothing is allowed after the last tag, </package>."
-        return Cause("xml-malformed", cause, Where(FILE, line))
-    return Cause("package-xml-invalid", where=Where(FILE, manifest.line or _line(evidence, "<package").line))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -234,12 +183,6 @@ def _used(evidence: Evidence, package: str) -> bool:
 
 def _text(evidence: Evidence) -> str:
     return evidence.submission.files[FILE].decode("utf-8", "replace")
-
-
-def _line_text(evidence: Evidence, number: int | None) -> str:
-    """Return the line of package.xml with this number (from 1), or an empty string."""
-    lines = _text(evidence).splitlines()
-    return lines[number - 1] if number is not None and number <= len(lines) else ""
 
 
 def name(evidence: Evidence, _: NoParams) -> Finding:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from grader.tests.operators.operator import (
@@ -35,8 +36,13 @@ def _misspelt_dependency(package: Package, draw: Random) -> Change | None:
 
 
 def _tag_not_closed(package: Package, draw: Random) -> Change | None:
-    make: Make = replace(r"</(name|version|description|depend|license|build_type|export)>", "", file=FILE)
-    return make(package, draw)
+    text = package.files.get(FILE, "")
+    tags = list(re.finditer(r"</(name|version|description|depend|license|build_type|export)>", text))
+    if not tags:
+        return None
+    tag = draw.choice(tags)
+    opened = line_at(text, text.rindex(f"<{tag[1]}", 0, tag.start()))
+    return edited(package, FILE, text[: tag.start()] + text[tag.end() :], opened, line_at(text, tag.start()))
 
 
 def _text_after_the_end(package: Package, draw: Random) -> Change | None:

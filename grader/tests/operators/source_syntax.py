@@ -89,7 +89,8 @@ OPERATORS = (
     Operator("body-left-out", _body_left_out, frozenset({"indentation"})),
     _source("conflict", r"^( +self\.\w+ = .*)$", "<<<<<<< HEAD\n\\1\n=======\n\\1\n>>>>>>> main", "merge-conflict"),
     _source("print-of-python-2", r"^( +)self\.get_logger\(\)\.info\((.*)\)$", r"\1print \2", "python-2-print"),
-    Operator("method-outside-class", _method_moved(-1), frozenset({"method-outside-class"})),
+    # If the method has a decorator, the decorator stays where it is, and Python cannot read the file.
+    Operator("method-outside-class", _method_moved(-1), frozenset({"method-outside-class", "indentation"})),
     Operator("method-in-method", _method_moved(1), frozenset({"method-in-method"})),
     Operator("main-in-class", _main_in_class, frozenset({"main-in-class"})),
     Operator("main-renamed", _main_renamed, frozenset({"entry-point-function"})),

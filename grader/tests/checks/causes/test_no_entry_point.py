@@ -202,6 +202,32 @@ def test_an_entry_point_that_leads_nowhere_is_explained_by_the_files(target: str
     assert "draw_circle names" in got.observed
 
 
+MODULE = "my_robot_controller.draw_circle"
+
+
+@pytest.mark.parametrize(
+    ("file", "target", "words"),
+    [
+        ("my_robot_controller/draw_circle_node.py", MODULE, f"A similar module exists: {MODULE}_node."),
+        ("my_robot_controller/draw_circle.py", "my_robt_controller.draw_circle", f"A similar module exists: {MODULE}."),
+        ("my_robot_controller/pose/__init__.py", "my_robot_controller.pos", "exists: my_robot_controller.pose."),
+        ("my_robot_controller/my_first_node.py", MODULE, "Compare the module name with the names of your files."),
+        ("other/draw_circle.py", MODULE, "Compare the module name with the names of your files."),
+        (
+            "my_robot_controller/draw_circle",
+            MODULE,
+            "There is a file my_robot_controller/draw_circle, but",
+        ),
+        ("my_robot_controller/draw_circle.py.txt", MODULE, "the name of a Python file must end with .py."),
+        ("my_robot_controller/draw_circle.md", MODULE, "Compare the module name with the names of your files."),
+    ],
+)
+def test_a_module_is_similar_only_if_its_folder_and_its_own_name_are(file: str, target: str, words: str) -> None:
+    got = found({NODE_FILE: None, file: NODE}, leads_to(f"{target}:main"))
+    assert (got.diagnosis, str(got.where)) == ("entry-point-module", "setup.py:14")
+    assert words in got.cause
+
+
 def test_a_module_that_was_not_installed_is_none_unless_it_is_linked() -> None:
     bare = replace(BUILD, installed=("share/my_robot_controller/package.xml",))
     got = found({}, bare)

@@ -162,3 +162,26 @@ def test_what_another_line_causes_is_explained_there() -> None:
     words = "Git left two versions in the file"
     assert words in unreadable_finding("a.py", Unreadable("invalid syntax", 1), conflict).cause
     assert words not in unreadable_finding("a.py", Unreadable("invalid syntax", 1), b"# <<<<<<< HEAD\nx 1\n").cause
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("if x && y:", "write and, not &&."),
+        ("if x and y y:", None),
+        ('if x y == "&&":', None),
+        ("while x || y || z:", "write or, not ||."),
+        ("if x is not None;", "This line ends with a semicolon."),
+        ("def send(self),", "This line ends with a comma."),
+        ("except (A, B).", "This line ends with a dot."),
+        ("for x y in z;", None),
+        ("send(x y);", None),
+    ],
+)
+def test_a_sign_is_blamed_if_python_can_read_the_line_without_it(line: str, words: str | None) -> None:
+    source = f"try:\n    pass\n{line}\n    pass\n" if line.startswith("except") else f"{line}\n    pass\n"
+    unreadable = read_module("a.py", source.encode()).unreadable
+    assert unreadable is not None
+    found = unreadable_finding("a.py", unreadable, source.encode())
+    assert any(each in found.cause for each in ("write and", "write or", "ends with a ")) == (words is not None)
+    assert words is None or (words in found.cause and found.fix)

@@ -12,11 +12,11 @@ FLOAT = "AssertionError: The 'x' field must be of type 'float'"
 @pytest.mark.parametrize(
     ("line", "diagnosis", "words"),
     [
-        ("msg.linear.x = 2", "int-for-float", "Write the number with a decimal point."),
-        ("msg.linear.x = -2", "int-for-float", "Write the number with a decimal point."),
+        ("msg.linear.x = 2", "int-for-float", "but 2 is an integer. Write the number with a decimal point."),
+        ("msg.linear.x = -2", "int-for-float", "but -2 is an integer. Write the number with a decimal point."),
         ("msg.linear = Vector3(y=2.0, x=2)", "int-for-float", "Write the number with a decimal point."),
         ("msg.linear.y = msg.linear.x = 2", "int-for-float", "Write the number with a decimal point."),
-        ("msg.linear.x = SPEED", "int-for-float", "Write the number with a decimal point."),
+        ("msg.linear.x = SPEED", "int-for-float", "but 2 is an integer. Write the number with a decimal point."),
         ("msg.linear.x = round(speed)", "int-for-float", "round(...) returns an integer."),
         ('msg.linear.x = "2.0"', "string-for-number", "In quotation marks, a number is a string."),
         ("msg.linear.x = input()", "string-for-number", "but the value is a string."),
@@ -82,7 +82,7 @@ def test_a_value_of_which_nothing_is_known_is_of_another_type() -> None:
 @pytest.mark.parametrize(
     ("error", "diagnosis", "words"),
     [
-        ("The 'x' field must be of type 'double'", "int-for-float", "The field x is a float."),
+        ("The 'x' field must be of type 'double'", "int-for-float", "The field x is a float, but"),
         (
             "The 'linear' field must be a sub message of type 'Vector3'",
             "field-type",

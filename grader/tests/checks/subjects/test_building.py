@@ -137,6 +137,8 @@ def test_colcon_may_take_the_package_for_one_of_another_kind(files: Files, cause
     )
     nothing = of("build", files, replace(NOTHING, installed=()))
     assert nothing.cause == (cause or "The packages argument of setup() lists the folders to install.")
+    for found in (failed, nothing):
+        assert str(found.where).partition(":")[0] == ("package.xml" if cause else "setup.py")
 
 
 def test_a_build_without_a_setup_py_is_shown_at_package_xml_if_there_is_one() -> None:

@@ -1,0 +1,85 @@
+"""Explain why catkin_pkg, and therefore colcon, cannot read package.xml."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.common.words import nearest, shorten
+from grader.submission.package_xml import end_of_root, line_of, open_tag
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.submission.package_xml import Manifest
+
+FILE = "package.xml"
+XML = re.compile(
+    r"mismatched tag|not well-formed|no element found|junk after|unclosed|duplicate attribute|invalid XML|syntax error"
+    r"|invalid token|undefined entity"
+)
+"""Messages of an XML parser about text that is not valid XML."""
+BARE_AMPERSAND = re.compile(r"&(?!#?\w+;)")
+UNKNOWN_TAG = re.compile(
+    r"\(with format version (?P<format>\d)\) must not contain the following tags: (?P<tag>[^\s,]{1,60})"
+)
+TAGS = (
+    *("name", "version", "description", "maintainer", "license", "url", "author", "export"),
+    *("depend", "exec_depend", "build_depend", "build_export_depend", "buildtool_depend", "test_depend"),
+)
+"""The tags that a learner's package.xml may contain."""
+TWICE = re.compile(r"dependency on ['\"](?P<name>[^'\"]{1,100})['\"] is redundant")
+ROS_1_TAGS = re.compile(r"must not contain the following tags: .*\b(?P<tag>run_depend)\b")
+
+
+def why_not_read(evidence: Evidence, manifest: Manifest) -> Cause:
+    """Return the cause of `manifest.problem`, with the line of package.xml to look at."""
+    problem = manifest.problem or ""
+    data = evidence.submission.files[FILE]
+    tag = ROS_1_TAGS.search(problem)
+    if tag is not None:
+        cause = f"<{tag['tag']}> belongs to ROS 1. In format 3, use <depend> or <exec_depend>."
+        return Cause("package-xml-old-tag", cause, Where(FILE, line_of(data, f"<{tag['tag']}")))
+    twice = TWICE.search(problem)
+    if twice is not None:
+        cause = f"The package {shorten(twice['name'])} is declared twice. Remove one of the two lines."
+        return Cause("package-xml-invalid", cause, _last_line(data, rf">\s*{re.escape(twice['name'])}\s*<"))
+    other = UNKNOWN_TAG.search(problem)
+    if other is not None:
+        right = nearest(other["tag"], TAGS)
+        cause = f"Format {other['format']} of {FILE} has no tag <{shorten(other['tag'], 30)}>."
+        cause += f" There is a tag <{right}>." if right else ""
+        return Cause("package-xml-invalid", cause, Where(FILE, line_of(data, f"<{other['tag']}")))
+    if XML.search(problem):
+        return _malformed(data, problem, manifest.line)
+    return Cause("package-xml-invalid", where=Where(FILE, manifest.line or line_of(data, "<package")))
+
+
+def _malformed(data: bytes, problem: str, line: int | None) -> Cause:
+    """Return the cause if the file is not XML. `line` is the line at which the XML parser gave up."""
+    cause = "Each <tag> needs a closing </tag> with the same name. Close the inner tag before the outer tag."
+    text = _line_text(data, line)
+    end = end_of_root(data)
+    if end is not None and line is not None:
+        last, at = end
+        cause = f"</{shorten(last, 30)}> in line {at} is the last tag. Nothing is allowed after it"
+        more = text.strip() if line > at else ""
+        cause += f', such as "{shorten(more, 30)}" in line {line}.' if more else "."
+    elif "mismatched tag" in problem:
+        name, line = open_tag(data)
+        cause = f"<{shorten(name, 30)}> in line {line} has no closing tag </{shorten(name, 30)}>."
+    elif BARE_AMPERSAND.search(text):
+        cause = "In XML, & begins the name of a character. Write &amp; for the character & itself."
+    return Cause("xml-malformed", cause, Where(FILE, line))
+
+
+def _last_line(data: bytes, pattern: str) -> Where:
+    lines = data.decode("utf-8", "replace").splitlines()
+    return Where(FILE, max((number for number, line in enumerate(lines, 1) if re.search(pattern, line)), default=None))
+
+
+def _line_text(data: bytes, number: int | None) -> str:
+    """Return the line with this number (from 1), or an empty string."""
+    lines = data.decode("utf-8", "replace").splitlines()
+    return lines[number - 1] if number is not None and number <= len(lines) else ""
