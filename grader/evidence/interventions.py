@@ -36,11 +36,11 @@ KEPT_S = 1.1
 
 
 def moved_by(recording: Recording, *, from_start: bool, others_removed: bool = False) -> str | None:
-    """Return the call that moved the turtle, or None.
+    """Return the call that moved the turtle or could have influenced its movement, or None.
 
-    With `from_start`, all calls since the start of the trial count. Without `from_start`, only events after the first
-    command count. With `others_removed`, the node may remove other turtles and set parameters. The node must still not
-    remove turtle1 and spawn it at another place.
+    Without `others_removed`, a call that removes a turtle or sets a parameter always counts. With `others_removed`, the
+    node may make such calls, but it must not remove turtle1 and spawn it at another place. With `from_start`, movements
+    since the start of the trial count, and otherwise only movements after the first command.
     """
     always = next((name for name in recording.interventions if name in ALWAYS and not others_removed), None)
     if always is not None:

@@ -123,7 +123,7 @@ def _before_driving(recording: Recording) -> int:
 
 
 def trajectory_of(recording: Recording) -> Trajectory:
-    """Return the trajectory of the turtle from its start up to SIGINT."""
+    """Return the trajectory of the turtle up to SIGINT, which begins at the pose that `driven_from` returns."""
     frames, start = recording.frames, driven_from(recording)
     until = frames.t_s <= activity.end_s(recording)
     until[: _before_driving(recording)] = False

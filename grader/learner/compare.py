@@ -29,7 +29,7 @@ WIDE = 120
 On a narrower terminal, a unified diff is shown.
 """
 
-OTHER_NUMBERS = "The solution has the numbers of an example student. Your own numbers are right in your files."
+OTHER_NUMBERS = "The solution has the numbers of an example student. Keep your own numbers in your files."
 
 
 def print_solution(step: str, folder: Path | None, console: Console) -> None:

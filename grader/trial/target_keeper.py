@@ -1,4 +1,4 @@
-"""The node `spawner`, with which a trial completes the game of catching turtles: it announces and removes targets.
+"""The node `spawner`, which a trial adds for the game of catching turtles: it announces and removes targets.
 
 The node of the trial receives the names on /targets twice a second, and calls /catch to have a turtle removed.
 """

@@ -37,7 +37,7 @@ class Target:
 
 
 def draw_targets(count: int, start: Pose, seed: int) -> tuple[Target, ...]:
-    """Return `count` targets, sorted by name. Random places are tried until the places meet the conditions."""
+    """Return `count` targets, sorted by name. Random places are drawn until they meet the conditions (see above)."""
     draw = random.Random(f"targets {seed}")
     targets: tuple[Target, ...] = ()
     for _ in range(MOST_DRAWS):

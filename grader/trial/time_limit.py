@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
 MOST_BY_OTHERS = 0.75
 """If other programs used at least this share of the processors, the machine may be the reason why a trial did not end
-in time. A node that keeps the simulator busy gets at least half of the processors beside other trials of a class."""
+in time. A node that keeps the simulator busy gets at least half of the processors, even while other trials of a class
+are running."""
 
 
 class TimeLimit:

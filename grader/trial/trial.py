@@ -283,7 +283,7 @@ class Trial:
         output = answer.get("fault") or last_words(self._errors.read()[-2000:])
         # A complete sentence is one of the grader's messages, and says what to do.
         refused = output if output.endswith(".") else refusal_in(output)
-        unknown = f"The simulator failed: {output or 'it output nothing'}. `grader doctor` says what is missing."
+        unknown = f"The simulator failed: {output or 'it printed nothing'}. `grader doctor` says what is missing."
         message = f"The simulator failed. {refused}" if refused else unknown
         raise MachineError(message)
 

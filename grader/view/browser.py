@@ -9,7 +9,7 @@ import subprocess
 from grader.common.interpreter import clean, interpreter
 
 _OPENED_S = 3.0
-"""The time (s) after which a browser that has not failed is considered to have opened the page."""
+"""A browser that has not failed after this time (s) is considered to have opened the page."""
 
 
 def there_is_one() -> bool:

@@ -9,7 +9,7 @@ WINDOW_S = 5.0
 """The time over which a rate is computed (s), unless the interval between the last two arrivals is longer."""
 _LONGEST_S = 30.0
 _GAPS = 2.5
-"""The number of average intervals without an arrival after which the messages are considered to have stopped."""
+"""The messages are considered to have stopped after this number of average intervals without an arrival."""
 _AT_LEAST_S = 1.0
 
 

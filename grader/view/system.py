@@ -130,7 +130,7 @@ class Ears:
     # --- driving ------------------------------------------------------------------------------------------------
 
     def drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:
-        """Execute a key of turtle_teleop_key. `turtle` is the full name of the turtle, such as "/turtle1"."""
+        """Handle a key of turtle_teleop_key. `turtle` is the full name of the turtle, such as "/turtle1"."""
         self._leave_s = math.inf
         self._executor.create_task(self._drive, turtle, key)
 

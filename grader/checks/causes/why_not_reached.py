@@ -30,7 +30,7 @@ ASIDE_RAD = 0.3
 MOST = 0.8
 """The share of the commands in which the turtle must turn or face away from the target."""
 FEWEST, FEWEST_AWAY = 10, 3
-"""The minimum numbers of turns, and of turns away from the target, from which a conclusion is drawn."""
+"""The minimum numbers of turns, and of turns away from the target, that a conclusion needs."""
 
 
 def why_not_reached(evidence: Evidence, name: str, near_m: float) -> Cause | None:

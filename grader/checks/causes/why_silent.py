@@ -147,7 +147,7 @@ def _ends(loop: ast.While) -> bool:
 
 
 def _only_waits(loop: ast.While) -> bool:
-    """Return whether a loop only waits, and does not wait for a service of turtlesim."""
+    """Return whether a loop does nothing but wait, for something other than a server."""
     if any(isinstance(each, ast.Attribute) and each.attr in ANSWERS for each in ast.walk(loop.test)):
         return False
     calls = [each.value for each in loop.body if isinstance(each, ast.Expr)]

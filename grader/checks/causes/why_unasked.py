@@ -26,7 +26,7 @@ def why_unasked(evidence: Evidence, service: str) -> Cause:
 
 
 def _wrong_name(evidence: Evidence, wanted: str) -> Cause | None:
-    """Return the cause if a client uses the name of a service that does not exist in the simulator, else None."""
+    """Return the cause if a client uses a similar name, which no service of the simulator has, else None."""
     clients = evidence.code.calls("create_client")
     names = {call: evaluate(call.argument(1, "srv_name"), call.module.names) for call in clients}
     if any(isinstance(name, str) and f"/{name.strip('/')}" == wanted for name in names.values()):

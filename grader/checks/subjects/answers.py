@@ -194,8 +194,7 @@ def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
     if not any(steps):
         # This trial runs none of the student's code, so the machine is at fault.
         message = (
-            "No message of that type was recorded, so there is no rate with which the answer can be "
-            "compared. Try again."
+            "No message of that type was recorded, so the answer cannot be compared with a measured rate. Try again."
         )
         raise MachineError(message)
     truth = len(steps) / sum(steps)

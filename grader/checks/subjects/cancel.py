@@ -28,7 +28,7 @@ SAME_TIME_S = 0.1
 
 @dataclass(frozen=True, kw_only=True)
 class CancelsGoal:
-    """The service by which the trial requests that the node cancel its goal within `within_s` (s)."""
+    """The service with which the trial tells the node to cancel its goal within `within_s` (s)."""
 
     service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
     type: str = string("a service type, as in std_srvs/srv/Trigger", about="The type of the service.")
@@ -37,7 +37,7 @@ class CancelsGoal:
 
 @dataclass(frozen=True, kw_only=True)
 class SaysWhetherActive:
-    """The service by which the trial requests that the node cancel its goal. The response has the field `success`."""
+    """The service with which the trial tells the node to cancel its goal. The response has the field `success`."""
 
     service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
 

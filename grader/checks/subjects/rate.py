@@ -207,7 +207,7 @@ def _stopped(evidence: Evidence, what: Subject, measured: Measured, expected: st
 
 
 def requested_rate(_: Evidence, params: Rate) -> Requested:
-    """Return the interval between two commands."""
+    """Return the required interval between two commands."""
     return Requested(interval=Interval(1.0 / params.rate_hz, params.min_interval_s, params.max_interval_s))
 
 

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from grader.trial.observed import Call
 
 AT_ONCE_S = 0.05
-"""A call that is recorded at most this long before a response (s) does not count as earlier than the response, because
-times in a trial in wall time are not exact."""
+"""A call counts as earlier than a response only if it is earlier by more than this time (s): times in a trial in wall
+time are not exact."""
 OF_TURTLES = "/turtle"
 """The beginning of the names of services that each turtle has, such as /turtle1/set_pen."""
 CLOSE = 1e-3

@@ -119,7 +119,7 @@ def _measured(evidence: Evidence, params: Star, sides: Sides, expected: str) -> 
 
 
 def _is_cut(evidence: Evidence) -> bool:
-    """Return whether commands with zeros arrive together with a command that drives the turtle."""
+    """Return whether each command with zeros arrives together with the last command of its side."""
     pairs = list(pairwise(evidence.commands))
     ends = [later for before, later in pairs if before.linear[0] and not later.linear[0]]
     cut = [later for before, later in pairs if later in ends and later.t_s - before.t_s < TOGETHER_S]

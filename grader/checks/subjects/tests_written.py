@@ -179,7 +179,7 @@ OUTSIDE = Kind(
 STEADY = Kind(
     "tests_steady",
     "source",
-    "The tests do not depend on luck",
+    "The tests do not depend on chance",
     Steady,
     steady,
     about="The test files call none of the given functions, under any name.",

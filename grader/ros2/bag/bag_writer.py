@@ -140,7 +140,7 @@ class BagWriter:
 
 
 def _add_distribution(metadata: Path) -> None:
-    """Add the name of the ROS 2 distribution. If metadata.yaml is missing, `ros2 bag reindex` restores it."""
+    """Add the name of the ROS 2 distribution to metadata.yaml, which is replaced atomically."""
     data = yaml.safe_load(metadata.read_text("utf-8"))
     data[INFORMATION]["ros_distro"] = os.environ.get("ROS_DISTRO", "jazzy")
     new = metadata.with_suffix(".yaml.tmp")

@@ -185,8 +185,10 @@ def test_a_rate_is_compared_with_the_one_that_was_measured(answer: str, diagnosi
 
 
 def test_without_messages_there_is_no_rate_to_compare_with() -> None:
-    with pytest.raises(MachineError, match="No message of that type"):
+    words = "No message of that type was recorded, so the answer cannot be compared with a measured rate."
+    with pytest.raises(MachineError, match=words):
         judged(RATE, "4", type_ends="/Float64")
+    assert words not in judged(RATE, "4", type_ends="/String").observed
 
 
 def test_an_answer_of_any_length_makes_a_short_message() -> None:
