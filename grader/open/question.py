@@ -100,7 +100,7 @@ def _meant(words: list[str]) -> str:
 
 
 def answer(words: list[str], env: Mapping[str, str]) -> Answer:
-    """Run `ros2` with the arguments that `arguments` returned, and return the output of `ros2`."""
+    """Run `ros2` with the arguments that `arguments` returned, and return its output."""
     start = interpreter("-m", "grader.ros2.main", *words, env=env, searches=True)
     endless = words[:2] == ["topic", "hz"]
     patience_s = HZ_S if endless else PATIENCE_S

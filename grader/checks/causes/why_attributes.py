@@ -181,10 +181,7 @@ def _of_own_type(scene: CrashScene, owner: str, name: str) -> Cause:
         )
     first = next((each for each in scene.top_functions() if "self" in [a.arg for a in each.args.args]), None)
     if first is not None and first.lineno > own.lineno:
-        text = (
-            f"{first.name} is not indented, so the class ends above {first.name}. Indent {first.name} like the other "
-            "methods."
-        )
+        text = f"{first.name} is not indented, so the class ends above it. Indent {first.name} like the other methods."
         return Cause("method-outside-class", text, scene.at(first))
     if name in {attribute for attribute, _ in attributes_set(own)} or name in ros_names.NODE:
         return class_for_object(scene, owner, name)
@@ -254,7 +251,7 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
         return Cause("method-outside-class", text, scene.at(outside))
     inside = next((each for method in methods(own) for each in ast.walk(method) if _is_function(each, name)), None)
     if inside is not None:
-        text = f"{name} is indented too far. {name} is inside another method, so self.{name} does not exist."
+        text = f"{name} is indented too far: it is inside another method, so self.{name} does not exist."
         return Cause("method-in-method", text, scene.at(inside))
     if name in ros_names.NODE:
         text = (

@@ -246,7 +246,7 @@ def _not_callable(scene: CrashScene, kind: str) -> Cause | None:
         inside = [each for each in scene.functions("__call__") if each not in methods(made)]
         text = f"An object of {kind} can be called only if the class has a method __call__."
         if inside:
-            text = "__call__ is indented too far. __call__ is inside another method, so the object cannot be called."
+            text = "__call__ is indented too far: it is inside another method, so the object cannot be called."
             return Cause("method-in-method", text, scene.at(inside[0]))
         return Cause("not-callable", text)
     if kind == "NoneType":

@@ -48,10 +48,7 @@ def _no_module(scene: CrashScene, name: str) -> Cause:
         )
     files = scene.evidence.submission.files
     if f"{top}.py" in files:
-        text = (
-            f"{top}.py is next to setup.py, so it is not installed. {top}.py belongs in the folder with the other "
-            "modules."
-        )
+        text = f"{top}.py is next to setup.py, so it is not installed. Move it to the folder with the other modules."
         return Cause("sibling-import", text)
     beside = next((path for path in sorted(files) if path.endswith(f"/{top}.py")), None)
     if beside is not None:

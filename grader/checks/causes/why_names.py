@@ -120,7 +120,7 @@ def _of_import(scene: CrashScene, name: str) -> Cause | None:
             return Cause("import-wrong-place", text, scene.at(star)).fixed_by(
                 at(scene.at(star), f"from {star.module} ", f"from {module} ")
             )
-        text = f"The file does not import {name}. {name} is in the module {module}."
+        text = f"The file does not import {name}, which is in the module {module}."
         return Cause("missing-import", text).fixed_by(_import(scene, f"from {module} import {name}"))
     if name in WELL_KNOWN:
         text = f"The file does not import the module {name}."
@@ -131,7 +131,7 @@ def _of_import(scene: CrashScene, name: str) -> Cause | None:
                 text = f"{name} belongs to the module {module}. Write {module}.{name}."
                 return Cause("module-prefix", text).fixed_by(at(scene.crash.where, name, f"{module}.{name}"))
             if module != "rclpy":
-                text = f"The file does not import {name}. {name} is in the module {module}."
+                text = f"The file does not import {name}, which is in the module {module}."
                 return Cause("missing-import", text).fixed_by(_import(scene, f"from {module} import {name}"))
     return None
 
@@ -249,9 +249,7 @@ def why_unbound(scene: CrashScene) -> Cause:
     if local and local[0] > scene.line and not outside and not _only_raised(scene, name):
         inner = next((each for each in scene.functions(name) if each.lineno == local[0]), None)
         if own is not None and inner is not None and inner.args.args[:1] and inner.args.args[0].arg == "self":
-            text = (
-                f"{name} is indented too far. {name} is inside another method, so {name} is not a method of the class."
-            )
+            text = f"{name} is indented too far: it is inside another method, so it is not a method of the class."
             return Cause("method-in-method", text, scene.at(inner))
         return Cause("name-too-early", f"{name} gets its value in line {local[0]}, after this line.")
     kept = "Store a value in self if later calls need the value."

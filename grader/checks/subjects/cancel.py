@@ -134,7 +134,7 @@ def says_whether_active(evidence: Evidence, params: SaysWhetherActive) -> Findin
 
 
 def _other_success(evidence: Evidence, goals: list[Goal], call: Call) -> Cause:
-    """Return the cause of a wrong `success`: a goal that has ended still counts, or `success` is set in a wrong way."""
+    """Return the cause of a wrong `success`: a goal that has ended still counts, or `success` is set incorrectly."""
     ended = [goal for goal in goals if goal.ended_s is not None and goal.ended_s <= call.t_s]
     others = [each for each in evidence.recording.calls if each.by_trial and each.service == call.service]
     right = [each for each in others if each.t_s < call.t_s and (each.response or {}).get("success") is True]

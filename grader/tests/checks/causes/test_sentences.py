@@ -180,7 +180,7 @@ OUTSIDE = "\ndef publish_it(self):\n    pass\n"
 def test_a_class_that_ends_too_early_is_told(methods: str, *, found: bool) -> None:
     source = DRIVER.format(line="Driver.other()").replace("\ndef outside", f"{methods}\ndef outside")
     given = reported(source, NO_ATTRIBUTE.format("type object 'Driver'", "other")).cause
-    words = "publish_it is not indented, so the class ends above publish_it. Indent publish_it like the other methods."
+    words = "publish_it is not indented, so the class ends above it. Indent publish_it like the other methods."
     assert (given == words) == found
 
 

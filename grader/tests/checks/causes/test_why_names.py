@@ -16,7 +16,7 @@ def name_error(name: str) -> str:
     [
         ("print(count)", "count", "missing-self", "count belongs to the object"),
         ("send()", "send", "missing-self", "send belongs to the object"),
-        ("twist = Twist()", "Twist", "missing-import", "import Twist. Twist is in the module geometry_msgs.msg."),
+        ("twist = Twist()", "Twist", "missing-import", "import Twist, which is in the module geometry_msgs.msg."),
         ("time.sleep(1)", "time", "missing-import", "import the module time."),
         ("print(steps)", "steps", "name-misspelt", "A similar name exists: step."),
         ("total = totl + 1", "totl", "name-misspelt", "A similar name exists: total."),
@@ -104,7 +104,7 @@ def test_an_unbound_name_in_other_words_is_local_all_the_same() -> None:
     ("source", "name", "diagnosis", "words"),
     [
         ("import math\nx = pi  # crashed\n", "pi", "module-prefix", "Write math.pi."),
-        ("x = pi  # crashed\n", "pi", "missing-import", "pi is in the module math."),
+        ("x = pi  # crashed\n", "pi", "missing-import", "import pi, which is in the module math."),
         ("import rclpy\nspin(node)  # crashed\n", "spin", "module-prefix", "Write rclpy.spin."),
         ("spin(node)  # crashed\n", "spin", "name-undefined", "Nothing defines this name"),
         ("x = true  # crashed\n", "true", "name-misspelt", "In Python, the spelling is True."),
