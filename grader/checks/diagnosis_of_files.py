@@ -69,6 +69,7 @@ DiagnosisOfFiles = Literal[
     "colon-missing",
     "comma-missing",
     "comma-for-dot",
+    "trailing-comma",
     "bracket-open",
     "bracket-extra",
     "quote-open",

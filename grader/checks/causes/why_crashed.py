@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash_scene import CrashScene
+from grader.checks.causes.trailing_comma import trailing_comma
 from grader.checks.causes.why_attributes import why_no_attribute
 from grader.checks.causes.why_calls import why_refused, why_type
 from grader.checks.causes.why_ended import named_only
@@ -134,7 +135,7 @@ def why_crashed(evidence: Evidence, crash: Crash) -> Cause:
     """
     explain = EXPLANATIONS.get(crash.error)
     scene = CrashScene(evidence, crash)
-    special = why_response(scene) or why_interface(scene) or why_passed(scene)
+    special = trailing_comma(scene) or why_response(scene) or why_interface(scene) or why_passed(scene)
     cause = special or (explain(scene) if explain is not None else None)
     return cause or Cause("crash", crash.meaning)
 

@@ -33,6 +33,8 @@ MEMBERS = {
 """Maps a module to those of its names that learners often forget to prefix with the name of the module."""
 TAKE_A_STRING = {"__init__": 0, "create_node": 0, "create_publisher": 1, "create_subscription": 1, "create_client": 1}
 """rclpy functions that take the name of a node, topic or service, and the position of that argument."""
+NEED_THE_NODE = ("spin", "spin_once", "spin_until_future_complete", "add_node")
+"""Functions that take the node."""
 CONSTANTS = {
     "true": "True",
     "false": "False",
@@ -57,15 +59,24 @@ def why_no_name(scene: CrashScene) -> Cause | None:
         or _of_import(scene, name)
         or _bound_elsewhere(scene, name)
         or _alike(scene, name)
-        or _unknown(name)
+        or _unknown(scene, name)
     )
 
 
-def _unknown(name: str) -> Cause:
-    text = "Nothing defines this name before this line. A string needs quotation marks."
+def _unknown(scene: CrashScene, name: str) -> Cause:
     if name[:1].isupper():
-        text = "Nothing defines this name before this line, and nothing imports it."
-    return Cause("name-undefined", text)
+        return Cause("name-undefined", "Nothing defines this name before this line, and nothing imports it.")
+    text = "Nothing defines this name before this line."
+    for function in NEED_THE_NODE:
+        if any(
+            isinstance(each, ast.Name) and each.id == name
+            for call in scene.calls_on_line(function)
+            for each in call.args
+        ):
+            return Cause("name-undefined", f"{text} {function} needs the node, an object of your class.")
+    uses = sum(isinstance(node, ast.Name) and node.id == name for node in scene.nodes)
+    # A string whose quotation marks were forgotten is written once.
+    return Cause("name-undefined", f"{text} A string needs quotation marks." if uses == 1 else text)
 
 
 def _of_self(scene: CrashScene, name: str) -> Cause | None:

@@ -11,6 +11,7 @@ from grader.checks.causes.timers import timer_fault
 from grader.checks.causes.waiting import inside, waits_in_callback
 from grader.checks.causes.why_ended import SPINS, named_only
 from grader.checks.causes.why_inactive import never_activated
+from grader.checks.causes.why_never_set import never_set
 from grader.common.words import nearest, shorten
 from grader.submission.constants import dotted, evaluate
 from grader.submission.where import Where
@@ -55,6 +56,7 @@ def why_nothing(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
         or _never_called(evidence, sends)
         or _no_spin(evidence)
         or _nothing_to_spin(evidence)
+        or never_set(evidence, sends)
     )
 
 

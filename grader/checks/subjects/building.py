@@ -159,7 +159,8 @@ def _other_type(evidence: Evidence) -> Where | None:
     manifest = evidence.manifest
     if manifest is None or manifest.problem is not None or manifest.build_type == "ament_python":
         return None
-    return Where("package.xml", line_of(evidence.submission.files["package.xml"], "<build_type>", "<export>"))
+    data = evidence.submission.files["package.xml"]
+    return Where("package.xml", line_of(data, "<build_type>", r"depend>\s*catkin", "<export>"))
 
 
 def _modules(evidence: Evidence) -> Finding:

@@ -62,15 +62,25 @@ def lines_in(evidence: Evidence, params: LogFormat, when: str = "") -> Finding:
         return failed(f"No message reached the subscription, and {nothing} was logged.", expected, qos)
     if logged:
         return _other_format(evidence, params, logged, expected, when)
+    return _printed(evidence, params, expected, when) or _silent(evidence, expected, when)
+
+
+def _printed(evidence: Evidence, params: LogFormat, expected: str, when: str) -> Finding | None:
+    """Return a failed finding if the node prints the lines, or prints something and never logs, else None."""
+    printed = evidence.recording.stdout.text.splitlines()
     pattern = student_log.Format(params.format).pattern()
-    if any(pattern.search(line) for line in evidence.recording.stdout.text.splitlines()):
-        observed = "The lines are printed, not logged."
-        cause = (
-            "print only writes to the terminal. get_logger().info(...) also sends the line to ROS 2, "
-            "with the time and the node name."
-        )
-        return failed(observed, expected, Cause("print-instead", cause, evidence.place("print")))
-    return _silent(evidence, expected, when)
+    right = any(pattern.search(line) for line in printed)
+    logs = any(evidence.code.calls(level) for level in LEVELS)
+    if not right and (logs or not printed or not evidence.code.calls("print")):
+        return None
+    observed = (
+        "The lines are printed, not logged." if right else f"The node logged nothing{when}, but it printed lines."
+    )
+    cause = (
+        "print only writes to the terminal. get_logger().info(...) also sends the line to ROS 2, "
+        "with the time and the node name."
+    )
+    return failed(observed, expected, Cause("print-instead", cause, evidence.place("print")))
 
 
 def _received_nothing(evidence: Evidence) -> bool:

@@ -108,6 +108,12 @@ OPERATORS = (
         "several-timers",
         "uneven-rate",
     ),
+    _source(
+        "comma-after-value",
+        r"^( +(?:self\.\w+|\w+\.(?:linear|angular)\.\w|msg|node) = [^#\n]*[\w)])$",
+        r"\1,",
+        "trailing-comma",
+    ),
     _source("f-left-out", r"\.info\(f\"", '.info("', "log-numbers"),
     _source("log-small", r"\.info\(f\"Hello ", '.info(f"hello ', "log-capitals"),
     _source("log-colon", r"\.info\(f\"Hello ", '.info(f"Hello: ', "log-format"),

@@ -25,7 +25,9 @@ def name_error(name: str) -> str:
         ("pritn(1)", "pritn", "name-misspelt", "A similar name exists: print."),
         ("Nodes()", "Nodes", "name-misspelt", "A similar name exists: Node."),
         ("print(ValueErro)", "ValueErro", "name-undefined", "Nothing defines this name"),
-        ("print(forward)", "forward", "name-undefined", "Nothing defines this name"),
+        ("print(forward)", "forward", "name-undefined", "this name before this line. A string needs quotation marks."),
+        ("print(forward, forward)", "forward", "name-undefined", "Nothing defines this name before this line."),
+        ("rclpy.spin(knot)", "knot", "name-undefined", "spin needs the node, an object of your class."),
     ],
 )
 def test_an_unknown_name_is_explained_by_what_there_is(line: str, name: str, diagnosis: str, words: str) -> None:

@@ -98,6 +98,27 @@ def test_a_silent_log_is_explained_by_the_source(node: str, stdout: str, diagnos
     assert finding.observed == ("The lines are printed, not logged." if stdout else "The node logged nothing.")
 
 
+@pytest.mark.parametrize(
+    ("node", "stdout", "words"),
+    [
+        (
+            NODE.replace("self.publisher.publish(msg)", "print(1)"),
+            "1.000\n",
+            "but it printed lines. | print only writes",
+        ),
+        (NODE.replace("self.publisher.publish(msg)", "print(1)"), "", "never called."),
+        (LOGS.replace("def send(self):", "def send(self):\n        print(1)"), "1.000\n", "may never be reached."),
+        (NODE, "from a library\n", "never called."),
+    ],
+)
+def test_a_node_that_prints_other_lines_and_never_logs_is_told_the_difference(
+    node: str, stdout: str, words: str
+) -> None:
+    finding = in_format((), node=node, stdout=stdout)
+    assert words in f"{finding.observed} | {finding.cause}"
+    assert ("printed lines" in finding.observed) == ("printed lines" in words)
+
+
 def test_a_crash_explains_a_silent_log() -> None:
     trial = recording([], end=crashed(-0.2), graphs=(), stderr=Output(TRACEBACK))
     finding = found(LOG_LINES, evidence(trial), format=HELLO)
