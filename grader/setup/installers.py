@@ -1,4 +1,4 @@
-"""The environment of the installers venv, pip and uv: of the user's settings, only those about the network and caches.
+"""The environment of the installers venv, pip and uv. It keeps only the user's settings for the network and the caches.
 
 Like machine.py, this module runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
@@ -34,7 +34,7 @@ def environment(env: Mapping[str, str]) -> Dict[str, str]:
 
 
 def of_configuration(env: Mapping[str, str]) -> Dict[str, str]:
-    """Return variables with those settings that are kept of pip's configuration files.
+    """Return variables with the settings from pip's configuration files that are kept.
 
     With PIP_CONFIG_FILE=/dev/null, pip ignores its files, which can also contain what is dropped from the environment.
     """

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
 
 OTHER_ENDINGS = ("", ".txt", ".py.txt", ".PY", ".python")
-"""What the name of a file has at its end if .py is forgotten, or if an editor or a browser has added something."""
+"""The endings of a file name if .py was forgotten, or if an editor or a browser has added something."""
 DATA = (ast.Constant, ast.List, ast.Tuple, ast.Dict, ast.Set, ast.JoinedStr)
 """Expressions whose value is not callable."""
 
