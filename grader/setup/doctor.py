@@ -217,7 +217,7 @@ def look_at_ros(ros: Ros, env: Mapping[str, str]) -> Line:
         return Line("ROS 2", f"{ros.name}, for Python {wanted}", "broken", "source this ROS 2, and type: make demo")
     other = env.get("ROS_DISTRO", DISTRO)
     if other != DISTRO:
-        return Line("ROS 2", f"{ros.name}; {other} is sourced, but not used", "advice", "nothing, if you want this")
+        return Line("ROS 2", f"{ros.name}; {other} is sourced, but not used", "advice", "nothing, if this is intended")
     return Line("ROS 2", f"{ros.name}" + (f", {ros.prefix}" if ros.kind == "sourced" else ""))
 
 

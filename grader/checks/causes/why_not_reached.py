@@ -40,7 +40,7 @@ def why_not_reached(evidence: Evidence, name: str, near_m: float) -> Cause | Non
     if reach_m is not None and near_m < reach_m and not asked:
         text = (
             f"The turtle came as near as {near_m:.2f} m to {shorten(name)}, and your reach is {reach_m:g} m, but the "
-            f"node did not call {CATCH} for it. Which distance does the node compare with?"
+            f"node did not call {CATCH} for it. Which distance does the node compare with your reach?"
         )
         return Cause("reach-too-small", text, _constant(evidence, "REACH") or evidence.place("call_async"))
     return _farthest(evidence) or wrong_turn(evidence)
