@@ -6,10 +6,17 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.why_rate import is_repeated, sends_each_time, why_several_calls, why_sleep_in_callback
+from grader.checks.causes.why_rate import (
+    callbacks_of,
+    is_repeated,
+    reaches,
+    sends_each_time,
+    why_several_calls,
+    why_sleep_in_callback,
+)
 from grader.checks.edit import at
+from grader.submission.constants import dotted, written
 from grader.submission.constants import number as constant
-from grader.submission.constants import written
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -19,6 +26,9 @@ if TYPE_CHECKING:
 
 SAME = 0.1
 """A number in the source code explains a measured interval if they differ by less than this share."""
+
+FEWEST_CALLS, MOST_CALLS = 2, 20
+"""A callback that counts its calls sends a message in every n-th call. With more calls, n cannot be measured."""
 
 PERIOD = "The first argument of create_timer is the timer period in seconds."
 
@@ -69,10 +79,37 @@ def _why_mean(evidence: Evidence, noun: str, call: str, mean: float, rate_hz: fl
             f"There are {len(timers)} timers. Each timer calls its method at its own rate.",
             timers[1][0].where,
         )
+    counted = _every_few_calls(evidence, noun, call, mean) if len(timers) == 1 else None
+    if counted is not None:
+        return counted
     if timers and timers[0][1] is None and sends_each_time(evidence, call):
         return Cause("timer-period", PERIOD, timers[0][0].where)
     where = timers[0][0].where if timers else evidence.place(call)
     return Cause("wrong-rate", f"The time between two calls to {call} sets the rate.", where)
+
+
+def _every_few_calls(evidence: Evidence, noun: str, call: str, mean: float) -> Cause | None:
+    """Return the cause if the callback of the only timer sends in every second, third, ... call, else None."""
+    timer, period = _timers(evidence)[0]
+    if not period or sends_each_time(evidence, call):
+        return None
+    calls = round(mean / period)
+    name = (dotted(timer.argument(1, "callback") or ast.Constant(0)) or "").rpartition(".")[2]
+    senders = [
+        each.name
+        for each in timer.module.nodes
+        if isinstance(each, ast.FunctionDef) and reaches(timer.module, each, call)
+    ]
+    others = {other for _, other in callbacks_of(evidence)}
+    if (
+        name not in senders
+        or others & set(senders)
+        or not FEWEST_CALLS <= calls <= MOST_CALLS
+        or abs(mean - calls * period) > SAME * period
+    ):
+        return None
+    text = f"{name} is called every {period:g} s, and one in {calls} calls sends a {noun}."
+    return Cause("wrong-rate", text, timer.where)
 
 
 def _period_cause(cause: Cause, period: float, rate_hz: float) -> Cause:

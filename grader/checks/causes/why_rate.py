@@ -49,7 +49,7 @@ def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> 
         return None
     for module, name in callbacks_of(evidence):
         for node in module.nodes:
-            if isinstance(node, ast.FunctionDef) and node.name == name and _reaches(module, node, call):
+            if isinstance(node, ast.FunctionDef) and node.name == name and reaches(module, node, call):
                 text = f"{name} is called for every message, 62.5 times per second, and each time it calls {call}."
                 return Cause("every-message", text, Where(module.file, node.lineno))
     return None
@@ -68,12 +68,12 @@ def period_of_zero(evidence: Evidence, call: str) -> Call | None:
         if number(timer.argument(0, "timer_period_sec"), timer.module.names) == 0.0:
             name = (dotted(timer.argument(1, "callback") or ast.Constant(0)) or "").rpartition(".")[2]
             own = [each for each in timer.module.nodes if isinstance(each, ast.FunctionDef) and each.name == name]
-            if not own or any(_reaches(timer.module, each, call) for each in own):
+            if not own or any(reaches(timer.module, each, call) for each in own):
                 return timer
     return None
 
 
-def _reaches(module: Module, function: ast.FunctionDef, call: str) -> bool:
+def reaches(module: Module, function: ast.FunctionDef, call: str) -> bool:
     """Return whether a method calls `call`, either directly or through another method of the same object."""
     if _calls(function, call):
         return True

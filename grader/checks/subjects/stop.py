@@ -9,6 +9,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
+from grader.checks.causes.why_ignored import why_ignored
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.tolerance import Band
@@ -41,9 +42,7 @@ def stop(evidence: Evidence, params: Stop) -> Finding:
         cause = "The node may still be waiting for something after Ctrl-C: a sleep, a thread or a service response."
         return failed(observed, expected, Cause("slow-stop", cause, evidence.place("spin")), near_edge=True)
     force = "it had to be killed" if end.by == "SIGKILL" else "only SIGTERM ended it"
-    cause = "A loop that never ends, or an except that catches everything, can keep Ctrl-C from ending the node."
-    where = evidence.place("spin", "init")
-    return failed(f"The node ignored Ctrl-C: {force}.", expected, Cause("ignores-ctrl-c", cause, where), near_edge=True)
+    return failed(f"The node ignored Ctrl-C: {force}.", expected, why_ignored(evidence), near_edge=True)
 
 
 def _too_early(evidence: Evidence, expected: str) -> Finding:

@@ -30,6 +30,27 @@ def test_the_only_timer_sets_the_rate_unless_its_callback_chooses_when_to_publis
     assert rate("one hertz", unknown, chooses).diagnosis == "wrong-rate"
 
 
+@pytest.mark.parametrize(
+    ("timer", "guard", "found"),
+    [
+        ("self.create_timer(0.25, self.send)", "if self.due():", True),
+        ("self.create_timer(0.3, self.send)", "if self.due():", False),
+        ("self.create_timer(0.25, self.send)", "if True: pass\n        if 1:", True),
+        (
+            "self.create_timer(0.25, self.send); self.create_subscription(Pose, 'p', self.send, 1)",
+            "if self.due():",
+            False,
+        ),
+        ("self.create_timer(0.25, self.look)", "if self.due():", False),
+    ],
+)
+def test_a_callback_that_sends_in_some_of_its_calls_is_told_in_how_many(timer: str, guard: str, *, found: bool) -> None:
+    chooses = ("        self.publisher.publish(", f"        {guard}\n            self.publisher.publish(")
+    finding_ = rate("one hertz", (TIMER, timer), chooses)
+    assert (finding_.diagnosis, str(finding_.where)) == ("wrong-rate", f"{NODE_FILE}:10")
+    assert ("send is called every 0.25 s, and one in 4 calls sends a command." in finding_.cause) == found
+
+
 def test_a_period_by_a_name_is_found() -> None:
     found = rate(
         "one hertz", (f"self.timer = {TIMER}", f"period = 2 / 2\n        self.timer = {TIMER.replace('0.5', 'period')}")

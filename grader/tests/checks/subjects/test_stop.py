@@ -60,7 +60,6 @@ GREEDY = replace(HANGS, end=replace(HANGS.end, out_of="memory"))
         ("The node may still be waiting for something after Ctrl-C", SLOW, HANGS),
         ("The node ignored Ctrl-C: it had to be killed.", HANGS, GREEDY),
         ("The node ignored Ctrl-C: only SIGTERM ended it.", TERMINATED, HANGS),
-        ("A loop that never ends, or an except that catches everything, can keep Ctrl-C", HANGS, SLOW),
     ],
 )
 def test_a_sentence_about_the_stop_is_true(words: str, true: Recording, near: Recording) -> None:
