@@ -46,7 +46,7 @@ def start(
             metavar="STEP|next",
             autocompletion=steps_or_next,
         ),
-    ],
+    ] = "next",
     workspace: Workspace = None,
     student: Annotated[Optional[str], typer.Option(help="Your student id, which determines your numbers.")] = None,  # noqa: UP045
     fresh: Annotated[

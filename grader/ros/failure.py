@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING
 
 from grader.common.words import nearest, printable
@@ -11,16 +12,28 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 
+OTHER = "/other"
+"""Stands for a running node where the running nodes do not matter."""
+
+
 class Ros2Error(GraderError):
     """A verb failed. Only the message of this error is printed, and nothing is printed if the message is empty."""
 
     exit_code = 1
 
 
-def did_you_mean(name: str, candidates: Iterable[str], text: str = "") -> str:
-    """Return `text`, followed by a line that suggests the most similar candidate if one is similar enough."""
+def did_you_mean(name: str, candidates: Iterable[str], text: str = "", nodes: Iterable[str] = (OTHER,)) -> str:
+    """Return `text`, followed by a line that suggests the most similar candidate if one is similar enough.
+
+    If `nodes`, the names of the running nodes, contains only hidden nodes, such as that of the command, the line says
+    that no node is running. Then the node with the name has not been started, or runs in another domain.
+    """
     others = [candidate for candidate in candidates if candidate != name]
     found = others[0] if len(others) == 1 and others[0].endswith(f"/{name}") else nearest(name, others)
     if not found and len(name) > 2:
         found = next((other for other in sorted(others) if other.startswith(name)), None)
-    return "\n".join(part for part in (text, f"Did you mean '{printable(found)}'?" if found else "") if part)
+    hint = f"Did you mean '{printable(found)}'?" if found else ""
+    if all(node.rpartition("/")[2].startswith("_") for node in nodes):
+        domain = os.environ.get("ROS_DOMAIN_ID", "0")
+        hint = f"No node is running in ROS domain {domain}. Start one in another terminal, for example: grader sim"
+    return "\n".join(part for part in (text, hint) if part)

@@ -50,10 +50,11 @@ def run(args: argparse.Namespace) -> int:
 
 def _path(args: argparse.Namespace) -> Path:
     unknown = f"Package '{args.package_name}' not found"
-    if args.package_name not in index.packages():
-        from grader.ros2.unsourced import where_it_is
+    installed = index.packages()
+    if args.package_name not in installed:
+        from grader.ros2.unsourced import meant, where_it_is
 
-        hint = where_it_is(args.package_name)
+        hint = where_it_is(args.package_name) or meant(args.package_name, installed)
         if hint:
             message = f"{unknown}\n{hint}"
             raise Ros2Error(message)

@@ -8,8 +8,10 @@ from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING
 
+from grader.common.words import nearest, printable
+
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterator
 
 _DEEPEST = 4
 """The number of folder levels below src/ that are searched for packages."""
@@ -30,6 +32,15 @@ def where_it_is(package: str) -> str:
                 typed = f"cd {_shown(workspace)} && colcon build && source install/setup.bash"
                 return f"The package is in {_shown(manifest.parent)}, but not built. Type: {typed}"
     return ""
+
+
+def meant(package: str, installed: Collection[str]) -> str:
+    """Return a hint that names the most similar package of a workspace, or "" if an installed package is as similar."""
+    unsourced = {_name(manifest) for workspace in _workspaces() for manifest in _manifests(workspace / "src")}
+    likely = nearest(package, [*installed, *unsourced])
+    if likely is None or likely in installed:
+        return ""
+    return f"Did you mean '{printable(likely)}'? {where_it_is(likely)}"
 
 
 def _workspaces() -> Iterator[Path]:

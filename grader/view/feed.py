@@ -131,8 +131,8 @@ class Feed:
         }
         try:
             self.channel.send(json.dumps(message, separators=(",", ":")).encode())
-        except (BlockingIOError, BrokenPipeError):
-            # `requests` detects whether the view has exited.
+        except (BlockingIOError, ConnectionError):
+            # `requests` detects whether the view has exited, with or without having read everything.
             return
         self._shown, self._reported_s = state, now
         canvas.lines, canvas.cleared, self._too_long = [], False, False

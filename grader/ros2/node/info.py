@@ -32,7 +32,7 @@ def run(args: argparse.Namespace) -> int:
     graph = look(args)
     names = graph.node_names(all_of_them=args.include_hidden)
     if name not in names:
-        raise Ros2Error(did_you_mean(name, names, f"Unable to find node '{name}'"))
+        raise Ros2Error(did_you_mean(name, names, f"Unable to find node '{name}'", names))
     if names.count(name) > 1:
         text = f'There are {names.count(name)} nodes in the graph with the exact name "{name}".'
         print(f"{text} You are seeing information about only one of them.", file=sys.stderr)

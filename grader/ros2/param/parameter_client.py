@@ -111,7 +111,8 @@ def _found(node: Node, args: argparse.Namespace) -> str:
     end = time.monotonic() + getattr(args, "timeout", 0)
     while not there():
         if time.monotonic() >= end:
-            raise Ros2Error(did_you_mean(name, nodes(node, all_of_them=all_of_them), "Node not found"))
+            running = nodes(node, all_of_them=all_of_them)
+            raise Ros2Error(did_you_mean(name, running, "Node not found", running))
         time.sleep(_POLL_S)
     return name
 

@@ -76,6 +76,10 @@ def _say_why(node: Node, name: str, requested: str) -> None:
     found: dict[str, Any] = {name: types for name, types in node.get_service_names_and_types() if not hidden(name)}
     # Our client announces the service with the requested type, too.
     others = [kind for kind in found.pop(name, []) if kind != requested]
-    hint = f"The service {name} has the type {', '.join(others)}." if others else did_you_mean(name, found)
+    hint = (
+        f"The service {name} has the type {', '.join(others)}."
+        if others
+        else did_you_mean(name, found, nodes=node.get_node_names())
+    )
     if hint:
         print(hint, file=sys.stderr, flush=True)

@@ -30,7 +30,7 @@ def run(args: argparse.Namespace) -> int:
     name = args.service_name
     types = types_of(tuple(shown(graph.services, all_of_them=args.include_hidden_services)), name)
     if not types:
-        raise Ros2Error(did_you_mean(name, graph.service_names(), f"Unknown service '{name}'"))
+        raise Ros2Error(did_you_mean(name, graph.service_names(), f"Unknown service '{name}'", graph.node_names()))
     clients, servers = graph.service_counts.get(name, (0, 0))
     print(f"Type: {types[0] if len(types) == 1 else list(types)}")
     print(f"Clients count: {clients}")

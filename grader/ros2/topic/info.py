@@ -36,7 +36,7 @@ def run(args: argparse.Namespace) -> int:
     name = args.topic_name
     types = types_of(graph.topics, name)
     if not types:
-        raise Ros2Error(did_you_mean(name, graph.topic_names(), f"Unknown topic '{name}'"))
+        raise Ros2Error(did_you_mean(name, graph.topic_names(), f"Unknown topic '{name}'", graph.node_names()))
     end = "\n\n" if args.verbose else "\n"
     print(f"Type: {types[0] if len(types) == 1 else list(types)}", end=end)
     for kind, publishes in (("Publisher", True), ("Subscription", False)):

@@ -64,7 +64,7 @@ def not_published(requested: str) -> None:
 def nearest_topic(node: Node, topic: str, text: str = "") -> str:
     """Return `text`, followed by a line that suggests the most similar topic, if any."""
     known = [name for name, _ in node.get_topic_names_and_types() if name != topic]
-    return did_you_mean(topic, known, text)
+    return did_you_mean(topic, known, text, node.get_node_names())
 
 
 def wait_for_type(node: Node, topic: str, requested: str) -> Any:  # noqa: ANN401

@@ -196,6 +196,14 @@ def test_the_nearest_name() -> None:
     assert did_you_mean("/nope", ["/turtlesim"], "Unable") == "Unable"
 
 
+def test_without_a_running_node_no_name_is_suggested(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    nobody = "No node is running in ROS domain 7. Start one in another terminal, for example: grader sim"
+    assert did_you_mean("/turtle1/pose", ["/rosout"], "Unknown", []) == f"Unknown\n{nobody}"
+    assert did_you_mean("/a", [], nodes=["_ros2cli_1", "/_ros2cli_daemon_7"]) == nobody
+    assert did_you_mean("/turtl", ["/turtle"], nodes=["/_hidden", "/turtle"]) == "Did you mean '/turtle'?"
+
+
 @pytest.fixture
 def interfaces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     index = tmp_path / "share/ament_index/resource_index/rosidl_interfaces/things"

@@ -116,6 +116,15 @@ def test_a_view_that_does_not_read_stops_nobody_and_gets_a_picture(simulator: Si
     assert painted.getbbox() == real.getbbox()
 
 
+def test_a_view_that_ends_with_unread_messages_stops_nobody(simulator: Simulator) -> None:
+    simulator.run(4)
+    simulator.view.close()
+    simulator.world.command("turtle1", 1.0, 0.0, 0.0)
+    simulator.run(4)
+    with pytest.raises(ConnectionError):
+        simulator.feed.requests()
+
+
 def test_a_cleared_canvas_is_cleared_in_the_view(simulator: Simulator) -> None:
     simulator.world.command("turtle1", 1.0, 0.0, 0.0)
     simulator.run(10)

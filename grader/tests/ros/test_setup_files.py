@@ -1,0 +1,33 @@
+"""setup.bash and setup.zsh in the wrong shell, or run as programs."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import grader.ros
+
+FOLDER = Path(grader.ros.__file__).parent
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("sh setup.bash", "this shell is not bash. In zsh, source setup.zsh"),
+        ("sh -c '. ./setup.bash || exit 1'", "In another shell, type bash first."),
+        ("bash setup.bash", "so this terminal is as it was before. Type: source setup.bash"),
+        ("zsh -c '. ./setup.bash || exit 1'", "this shell is not bash. In zsh, source setup.zsh"),
+        ("sh setup.zsh", "this shell is not zsh. In bash, source setup.bash"),
+        ("bash -c '. ./setup.zsh || exit 1'", "this shell is not zsh. In bash, source setup.bash"),
+        ("zsh setup.zsh", "so this terminal is as it was before. Type: source setup.zsh"),
+    ],
+)
+def test_the_wrong_use_is_one_sentence_with_the_right_one(line: str, said: str) -> None:
+    if shutil.which(line.split()[0]) is None:
+        pytest.skip("zsh is not installed")
+    done = subprocess.run(["sh", "-c", line], cwd=FOLDER, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (1, "", 1)
+    assert said in done.stderr
