@@ -175,7 +175,7 @@ def run(order: Order, info: Mapping[str, Any]) -> str:
         )
         stack.callback(cell.wait)
         stack.callback(cell.kill)
-        guard = Guard(cell.pid, limits, over.append)
+        guard = Guard([cell.pid], limits, over.append)
         stack.callback(guard.close)
         relay = Relay(info, cell)
         stack.callback(relay.close)

@@ -26,7 +26,7 @@ from grader.sandbox.limits import NODE_LIMITS
 from grader.sandbox.system_calls import call_filter
 from grader.sandbox.usage import Guard, family
 from grader.sandbox.user import cell_user
-from grader.trial.node_process import LaunchError, await_launcher
+from grader.trial.launchers import LaunchError, await_launcher
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -154,5 +154,5 @@ def linked_cell(ros: Ros, domain: int) -> Iterator[LinkedCell]:
         inside = [socket.socket(fileno=each) for each in descriptors]
         cell.await_ready()
         stack.callback(Relay(cell.selector, domain, ports, inside).close)
-        stack.callback(Guard(process.pid, LIMITS, cell.over).close)
+        stack.callback(Guard([process.pid], LIMITS, cell.over).close)
         yield cell

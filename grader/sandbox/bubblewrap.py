@@ -72,13 +72,20 @@ def program() -> str | None:
 
 
 def room(
-    argv: Sequence[str], view: View, *, env: Mapping[str, str], user: int | None, cwd: Path | None = None
+    argv: Sequence[str],
+    view: View,
+    *,
+    env: Mapping[str, str],
+    user: int | None,
+    cwd: Path | None = None,
+    info_fd: int | None = None,
 ) -> list[str]:
     """Return the command that runs `argv` as an ordinary user in a separate network.
 
     A sandbox room is for the grader's own processes.
 
-    `user` comes from user.cell_user(): the user id to switch to if the caller is root, or None.
+    `user` comes from user.cell_user(): the user id to switch to if the caller is root, or None. bubblewrap writes JSON
+    with the pid of the room's first process to `info_fd`.
     """
     command = [_bwrap(), "--unshare-net", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--hostname", "grader"]
     command += ["--die-with-parent", "--size", str(ROOM_DISK), "--tmpfs", "/tmp", "--perms", "0777", "--dir", str(HOME)]
@@ -86,6 +93,7 @@ def room(
     # rclpy loads LTTng, which keeps a file here. If LTTng cannot write this file, the threads of LTTng wait for any
     # child of the process, and may collect the exit code of a node that exits at this moment.
     command += ["--size", str(ROOM_DISK), "--perms", "1777", "--tmpfs", "/dev/shm"]
+    command += [] if info_fd is None else ["--info-fd", str(info_fd)]
     command = [*_ordinary(command, user), *_environment(env), "--chdir", str(cwd or HOME), "--"]
     return [*command, *_stay_ordinary(user), *argv]
 

@@ -152,7 +152,7 @@ def run(
         argv, stdin=pipe, stdout=pipe, stderr=pipe, env=env, start_new_session=True, pass_fds=pass_fds
     ) as child:
         pump = _Pump(child, stdin, most_stdout, most_stderr)
-        guard = Guard(child.pid, watch, over.append) if watch is not None else None
+        guard = Guard([child.pid], watch, over.append) if watch is not None else None
 
         def left() -> float:
             now = time.monotonic()

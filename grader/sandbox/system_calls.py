@@ -80,13 +80,13 @@ _NEW_NAMESPACE = 0x7E020000
 @contextmanager
 def call_filter() -> Iterator[int | None]:
     """Yield a file descriptor from which the filter can be read once, or None on other architectures."""
-    if platform.machine() != "x86_64":
+    if not (lines := program()):
         yield None
         return
     reads, writes = os.pipe()
     try:
         # The capacity of a pipe is much larger than the filter.
-        os.write(writes, program())
+        os.write(writes, lines)
         os.close(writes)
         yield reads
     finally:
@@ -94,7 +94,9 @@ def call_filter() -> Iterator[int | None]:
 
 
 def program() -> bytes:
-    """Return the filter: a sequence of struct sock_filter."""
+    """Return the filter: a sequence of struct sock_filter, which is empty on other architectures."""
+    if platform.machine() != "x86_64":
+        return b""
     refuse = bpf.ERRNO | errno.EPERM
     absent = bpf.ERRNO | errno.ENOSYS
     lines = bpf.begin()

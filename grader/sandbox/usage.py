@@ -16,7 +16,7 @@ from threading import Event, Thread
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from grader.sandbox.limits import Limits
 
@@ -39,8 +39,8 @@ _THREADS = re.compile(r"^Threads:\s*(\d+)", re.MULTILINE)
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
 
-def exceeded(pid: int, limits: Limits, *, in_room: bool = False) -> str | None:
-    """Return the limit that the cell at or below process `pid` exceeds ("memory", "processes", "files"), or None.
+def exceeded(pids: Sequence[int], limits: Limits, *, in_room: bool = False) -> str | None:
+    """Return the limit that the cell at or below these processes exceeds ("memory", "processes", "files"), or None.
 
     With `in_room`, this process and the cell are in the same room, so that the cell can fill sockets of their network.
     """
@@ -48,7 +48,7 @@ def exceeded(pid: int, limits: Limits, *, in_room: bool = False) -> str | None:
     processes = 0
     disks: dict[int, tuple[int, int]] = {}
     networks = {_network(os.getpid()): os.getpid() if in_room else 0}
-    for process in family(pid):
+    for process in family(*pids):
         own, threads = _own_bytes_and_threads(process)
         memory += own
         processes += threads
@@ -70,8 +70,10 @@ class Guard:
     `in_room` has the same meaning as in `exceeded`.
     """
 
-    def __init__(self, pid: int, limits: Limits, over: Callable[[str], None], *, in_room: bool = False) -> None:
-        self._pid, self._limits, self._over, self._in_room = pid, limits, over, in_room
+    def __init__(
+        self, pids: Sequence[int], limits: Limits, over: Callable[[str], None], *, in_room: bool = False
+    ) -> None:
+        self._pids, self._limits, self._over, self._in_room = pids, limits, over, in_room
         self._worked = [(time.monotonic(), self._worked_so_far_s())]
         self._ready: dict[int, float] = {}
         self._waited: dict[int, float] = {}
@@ -106,25 +108,25 @@ class Guard:
         return sum(waited_s for pid, waited_s in self._waited.copy().items() if of in (None, pid))
 
     def _worked_so_far_s(self) -> float:
-        return sum(map(cpu_s, family(self._pid)))
+        return sum(map(cpu_s, family(*self._pids)))
 
     def _run(self) -> None:
         while not self._closed.wait(EVERY_S):
-            processes = list(family(self._pid))
+            processes = list(family(*self._pids))
             self._worked.append((time.monotonic(), sum(map(cpu_s, processes))))
             for process in processes:
                 ran_s, waited_s = _ran_and_waited_s(process)
                 self._ready[process] = max(ran_s + waited_s, self._ready.get(process, 0.0))
                 self._waited[process] = max(waited_s, self._waited.get(process, 0.0))
-            what = exceeded(self._pid, self._limits, in_room=self._in_room)
+            what = exceeded(self._pids, self._limits, in_room=self._in_room)
             if what is not None:
                 self._over(what)
                 return
 
 
-def family(pid: int) -> Iterator[int]:
-    """Yield the process and all its descendants. Orphans become children of the cell's first process."""
-    waiting = [pid]
+def family(*pids: int) -> Iterator[int]:
+    """Yield the processes and all their descendants. Orphans become children of the cell's first process."""
+    waiting = [*pids]
     while waiting:
         process = waiting.pop()
         yield process

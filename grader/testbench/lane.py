@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING
 from grader.common.interpreter import interpreter
 from grader.errors import MachineError
 from grader.ros import installation
-from grader.sandbox import bubblewrap
+from grader.sandbox import bubblewrap, entering, holder
 from grader.sandbox.control_group import control_group
 from grader.sandbox.limits import NODE_LIMITS, limited, resource_limits
-from grader.sandbox.system_calls import call_filter
+from grader.sandbox.system_calls import program
 from grader.sandbox.usage import Guard
 from grader.sandbox.user import cell_user
 from grader.testbench.brain import Brain
@@ -38,8 +38,10 @@ START_S = 120.0
 """The maximum time for the imports, on a crowded machine (s)."""
 READY = b"ready\n"
 """The session writes this line when it is ready to run tests (see session.py)."""
-INFO, FILTER, ASKS, ANSWERS = 100, 101, 3, 4
+FILTER, ASKS, ANSWERS = 100, 3, 4
 """Descriptors: see session.py."""
+OURS = (SESSION, Path(entering.__file__), Path(holder.__file__))
+"""The files of the grader that a session imports."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +90,7 @@ class Lane:
         if not self._in_cell:
             env["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "OFF"
         start = interpreter(str(SESSION), python=str(self._ros.python), env=env, searches=True)
-        view = bubblewrap.ros_view(self._ros, installation.FASTDDS_PROFILE, SESSION)
+        view = bubblewrap.ros_view(self._ros, installation.FASTDDS_PROFILE, *OURS)
         ours, theirs = socket.socketpair()
         self._requests = self._stack.enter_context(ours)
         with theirs:
@@ -109,16 +111,16 @@ class Lane:
             )
             requests = theirs.fileno()
         self._stack.callback(self._end)
-        self._guard = Guard(self._process.pid, NODE_LIMITS, lambda _: self.kill())
+        self._guard = Guard([self._process.pid], NODE_LIMITS, lambda _: self.kill())
         self._stack.callback(self._guard.close)
-        filter_ = _call_filter()
+        filter_ = program()
         order = {
             "size": len(self._package.tree),
             "package": self._package.name,
             "workspace": str(self._workspace),
             "home": str(self._home),
             "requests": requests,
-            "cell": _cell(view, FILTER if filter_ else None) if self._in_cell else None,
+            "cell": _cell(self._ros, FILTER if filter_ else None) if self._in_cell else None,
             "filter": base64.b64encode(filter_).decode() if filter_ else None,
             "limits": list(resource_limits(NODE_LIMITS, in_cell=True).items()),
         }
@@ -172,13 +174,8 @@ class Lane:
         self._process.wait()
 
 
-def _call_filter() -> bytes:
-    """Return the system call filter of a cell, or empty bytes on other architectures."""
-    with call_filter() as filter_fd:
-        return b"" if filter_fd is None else os.read(filter_fd, 65536)
-
-
-def _cell(view: bubblewrap.View, filter_fd: int | None) -> Sequence[str]:
-    """Return the command that makes a cell. The cell ends when its standard input is closed."""
+def _cell(ros: Ros, filter_fd: int | None) -> Sequence[str]:
+    """Return the command that opens a cell for forks. The session replaces the descriptor of --info-fd."""
+    view = bubblewrap.ros_view(ros, installation.FASTDDS_PROFILE)
     env = {"PATH": "/usr/bin:/bin"}
-    return bubblewrap.cell(["cat"], view, env=env, limits=NODE_LIMITS, info_fd=INFO, filter_fd=filter_fd)
+    return bubblewrap.cell(entering.HOLDER, view, env=env, limits=NODE_LIMITS, info_fd=-1, filter_fd=filter_fd)

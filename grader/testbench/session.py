@@ -7,33 +7,33 @@ socket, the session sends STARTED with a descriptor of the process that runs the
 the exit code of pytest, the duration (s), the report's size, and the report. The session does not know whether a run
 uses the correct node or a broken one.
 
-bubblewrap makes the cell, and a fork of the session enters it (setns(2)). The session itself learns nothing about its
-runs: the fork reports to the grader, and ends together with its cell. Therefore, neither a cell nor the memory of a run
-contains a trace of an earlier run.
+bubblewrap makes the cell, and a fork of the session enters it (grader.sandbox.entering). The session itself learns
+nothing about its runs: the fork reports to the grader, and ends together with its cell. Therefore, neither a cell nor
+the memory of a run contains a trace of an earlier run.
 """
 
 from __future__ import annotations
 
 import base64
-import ctypes
 import gc
 import importlib
 import io
 import json
 import os
-import resource
 import shutil
 import signal
 import socket
 import stat
 import struct
-import subprocess
 import sys
 import tarfile
 import tempfile
 import time
 from pathlib import Path
 from typing import Any, NoReturn
+
+from grader.sandbox import entering
+from grader.sandbox.holder import Holder
 
 _AHEAD = (
     *("pytest", "_pytest.assertion.rewrite", "_pytest.unittest", "_pytest.python", "_pytest.fixtures", "unittest.mock"),
@@ -48,20 +48,13 @@ READY = b"ready\n"
 """The session writes this line before any of the student's code runs. A failure after this line is not the machine's
 fault."""
 STARTED = b"s"
-INFO, FILTER = 100, 101
-"""The descriptors in the command line of a cell: for bubblewrap's data about the cell, and for the call filter."""
+FILTER = 100
+"""The descriptor of the call filter in the command line of a cell."""
 ASKS, ANSWERS = 3, 4
 """The descriptors of a run: its requests to the grader, and the grader's answers."""
 _TEST_ENDED = struct.pack("<cHqdd", b"d", 0, 0, 0.0, 0.0)
 """A message that needs no answer. See lane.py."""
 _MOST_REPORT = 64 * 1024
-_DUMPABLE, _PARENT_DEATH, _SECCOMP, _BOUNDING_DROP, _NO_NEW_PRIVILEGES, _AMBIENT = 4, 1, 22, 24, 38, 47
-"""Options of prctl(2). A process cannot inspect a process that is not dumpable."""
-_NAMESPACES = 0x02000000 | 0x04000000 | 0x08000000 | 0x10000000 | 0x20000000 | 0x40000000 | 0x00020000
-"""The cgroup, UTS, IPC, user, pid, network and mount namespace of clone(2)."""
-_CAPABILITIES_VERSION_3 = 0x20080522
-_LAST_CAPABILITY = 63
-_C = ctypes.CDLL(None, use_errno=True)
 
 
 class _Watcher:
@@ -108,7 +101,7 @@ def main() -> None:
     order = json.loads(sys.stdin.buffer.readline())
     source = sys.stdin.buffer.read(order["size"])
     requests = socket.socket(fileno=order["requests"])
-    _C.prctl(_DUMPABLE, 0, 0, 0, 0)
+    entering.allow_inspection(allow=False)
     gc.freeze()
     os.write(1, READY)
     while _serve(requests, order, source):
@@ -146,64 +139,30 @@ def _supervise(order: dict[str, Any], source: bytes, asks: int, answers: int, re
     report = _report(workspace / "report.json")
     seconds = time.monotonic() - begun
     if cell is not None:
-        cell.communicate()
+        cell.close()
     else:
         _end_group(child)
         shutil.rmtree(workspace, ignore_errors=True)
     result.sendall(_HEADER.pack(code, seconds, len(report)) + report)
 
 
-def _new_cell(order: dict[str, Any]) -> subprocess.Popen[bytes]:
-    """Make a cell, and move this process into its namespaces. Forks of this process are then processes of the cell.
-
-    The first process of the cell is `cat`. The cell ends as soon as the standard input of `cat` is closed.
-    """
-    info, childs_info = os.pipe()
-    passed = {childs_info: INFO}
+def _new_cell(order: dict[str, Any]) -> Holder:
+    """Make a cell, and move this process into its namespaces. Forks of this process are then processes of the cell."""
+    passed: tuple[int, ...] = ()
     if order["filter"] is not None:
-        childs_filter, writes = os.pipe()
+        its_filter, writes = os.pipe()
         os.write(writes, base64.b64decode(order["filter"]))
         os.close(writes)
-        passed[childs_filter] = FILTER
-    for descriptor, number in passed.items():
-        os.dup2(descriptor, number)
-        os.close(descriptor)
-    cell = subprocess.Popen(
-        order["cell"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0, pass_fds=[*passed.values()]
-    )
-    for number in passed.values():
-        os.close(number)
-    assert cell.stdin is not None
-    assert cell.stdout is not None
-    with open(info, "rb") as about:  # noqa: PTH123 - a descriptor
-        first = int(json.loads(about.read())["child-pid"])
-    cell.stdin.write(b"?")
-    cell.stdout.read(1)  # now bubblewrap has made all namespaces and mounts
-    pid = int(Path(f"/proc/{first}/task/{first}/children").read_text("ascii").split()[0])
-    descriptor = os.pidfd_open(pid)
-    if _C.setns(descriptor, _NAMESPACES) != 0:
-        raise OSError(ctypes.get_errno(), "setns")
-    os.close(descriptor)
+        os.dup2(its_filter, FILTER)
+        os.close(its_filter)
+        passed = (FILTER,)
+    command: list[str] = order["cell"]
+    option = command.index("--info-fd")
+    cell = Holder(lambda info_fd: [*command[: option + 1], str(info_fd), *command[option + 2 :]], passed)
+    holder = cell.await_ready()
+    entering.enter(holder)
+    os.close(holder)
     return cell
-
-
-def _confine(order: dict[str, Any]) -> None:
-    """Restrict this process like any process in a cell: no capabilities, limited resources and a system call filter."""
-    Path("/proc/self/oom_score_adj").write_text("1000", "ascii")
-    for kind, value in order["limits"]:
-        resource.setrlimit(kind, (value, value))
-    for capability in range(_LAST_CAPABILITY + 1):
-        _C.prctl(_BOUNDING_DROP, capability, 0, 0, 0)  # fails for numbers that this kernel does not know
-    _C.prctl(_AMBIENT, 4, 0, 0, 0)
-    header = struct.pack("<Ii", _CAPABILITIES_VERSION_3, 0)
-    if _C.capset(header, bytes(24)) != 0 or _C.prctl(_NO_NEW_PRIVILEGES, 1, 0, 0, 0) != 0:
-        raise OSError(ctypes.get_errno(), "the capabilities could not be dropped")
-    if order["filter"] is not None:
-        lines = base64.b64decode(order["filter"])
-        buffer = ctypes.create_string_buffer(lines, len(lines))
-        program = struct.pack("@HP", len(lines) // 8, ctypes.addressof(buffer))
-        if _C.prctl(_SECCOMP, 2, program, 0, 0) != 0:
-            raise OSError(ctypes.get_errno(), "the system call filter could not be installed")
 
 
 def _run_tests(order: dict[str, Any], source: bytes, workspace: Path, asks: int, answers: int) -> NoReturn:
@@ -211,22 +170,22 @@ def _run_tests(order: dict[str, Any], source: bytes, workspace: Path, asks: int,
     code: int = 1
     try:
         os.setsid()
-        _C.prctl(_DUMPABLE, 1, 0, 0, 0)
         null = os.open(os.devnull, os.O_RDWR)
-        kept = [os.dup(descriptor) for descriptor in (null, null, null, asks, answers)]
-        for number, descriptor in enumerate(kept):
-            os.dup2(descriptor, number)
-        os.closerange(len(kept), 4096)
+        entering.keep((null, null, null, asks, answers))
+        entering.allow_inspection(allow=True)
+        entering.end_with_parent()
         if order["cell"]:
-            _confine(order)
-        # Without a cell, nothing else stops a run whose session is killed.
-        _C.prctl(_PARENT_DEATH, signal.SIGKILL, 0, 0, 0)
+            filter_ = base64.b64decode(order["filter"] or "")
+            entering.confine(order["limits"], user=None, call_filter=filter_)
+            entering.sacrifice()
         package = workspace / "src" / order["package"]
         Path(order["home"]).mkdir(parents=True, exist_ok=True)
         with tarfile.open(fileobj=io.BytesIO(source)) as tree:
             # A malicious member can do no harm in a cell, and the Python of Debian 12 has no extraction filters yet.
             tree.extraction_filter = lambda member, _path: member
             tree.extractall(workspace / "src")
+        for name in [name for name in sys.modules if name.partition(".")[0] == "grader"]:
+            del sys.modules[name]
         os.chdir(package)
         sys.path.insert(0, str(package))
         sys.argv = ["pytest"]

@@ -12,6 +12,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import re
 import shutil
 import signal
 import socket
@@ -34,6 +35,9 @@ HANG_S = 400.0
 SETTLE_S = 0.5
 """The maximum time to wait for processes that continue after the grading (s)."""
 
+OF_LTTNG = re.compile(r"shm/lttng-ust-wait-\d+(-\d+)?")
+"""Files that every ROS 2 program leaves on a host, because rclpy loads LTTng. The fork servers load rclpy."""
+
 
 @dataclass(frozen=True)
 class Left:
@@ -43,7 +47,7 @@ class Left:
     stdout: str
     stderr: str
     files: frozenset[str]
-    """Files below /tmp, /home and /dev/shm, without the work folder."""
+    """Files below /tmp, /home and /dev/shm, without the work folder and the files of LTTng."""
     processes: tuple[str, ...]
     sockets: tuple[str, ...]
     seconds: float
@@ -151,7 +155,7 @@ class Host:
                     folders.clear()
                     continue
                 found |= {str((Path(folder) / name).relative_to(self._scratch)) for name in [*folders, *files]}
-        return found
+        return {name for name in found if not OF_LTTNG.fullmatch(name)}
 
 
 def readable_by_others(path: Path) -> bool:

@@ -1,11 +1,12 @@
 """Conduct one trial, in the process that contains the simulator, the recorder and the clock.
 
-This process runs in a room of the sandbox, and the student's node in a cell inside this room (grader.sandbox). The
-process exchanges JSON lines with the grader's own process over its standard streams. The first line of input describes
-the trial. The process answers {"ready": true} when the simulator and the launcher are ready. The second line of input
-says what to start, and the install tree follows this line. The last line of output is {"recording": {...}}, {"doubt":
-"...", "by_chance": false} if a trial with the other clock must decide, {"overwhelmed": "..."} if the node made the
-simulator fail, or {"fault": "..."} if the machine is at fault.
+This process runs in a room of the sandbox, and the student's node in a cell inside this room (grader.sandbox). Both are
+forks of fork servers (grader.trial.fork_server). Without a sandbox, both are new processes. The conductor exchanges
+JSON lines with the grader's own process over its standard streams. The first line of input describes the trial. The
+conductor answers {"ready": true} when the simulator and the launcher are ready. The second line of input says what to
+start, and the install tree follows this line. The last line of output is {"recording": {...}}, {"doubt": "...",
+"by_chance": false} if a trial with the other clock must decide, {"overwhelmed": "..."} if the node made the simulator
+fail, or {"fault": "..."} if the machine is at fault.
 """
 
 from __future__ import annotations
@@ -26,15 +27,17 @@ from grader.sandbox import bubblewrap
 from grader.sandbox.limits import NODE_LIMITS, limited
 from grader.trial.inputs import Inputs
 from grader.trial.launcher import postponed
+from grader.trial.launchers import LauncherInCell, LauncherProcess, LaunchError
 from grader.trial.node_group import NodeGroup
-from grader.trial.node_process import LaunchError, NodeProcess
+from grader.trial.node_process import NodeProcess
 from grader.trial.recording import Beside, Pose
 from grader.trial.recording_json import new_to_json, to_json
 from grader.trial.rest import DoubtError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    import socket
 
+    from grader.trial.launchers import Launcher
     from grader.trial.simulated import SimulatedTrial
     from grader.trial.wall import WallTrial
 
@@ -66,14 +69,17 @@ class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grad
     """The simulator failed because of messages or requests from the node."""
 
 
-def main() -> None:
-    """Conduct the trial that is described on standard input."""
+def main(nodes: socket.socket | None = None) -> None:
+    """Conduct the trial that is described on standard input. `nodes` is the socket on which to ask for nodes.
+
+    Without this socket, each node is a new process that is not in a cell.
+    """
     order = json.loads(sys.stdin.buffer.readline())
     # The output of ROS 2 must not be mixed with the JSON lines.
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
     try:
-        _conduct(order, answers)
+        _conduct(order, answers, nodes)
     except DoubtError as doubt:
         _say(answers, {"doubt": str(doubt), "by_chance": doubt.by_chance})
     except LaunchError as error:
@@ -84,7 +90,7 @@ def main() -> None:
         _say(answers, {"fault": refusal(error) or f"{type(error).__name__}: {error}"})
 
 
-def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
+def _conduct(order: dict[str, Any], answers: IO[str], nodes: socket.socket | None) -> None:
     ros = replace(installation.find_ros(), underlay=Path(order["underlay"]) if order["underlay"] else None)
     start, inputs = Pose(*order["start"]), Inputs.from_json(order["inputs"])
     prefixes = list(ros.all_prefixes)
@@ -94,13 +100,10 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
         alone = AloneTrial(start, prefixes, inputs).record(order["duration_s"], order["seed"])
         _say(answers, {"recording": to_json(alone)})
         return
-    names, in_cell = ["", *order["beside"]], order["in_cell"]
+    names = ["", *order["beside"]]
     with ExitStack() as stack:
         stack.enter_context(postponed())
-        processes = [
-            stack.enter_context(NodeProcess(lambda *fds: _command(ros, order, *fds), NODE_LIMITS, in_cell=in_cell))
-            for _ in names
-        ]
+        processes = [stack.enter_context(NodeProcess(_launcher(ros, order, nodes), NODE_LIMITS)) for _ in names]
         node = NodeGroup(processes)
         # These imports are slow. They run here, while the launcher is importing too.
         from grader.trial.simulated import SimulatedTrial
@@ -192,19 +195,13 @@ def _arrived(trial: SimulatedTrial | WallTrial) -> int:
     return recorder.dropped + sum(not message.topic.endswith(SIMULATORS) for message in recorder.messages)
 
 
-def _command(ros: installation.Ros, order: dict[str, Any], info_fd: int, filter_fd: int | None) -> Sequence[str]:
+def _launcher(ros: installation.Ros, order: dict[str, Any], nodes: socket.socket | None) -> Launcher:
+    if nodes is not None:
+        return LauncherInCell(bubblewrap.ros_view(ros, installation.FASTDDS_PROFILE), NODE_LIMITS, nodes)
     env = installation.environment(ros, home=Path(order["home"]), domain=order["domain"])
     launch, env = interpreter(str(LAUNCHER), python=str(ros.python), env=env, searches=True)
-    if not order["in_cell"]:
-        return [
-            "env",
-            "-i",
-            *(f"{key}={value}" for key, value in env.items()),
-            *limited(launch, NODE_LIMITS),
-        ]
-    view = bubblewrap.ros_view(ros, installation.FASTDDS_PROFILE, LAUNCHER)
-    return bubblewrap.cell(
-        launch, view, env=env, limits=NODE_LIMITS, network=True, info_fd=info_fd, filter_fd=filter_fd
+    return LauncherProcess(
+        ["env", "-i", *(f"{key}={value}" for key, value in env.items()), *limited(launch, NODE_LIMITS)]
     )
 
 

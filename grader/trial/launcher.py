@@ -1,6 +1,7 @@
 """Start a node quickly inside its cell: rclpy is imported while colcon is still building.
 
-This file runs as a separate script, before the install tree exists. The launcher reads one line of JSON (`script`,
+The launcher starts before the install tree exists: as a fork (grader.trial.fork_server), or as a separate script
+without a fork server. The launcher reads one line of JSON (`script`,
 `ros_arguments`, `python_path`, `env`, `install`) and then the install tree, a tar stream, from standard input. After
 reading the install tree, the launcher runs the installed script as __main__, as the interpreter in the script's first
 line would.
@@ -86,7 +87,8 @@ def postponed(names: Iterable[str] = POSTPONED) -> Iterator[list[Postponed]]:
                 del sys.modules[module.__name__]
 
 
-def _import_ahead() -> list[Postponed]:
+def import_ahead() -> list[Postponed]:
+    """Import the modules that almost every node needs. Return the modules that few nodes need."""
     with postponed() as modules:
         for name in _AHEAD:
             importlib.import_module(name)
@@ -126,8 +128,8 @@ def _exit_without_waiting() -> None:
 def _without_us(kind: type[BaseException], error: BaseException, trace: types.TracebackType | None) -> None:
     """Print the traceback of the program without the stack frames of the launcher."""
     for each in _chain(error):
-        each.__traceback__ = _frames_of_others(each.__traceback__)
-    sys.__excepthook__(kind, error, _frames_of_others(trace))
+        each.__traceback__ = _frames_of_others(_after_run(each.__traceback__))
+    sys.__excepthook__(kind, error, _frames_of_others(_after_run(trace)))
 
 
 def _chain(error: BaseException | None) -> Iterator[BaseException]:
@@ -142,6 +144,14 @@ def _chain(error: BaseException | None) -> Iterator[BaseException]:
             yield each
 
 
+def _after_run(trace: types.TracebackType | None) -> types.TracebackType | None:
+    """Return the part of the traceback that begins with `run`, or the whole traceback if `run` is not in it."""
+    part = trace
+    while part is not None and part.tb_frame.f_code is not run.__code__:
+        part = part.tb_next
+    return part or trace
+
+
 def _frames_of_others(trace: types.TracebackType | None) -> types.TracebackType | None:
     while trace is not None and trace.tb_frame.f_code.co_filename == __file__:
         trace = trace.tb_next
@@ -153,7 +163,11 @@ def _frames_of_others(trace: types.TracebackType | None) -> types.TracebackType 
 def main() -> None:
     """Import rclpy, wait for the start command, and then run the node in this process."""
     sys.path.pop(0)
-    waiting = _import_ahead()
+    run(import_ahead())
+
+
+def run(waiting: list[Postponed]) -> None:
+    """Wait for the start command, and then run the node in this process. `waiting` comes from `import_ahead`."""
     os.write(1, b"\x00ready\n")
     order = json.loads(sys.stdin.buffer.readline())
     with tarfile.open(fileobj=sys.stdin.buffer, mode="r|") as tree:
@@ -165,7 +179,8 @@ def main() -> None:
         file.write_text(order["params_file"], encoding="utf-8")
         order["ros_arguments"] += ["--ros-args", "--params-file", str(file)]
     # A node that reads from the keyboard reaches the end of the file.
-    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    with Path(os.devnull).open("rb") as nothing:
+        os.dup2(nothing.fileno(), 0)
     os.environ.update(order["env"])
     script = Path(order["script"])
     sys.path[:0] = [str(script.parent), *order["python_path"]]

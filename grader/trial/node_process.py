@@ -11,19 +11,16 @@ import time
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
-from grader.sandbox.system_calls import call_filter
 from grader.sandbox.usage import Guard
+from grader.trial.launchers import await_launcher
 from grader.trial.recording import Output, ProcessEnd
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     from grader.sandbox.limits import Limits
+    from grader.trial.launchers import Launcher
 
-READY = b"\x00ready\n"
-"""The output of the launcher before any of the student's code runs."""
 KEPT = 256 * 1024
 """The number of bytes that are kept of each stream."""
 PIPE = 1024 * 1024
@@ -37,26 +34,6 @@ STOP_S = 3.0
 later, SIGKILL. The time for which the node waits for a processor does not count."""
 MOST_WAITED_S = 12.0
 """The maximum time that does not count because the node waits for a processor (s)."""
-
-
-class LaunchError(Exception):
-    """The launcher itself failed. The machine is at fault, since none of the student's code had run."""
-
-
-def await_launcher(stdout: IO[bytes], stderr: IO[bytes] | None = None) -> None:
-    """Wait until a launcher is ready to receive the command that it must run.
-
-    Raises:
-        LaunchError: the launcher exited. The message is the output of the launcher.
-    """
-    received = b""
-    while not received.endswith(READY):
-        # Read single bytes, because the following output is that of the node.
-        byte = os.read(stdout.fileno(), 1)
-        if not byte:
-            output = received + (stderr.read() if stderr is not None else b"")
-            raise LaunchError(output.decode("utf-8", "replace").strip())
-        received += byte
 
 
 def enlarge(pipe: int) -> int:
@@ -111,37 +88,22 @@ class NodeProcess:
     On exit, the manager kills all processes of the node.
     """
 
-    def __init__(self, command: Callable[[int, int | None], Sequence[str]], limits: Limits, *, in_cell: bool) -> None:
-        """Start the launcher.
-
-        `command(info_fd, filter_fd)` returns the command line of the launcher. `in_cell` says whether this command line
-        starts bubblewrap.
+    def __init__(self, launcher: Launcher, limits: Limits) -> None:
+        """Take over a launcher that has been started.
 
         `limits` apply to all processes of the node together.
         """
-        info, info_write = os.pipe()
-        with call_filter() as filter_fd:
-            self._process = subprocess.Popen(
-                command(info_write, filter_fd),
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                pass_fds=(info_write,) if filter_fd is None else (info_write, filter_fd),
-            )
-        os.close(info_write)
+        self._launcher = launcher
         self._limits = limits
         self._guard: Guard | None = None
         self._out_of: str | None = None
-        assert self._process.stdout is not None
-        assert self._process.stderr is not None
-        self._info = info
-        self._in_cell = in_cell
-        self._streams = [Stream(self._process.stdout.fileno()), Stream(self._process.stderr.fileno())]
+        self._streams = [Stream(launcher.stdout.fileno()), Stream(launcher.stderr.fileno())]
         self._full = FULL * min(enlarge(stream.fd) for stream in self._streams)
         self.pid = 0
         self._interrupted: float | None = None
         self._waited_before_s = 0.0
         self._by = "itself"
+        self._processes: tuple[int, ...] = ()
 
     def __enter__(self) -> NodeProcess:  # noqa: PYI034 - typing.Self is Python 3.11's
         return self
@@ -149,10 +111,7 @@ class NodeProcess:
     def __exit__(self, *_: object) -> None:
         if self._guard is not None:
             self._guard.close()
-        if self._process.poll() is None:
-            self._process.kill()
-            self._process.wait()
-        os.close(self._info)
+        self._launcher.close()
 
     def await_ready(self) -> None:
         """Wait until the launcher is ready to receive the command that it must run.
@@ -160,20 +119,19 @@ class NodeProcess:
         Raises:
             LaunchError: the launcher exited.
         """
-        assert self._process.stdout is not None
-        await_launcher(self._process.stdout, self._process.stderr)
-        self.pid = self._find_pid()
+        self._processes = self._launcher.await_started()
+        self.pid = self._processes[0]
+        await_launcher(self._launcher.stdout, self._launcher.stderr)
         for stream in self._streams:
             os.set_blocking(stream.fd, False)
 
     def start(self, order: dict[str, object], tree: bytes) -> None:
         """Send the launcher the install tree and the data about the node that it must run."""
-        assert self._process.stdin is not None
         # Do not start the guard earlier: a launcher may wait for minutes, and watching it takes 1 % of a core.
-        self._guard = Guard(self._process.pid, self._limits, self._over, in_room=self._in_cell)
+        self._guard = Guard(self._processes, self._limits, self._over, in_room=self._launcher.in_cell)
         try:
-            self._process.stdin.write(json.dumps(order).encode() + b"\n" + tree)
-            self._process.stdin.close()
+            self._launcher.stdin.write(json.dumps(order).encode() + b"\n" + tree)
+            self._launcher.stdin.close()
         except BrokenPipeError:
             pass  # the launcher has exited: see `ended`
 
@@ -199,14 +157,14 @@ class NodeProcess:
 
     def ended(self) -> bool:
         """Return whether the process has exited."""
-        return self._process.poll() is not None
+        return self._launcher.poll() is not None
 
     def interrupt(self) -> None:
         """Send SIGINT, as Ctrl-C does in a terminal."""
         if self._is_gone():
             # The node has just exited on its own, and bubblewrap is about to report it.
             with suppress(subprocess.TimeoutExpired):
-                self._process.wait(STOP_S)
+                self._launcher.wait(STOP_S)
         if not self.ended():
             self._interrupted = time.monotonic()
             self._waited_before_s = self._waited_s()
@@ -222,7 +180,7 @@ class NodeProcess:
         assert passed is not None
         if passed > STOP_S + 1.0 and self._by != "SIGKILL":
             self._by = "SIGKILL"
-            self._process.kill()  # this ends the whole cell, because of --die-with-parent
+            self._launcher.kill()  # this ends the whole cell, because of --die-with-parent
             self._signal(signal.SIGKILL)
         elif passed > STOP_S and self._by == "SIGINT":
             self._by = "SIGTERM"
@@ -230,11 +188,7 @@ class NodeProcess:
 
     def end(self, now_s: float) -> ProcessEnd:
         """Return how the process of the node ended. Call this method only after `ended` has returned True."""
-        code = self._process.returncode
-        stopped = self._stopping_s()
-        # Like a shell, bwrap reports a signal as 128 + the signal number.
-        exit_code = 128 - code if code > 128 else code
-        return ProcessEnd(self._by, exit_code, now_s, stopped, self._out_of)  # type: ignore[arg-type]
+        return ProcessEnd(self._by, self._launcher.poll(), now_s, self._stopping_s(), self._out_of)  # type: ignore[arg-type]
 
     def _stopping_s(self) -> float | None:
         """Return the time since SIGINT without the time for which the node waited for a processor (s), or None."""
@@ -249,7 +203,7 @@ class NodeProcess:
 
     def _over(self, what: str) -> None:
         self._out_of = what
-        self._process.kill()  # this ends the whole cell, because of --die-with-parent
+        self._launcher.kill()  # this ends the whole cell, because of --die-with-parent
 
     def _is_gone(self) -> bool:
         try:
@@ -267,16 +221,3 @@ class NodeProcess:
                 os.killpg(group, number)
         except ProcessLookupError:
             pass
-
-    def _find_pid(self) -> int:
-        if not self._in_cell:
-            return self._process.pid
-        data = b""
-        while not data.rstrip().endswith(b"}"):
-            chunk = os.read(self._info, 4096)
-            if not chunk:
-                raise LaunchError("bubblewrap reported no pid")  # noqa: EM101
-            data += chunk
-        first = int(json.loads(data)["child-pid"])
-        with open(f"/proc/{first}/task/{first}/children") as file:  # noqa: PTH123
-            return int(file.read().split()[0])

@@ -11,7 +11,7 @@ from grader.sandbox.usage import cpu_s, family
 from grader.trial.crowd import Others
 
 if TYPE_CHECKING:
-    from grader.trial.process_group import ProcessGroup
+    from grader.trial.conductor_process import ConductorProcess
 
 MOST_BY_OTHERS = 0.75
 """If other programs used at least this share of the processors, the machine may be the reason why a trial did not end
@@ -22,8 +22,8 @@ are running."""
 class TimeLimit:
     """Kills the processes of a trial when they take too long. `starved` then says whether the machine was too busy."""
 
-    def __init__(self, processes: ProcessGroup) -> None:
-        self._processes = processes
+    def __init__(self, conductor: ConductorProcess) -> None:
+        self._conductor = conductor
         self._timer = Timer(0.0, lambda: None)
         self._others = Others()
         self._worked_before_s = self._begun_s = 0.0
@@ -46,7 +46,7 @@ class TimeLimit:
         passed_s = time.monotonic() - self._begun_s
         others_s = self._others.worked_s(but_s=worked_s)
         self.starved = others_s >= MOST_BY_OTHERS * len(os.sched_getaffinity(0)) * passed_s
-        self._processes.kill()
+        self._conductor.kill()
 
     def _worked_s(self) -> float:
-        return sum(map(cpu_s, family(self._processes.leader)))
+        return sum(map(cpu_s, family(*self._conductor.pids())))

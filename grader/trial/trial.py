@@ -2,42 +2,32 @@
 
 from __future__ import annotations
 
-import compileall
 import json
 import os
 import signal
 import subprocess
-import sys
 import tempfile
 from contextlib import ExitStack, suppress
 from dataclasses import asdict, dataclass, field, replace
-from functools import cache
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
-import grader
-from grader.common.interpreter import interpreter
 from grader.common.system_errors import refusal_in
 from grader.errors import MachineError
 from grader.ros import installation
 from grader.sandbox import bubblewrap
-from grader.sandbox.control_group import ControlGroup, control_group
-from grader.sandbox.limits import MIB, NODE_LIMITS
-from grader.sandbox.user import cell_user
+from grader.sandbox.holder import HolderError
+from grader.sandbox.limits import MIB
+from grader.trial.conductor_process import ConductorInRoom, PlainConductor
 from grader.trial.inputs import Inputs
 from grader.trial.own_domain import own_domain
-from grader.trial.process_group import ProcessGroup
 from grader.trial.recording_json import from_json
 from grader.trial.time_limit import TimeLimit
 
 if TYPE_CHECKING:
+    from grader.trial.conductor_process import ConductorProcess
     from grader.trial.recording import ClockName, Pose, Recording
 
-_FOLDER = Path(grader.__file__).parent
-CONDUCTORS_ROOMS = ("common", "ros", "sandbox", "trial", "turtlesim")
-"""The subpackages that grader.trial.conductor imports, besides the modules of the package itself."""
-MOST_MEMORY = 3 * 1024 * MIB
-"""The maximum address space of the conductor (bytes)."""
 MOST_ANSWER = 256 * MIB
 """The maximum size of one answer from the conductor (bytes). Most of an answer consists of a recording's messages."""
 
@@ -85,17 +75,6 @@ class OverwhelmedError(Exception):
         self.hung = hung
 
 
-@cache
-def compile_conductor() -> None:
-    """If the modules that the conductor imports have changed, compile them.
-
-    The conductor runs in the sandbox, where it cannot store compiled files.
-    """
-    if not sys.dont_write_bytecode:
-        for folder in (_FOLDER, *(_FOLDER / room for room in CONDUCTORS_ROOMS)):
-            compileall.compile_dir(folder, maxlevels=0, quiet=2)
-
-
 class Trial:
     """One trial, as a context manager.
 
@@ -111,7 +90,6 @@ class Trial:
         self._started = False
         self._ready = False
         self._domain: int | None = None
-        self._group = ControlGroup()
 
     def __enter__(self) -> Trial:  # noqa: PYI034 - typing.Self is Python 3.11's
         self.start()
@@ -156,7 +134,7 @@ class Trial:
         Any thread may call `suspend`. Outside a cell, do nothing: suspended processes would outlive a killed grader.
         """
         if self._in_cell:
-            self._processes.suspend()
+            self._conductor.suspend()
 
     def run(self, package: str, executable: str, tree: bytes) -> Recording:
         """Run the executable from the install tree (a tar stream), and return the recording.
@@ -178,7 +156,7 @@ class Trial:
         self._send(json.dumps(order).encode() + b"\n" + tree)
         self._node_runs = True
         recording = from_json(self._answer("recording"))
-        if self._group.out_of_memory() and recording.end.by == "itself":
+        if self._conductor.out_of_memory() and recording.end.by == "itself":
             return replace(recording, end=replace(recording.end, out_of="memory"))
         return recording
 
@@ -206,7 +184,6 @@ class Trial:
         return from_json(self._answer("recording"))
 
     def _start(self) -> None:
-        compile_conductor()
         if self._in_cell:
             self._workspace, self._home, self._domain = bubblewrap.WORKSPACE, bubblewrap.HOME, None
         else:
@@ -217,55 +194,39 @@ class Trial:
             self._home.mkdir()
             self._domain = own_domain(self._stack)
         self._errors: IO[bytes] = self._stack.enter_context(tempfile.TemporaryFile())  # noqa: SIM115
-        env = installation.environment(self._ros, home=self._home, domain=self._domain)
-        env["ROS_PYTHON_CHECK_FIELDS"] = (
-            "0"  # this check helps beginners, but it would slow the simulator down in every frame
-        )
-        argv, env = interpreter("-m", "grader.trial.conductor", python=str(self._ros.python), env=env, searches=True)
-        if self._in_cell:
-            view = bubblewrap.ros_view(self._ros, _FOLDER)
-            # Messages from the node fill the memory of the conductor, which itself needs 1 GiB of address space.
-            argv = ["prlimit", f"--as={MOST_MEMORY}:", "--", *argv]
-            self._group = self._stack.enter_context(control_group(NODE_LIMITS))
-            user = self._stack.enter_context(cell_user())
-            argv = self._group.joined(bubblewrap.room(argv, bubblewrap.View(view.read_only), env=env, user=user))
-        self._process = subprocess.Popen(
-            argv, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors, env=env, start_new_session=True
-        )
-        # Kill the whole process group, because a child of bubblewrap may outlive it while bubblewrap is starting.
-        self._processes = ProcessGroup(self._process.pid)
-        self._time_limit = TimeLimit(self._processes)
+        self._conductor = self._start_conductor()
+        self._time_limit = TimeLimit(self._conductor)
         self._stack.callback(self._end)
         plan = asdict(self._plan) | {"start": [self._plan.start.x, self._plan.start.y, self._plan.start.theta]}
-        where = {"home": str(self._home), "domain": self._domain, "in_cell": self._in_cell}
+        where = {"home": str(self._home), "domain": self._domain}
         underlay = {"underlay": str(self._ros.underlay) if self._ros.underlay else None}
         self._send(json.dumps({**plan, **where, **underlay}).encode() + b"\n")
 
+    def _start_conductor(self) -> ConductorProcess:
+        if not self._in_cell:
+            return PlainConductor(self._ros, self._home, self._domain, self._errors)
+        nodes = 0 if self._plan.alone else 1 + len(self._plan.beside)
+        try:
+            return ConductorInRoom(self._ros, nodes, self._errors)
+        except HolderError as error:
+            raise _fault(str(error)) from error
+
     def _limit(self) -> None:
         # The grader never waits forever. The limits of the trial itself are much lower.
-        self._processes.resume()
+        self._conductor.resume()
         self._time_limit.start(120.0 + 6.0 * self._plan.duration_s)
 
     def _end(self) -> None:
         self._time_limit.cancel()
-        self._processes.kill()
-        for pipe in (self._process.stdin, self._process.stdout):
-            if pipe is not None:
-                with suppress(BrokenPipeError):
-                    pipe.close()
-        self._process.wait()
+        self._conductor.close()
 
     def _send(self, data: bytes) -> None:
-        assert self._process.stdin is not None
-        try:
-            self._process.stdin.write(data)
-            self._process.stdin.flush()
-        except BrokenPipeError:
-            pass  # the process has exited, and `_answer` reports the reason
+        with suppress(BrokenPipeError):  # the process has exited, and `_answer` reports the reason
+            self._conductor.stdin.write(data)
+            self._conductor.stdin.flush()
 
     def _answer(self, key: str) -> Any:  # noqa: ANN401 - JSON
-        assert self._process.stdout is not None
-        line = self._process.stdout.readline(MOST_ANSWER)
+        line = self._conductor.stdout.readline(MOST_ANSWER)
         answer = json.loads(line) if line.endswith(b"\n") else {}
         if "doubt" in answer:
             raise WallTimeNeeded(answer["doubt"], by_chance=answer["by_chance"])
@@ -278,18 +239,13 @@ class Trial:
             if "fault" in answer:
                 raise OverwhelmedError(answer["fault"])
             raise self._how_it_ended()
-        self._processes.kill()
+        self._conductor.kill()
         self._errors.seek(0)
-        output = answer.get("fault") or last_words(self._errors.read()[-2000:])
-        # A complete sentence is one of the grader's messages, and says what to do.
-        refused = output if output.endswith(".") else refusal_in(output)
-        unknown = f"The simulator failed: {output or 'it printed nothing'}. `grader doctor` says what is missing."
-        message = f"The simulator failed. {refused}" if refused else unknown
-        raise MachineError(message)
+        raise _fault(answer.get("fault") or last_words(self._errors.read()[-2000:]))
 
     def _how_it_ended(self) -> OverwhelmedError | MachineError:
         try:
-            code = self._process.wait(5.0)
+            code = self._conductor.wait(5.0)
         except subprocess.TimeoutExpired:
             return OverwhelmedError("it no longer answered", hung=True)
         if self._time_limit.starved:
@@ -298,3 +254,11 @@ class Trial:
         if code == -signal.SIGKILL:
             return OverwhelmedError("it was still busy long after the end of the trial", hung=True)
         return OverwhelmedError(f"it ended with exit code {code}")
+
+
+def _fault(output: str) -> MachineError:
+    """Return the error for a simulator that failed before the node was started."""
+    # A complete sentence is one of the grader's messages, and says what to do.
+    refused = output if output.endswith(".") else refusal_in(output)
+    unknown = f"The simulator failed: {output or 'it printed nothing'}. `grader doctor` says what is missing."
+    return MachineError(f"The simulator failed. {refused}" if refused else unknown)

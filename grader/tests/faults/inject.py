@@ -34,16 +34,18 @@ seen = os.environ.pop("FAULT_IN_ROOMS", None)
 if seen:
     from pathlib import Path
 
-    from grader.trial import trial
+    from grader.trial import conductor_process, fork_client
 
-    clean, view = trial.interpreter, trial.bubblewrap.ros_view
+    clean, view = fork_client.interpreter, conductor_process.bubblewrap.ros_view
     faults = {name: value for name, value in os.environ.items() if name.startswith(("FAULT", "LD_PRELOAD"))}
 
     def interpreter(*arguments, env, **options):
+        if "conductor" not in arguments:
+            return clean(*arguments, env=env, **options)
         return clean(*arguments, env={**env, **faults, "PYTHONPATH": seen + os.pathsep + env["PYTHONPATH"]}, **options)
 
-    trial.interpreter = interpreter
-    trial.bubblewrap.ros_view = lambda ros, *more: view(ros, Path(seen), *more)
+    fork_client.interpreter = interpreter
+    conductor_process.bubblewrap.ros_view = lambda ros, *more: view(ros, Path(seen), *more)
 """
 CALLS = {
     "open": (errno.EMFILE, errno.ENOMEM, errno.EPERM),

@@ -51,7 +51,7 @@ def beside_a_trial(call: str, number: int, nth: int) -> Fault:
 
 
 def in_a_room(call: str, number: int, nth: int) -> Fault:
-    return Fault(call, number, nth, "grader.trial.node_process:NodeProcess", in_rooms=True)
+    return Fault(call, number, nth, "grader.trial.launchers:LauncherInCell", in_rooms=True)
 
 
 def judge(checked: Checked) -> None:

@@ -83,14 +83,14 @@ def test_changed_modules_are_graded_without_colcon(
     assert failed(watched) == []
     watched.prepare()
     assert watched._warm is not None
-    prepared = watched._warm[1]._processes
+    prepared = watched._warm[1]._conductor.pids()
     if bubblewrap.usable():
-        until(lambda: state(prepared.leader) == "T")
+        until(lambda: state(prepared[1]) == "T")
     change(node_of(package), "2.0", "1.0")
     assert watched.changed()
     assert failed(watched) == ["values", "circle"]
     node_of(package).write_text("def main(:\n")
-    assert not Path(f"/proc/{prepared.leader}").exists(), "the prepared trial was not used"
+    assert not Path(f"/proc/{prepared[-1]}").exists(), "the prepared trial was not used"
     assert "entry-point" in failed(watched)
     shutil.copyfile(
         ROOT / "solutions" / STEP / "my_robot_controller/my_robot_controller/draw_circle.py", node_of(package)

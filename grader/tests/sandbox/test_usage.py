@@ -42,7 +42,7 @@ def lines(process: subprocess.Popen[str], count: int) -> None:
 
 def test_processes_that_share_a_processor_are_ready_for_as_long_as_with_one_each() -> None:
     with python(STARTS_TWO) as process:
-        guard = Guard(process.pid, LIMITS, lambda _: None)
+        guard = Guard([process.pid], LIMITS, lambda _: None)
         lines(process, 2)
         until(lambda: guard.ready_s(but=process.pid) >= 2.5 * WORK_S)
         until(lambda: guard.waited_s() >= 0.5 * WORK_S)
@@ -61,4 +61,4 @@ def test_data_in_the_network_of_a_room_counts(*, in_room: bool, over: str | None
             for _ in range(10):
                 sender.sendto(bytes(20_000), receiver.getsockname())
         with python("import sys; print('ready', flush=True); sys.stdin.readline()") as process:
-            assert exceeded(process.pid, Limits(total_memory=12 * MIB), in_room=in_room) == over
+            assert exceeded([process.pid], Limits(total_memory=12 * MIB), in_room=in_room) == over

@@ -12,6 +12,7 @@ from grader.sandbox.limits import Limits
 from grader.sandbox.usage import Guard
 from grader.tests.waiting import until
 from grader.trial import node_process
+from grader.trial.launchers import LauncherProcess
 from grader.trial.node_process import FULL, PIPE, NodeProcess, Stream, enlarge
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ def test_waiting_for_a_processor_after_ctrl_c_does_not_count(
     waits = iter([0.0])
     monkeypatch.setattr(Guard, "waited_s", lambda *_, **__: next(waits, waited_s))
     monkeypatch.setattr(node_process, "STOP_S", 0.2)
-    with NodeProcess(lambda *_: ["sh", "-c", SLOW], Limits(processes=50, cpu_s=60), in_cell=False) as process:
+    with NodeProcess(LauncherProcess(["sh", "-c", SLOW]), Limits(processes=50, cpu_s=60)) as process:
         process.await_ready()
         process.start({}, b"")
         until(lambda: process.read_output(0.0) > 0)

@@ -1,0 +1,121 @@
+"""Enter a sandbox room or cell: a fork of a process that has imported everything becomes a process of the cell.
+
+bubblewrap makes the room or cell. Its first program is `cat`, which keeps it open. setns(2) moves a process into the
+namespaces of `cat`, and the forks of this process are processes of the room or cell. A fork must then give up by itself
+what bubblewrap takes from the programs that it starts.
+
+Like the scripts that run in a cell, this module needs only the standard library.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import resource
+import signal
+import struct
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+HOLDER = ("cat",)
+"""The program that keeps a room or cell open, until its standard input is closed."""
+_DUMPABLE, _PARENT_DEATH, _SECCOMP, _BOUNDING_DROP, _NO_NEW_PRIVILEGES, _AMBIENT = 4, 1, 22, 24, 38, 47
+"""Options of prctl(2)."""
+_SECCOMP_FILTER, _AMBIENT_CLEAR = 2, 4
+_NAMESPACES = {
+    "cgroup": 0x02000000,
+    "uts": 0x04000000,
+    "ipc": 0x08000000,
+    "user": 0x10000000,
+    "pid": 0x20000000,
+    "net": 0x40000000,
+    "mnt": 0x00020000,
+}
+"""The namespaces in /proc/PID/ns, and their flags for setns(2)."""
+_CAPABILITIES_VERSION_3 = 0x20080522
+_LAST_CAPABILITY = 63
+_C = ctypes.CDLL(None, use_errno=True)
+
+
+def enter(holder: int) -> None:
+    """Move this process into all namespaces of the process with this descriptor (pidfd_open(2)).
+
+    The pid namespace only applies to processes that are forked afterwards. The process must have only one thread. If it
+    belongs to root, it also leaves all supplementary groups.
+
+    Raises:
+        OSError: the kernel refused, or the process has exited.
+    """
+    if os.geteuid() == 0:
+        os.setgroups([])
+    flags = 0
+    for name, flag in _NAMESPACES.items():
+        if Path(f"/proc/{pid_of(holder)}/ns/{name}").readlink() != Path(f"/proc/self/ns/{name}").readlink():
+            flags |= flag
+    if _C.setns(holder, flags) != 0:
+        raise OSError(ctypes.get_errno(), "setns")
+
+
+def pid_of(pidfd: int) -> int:
+    """Return the process id in the pid namespace of the caller. Raises OSError if the process has been collected."""
+    about = Path(f"/proc/self/fdinfo/{pidfd}").read_text("ascii")
+    pid = int(next(line.split()[1] for line in about.splitlines() if line.startswith("Pid:")))
+    if pid <= 0:
+        raise ProcessLookupError(pid)
+    return pid
+
+
+def keep(descriptors: Iterable[int]) -> None:
+    """Make these descriptors the descriptors 0, 1, 2, ..., and close all other descriptors of this process."""
+    kept = [os.dup(descriptor) for descriptor in descriptors]
+    for number, descriptor in enumerate(kept):
+        os.dup2(descriptor, number)
+    os.closerange(len(kept), os.sysconf("SC_OPEN_MAX"))
+
+
+def confine(limits: Iterable[tuple[int, int]], *, user: int | None, call_filter: bytes = b"") -> None:
+    """Give up what no process in a room or cell has: other users, capabilities, new privileges, unlimited resources.
+
+    `limits` are pairs of a constant of the module `resource` and a value. `user` is the user id to switch to if root
+    has entered, or None. `call_filter` comes from system_calls.program(). With an empty filter, all system calls remain
+    possible. This process ends with its parent.
+
+    Raises:
+        OSError: the kernel refused.
+    """
+    for kind, value in limits:
+        resource.setrlimit(kind, (value, value))
+    for capability in range(_LAST_CAPABILITY + 1):
+        _C.prctl(_BOUNDING_DROP, capability, 0, 0, 0)  # fails for numbers that this kernel does not know
+    _C.prctl(_AMBIENT, _AMBIENT_CLEAR, 0, 0, 0)
+    if user is not None:
+        os.setresgid(user, user, user)
+        os.setresuid(user, user, user)
+    header = struct.pack("<Ii", _CAPABILITIES_VERSION_3, 0)
+    if _C.capset(header, bytes(24)) != 0 or _C.prctl(_NO_NEW_PRIVILEGES, 1, 0, 0, 0) != 0:
+        raise OSError(ctypes.get_errno(), "the capabilities could not be given up")
+    end_with_parent()  # a change of the user cancels an earlier request
+    allow_inspection(allow=True)
+    if call_filter:
+        buffer = ctypes.create_string_buffer(call_filter, len(call_filter))
+        program = struct.pack("@HP", len(call_filter) // 8, ctypes.addressof(buffer))
+        if _C.prctl(_SECCOMP, _SECCOMP_FILTER, program, 0, 0) != 0:
+            raise OSError(ctypes.get_errno(), "the system call filter could not be installed")
+
+
+def end_with_parent() -> None:
+    """Let the kernel kill this process when its parent exits."""
+    _C.prctl(_PARENT_DEATH, signal.SIGKILL, 0, 0, 0)
+
+
+def allow_inspection(*, allow: bool) -> None:
+    """Allow or forbid other processes of the user to read the memory and the descriptors of this process."""
+    _C.prctl(_DUMPABLE, int(allow), 0, 0, 0)
+
+
+def sacrifice() -> None:
+    """Let the kernel kill this process first if the machine runs out of memory. Requires that inspection is allowed."""
+    Path("/proc/self/oom_score_adj").write_text("1000", "ascii")

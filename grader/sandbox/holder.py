@@ -1,0 +1,85 @@
+"""Open a sandbox room or cell for forks, and keep it open (entering.py)."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+
+class HolderError(Exception):
+    """bubblewrap could not make the room or cell. The message is the output of bubblewrap."""
+
+
+class Holder:
+    """The processes of bubblewrap and of entering.HOLDER. The room or cell with all its processes ends with them."""
+
+    def __init__(self, command: Callable[[int], Sequence[str]], pass_fds: Sequence[int] = ()) -> None:
+        """Start bubblewrap. `command(info_fd)` returns the command line, whose program is entering.HOLDER."""
+        self._info, info = os.pipe()
+        try:
+            pipe = subprocess.PIPE
+            self._process = subprocess.Popen(
+                command(info),
+                stdin=pipe,
+                stdout=pipe,
+                stderr=pipe,
+                bufsize=0,
+                pass_fds=(info, *pass_fds),
+                start_new_session=True,
+            )
+        except BaseException:
+            os.close(self._info)
+            raise
+        finally:
+            os.close(info)
+
+    @property
+    def pid(self) -> int:
+        """The process id of bubblewrap, which is the ancestor of all orphans in the room or cell."""
+        return self._process.pid
+
+    def await_ready(self) -> int:
+        """Wait until bubblewrap has made the room or cell. Return a descriptor of HOLDER, for entering.enter.
+
+        Raises:
+            HolderError: bubblewrap failed.
+        """
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        assert self._process.stderr is not None
+        problem: Exception | None = None
+        with open(self._info, "rb") as about:  # noqa: PTH123 - a descriptor
+            try:
+                self._process.stdin.write(b"?")
+                if self._process.stdout.read(1):  # HOLDER runs, so that all namespaces and mounts exist
+                    first = int(json.loads(about.read())["child-pid"])
+                    children = Path(f"/proc/{first}/task/{first}/children").read_text("ascii")
+                    return os.pidfd_open(int(children.split()[0]))
+            except (OSError, ValueError, IndexError) as error:
+                problem = error
+        self.kill()
+        output = self._process.stderr.read().decode("utf-8", "replace").strip()
+        raise HolderError(output or str(problem or "")) from problem
+
+    def kill(self) -> None:
+        """Kill all processes of the room or cell."""
+        # Kill the whole process group, because a child of bubblewrap may outlive it while bubblewrap is starting.
+        if self._process.returncode is None:
+            with suppress(ProcessLookupError):
+                os.killpg(self._process.pid, signal.SIGKILL)
+
+    def close(self) -> None:
+        """Kill all processes of the room or cell, and wait until bubblewrap has exited."""
+        self.kill()
+        for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):
+            assert pipe is not None
+            pipe.close()
+        self._process.wait()

@@ -1,0 +1,169 @@
+"""Nodes and conductors are forks. A fork has what bubblewrap gives the programs that it starts, and nothing more."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+import tarfile
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from grader.common.interpreter import interpreter
+from grader.errors import MachineError
+from grader.ros.installation import FASTDDS_PROFILE, find_ros
+from grader.ros.underlay import with_turtlesim
+from grader.sandbox import bubblewrap
+from grader.sandbox.limits import NODE_LIMITS
+from grader.sandbox.system_calls import call_filter
+from grader.sandbox.user import cell_user
+from grader.tests.waiting import HANG_S, until_gone
+from grader.trial import fork_client
+from grader.trial.recording import Pose, Recording
+from grader.trial.trial import Plan, Trial
+
+pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
+WALL = Plan("wall", Pose(5.5, 5.5, 0.0), None, 0.1)
+SELF = """#!/usr/bin/env python3
+import json, os, resource, signal, sys
+COUNTED = ("Pid", "PPid", "Tgid", "Ngid", "NStgid", "NSpid", "NSpgid", "NSsid", "FDSize", "Cpus", "Mems", "Threads")
+COUNTED += ("Vm", "Rss", "Huge", "voluntary", "nonvoluntary", "Name", "State", "Speculation", "SigQ", "SigCgt", "x86")
+status = [line.split(":\\t", 1) for line in open("/proc/self/status").read().splitlines() if ":\\t" in line]
+mounts = [line.split() for line in open("/proc/self/mountinfo")]
+try:
+    terminal = os.open("/dev/tty", os.O_RDWR)
+except OSError as error:
+    terminal = error.errno
+print(json.dumps({
+    "status": {name: value for name, value in status if not name.startswith(COUNTED)},
+    "limits": [resource.getrlimit(kind) for kind in range(16)],
+    "killed first": open("/proc/self/oom_score_adj").read(),
+    "descriptors": [name for name in os.listdir("/proc/self/fd") if os.path.exists("/proc/self/fd/" + name)],
+    "processes": [open(f"/proc/{pid}/comm").read() for pid in os.listdir("/proc") if pid in ("1",)],
+    "top": sorted(os.listdir("/")),
+    "mounts": sorted([mount[4], *mount[5].split(","), mount[mount.index("-") + 1]] for mount in mounts),
+    "interfaces": os.listdir("/proc/self/net/dev_snmp6") if os.path.isdir("/proc/self/net/dev_snmp6") else [],
+    "terminal": terminal,
+    "folder": os.getcwd(),
+    "host": os.uname().nodename,
+    "priority": [os.nice(0), os.sched_getscheduler(0)],
+}, sort_keys=True))
+"""
+
+
+def run(script: str, plan: Plan = WALL) -> Recording:
+    """Run the script as the node of a trial in wall time."""
+    tree = io.BytesIO()
+    with tarfile.open(fileobj=tree, mode="w") as archive:
+        member = tarfile.TarInfo("package/lib/package/node")
+        member.mode, member.size = 0o755, len(script.encode())
+        archive.addfile(member, io.BytesIO(script.encode()))
+    with Trial(plan, with_turtlesim(find_ros()), in_cell=True) as trial:
+        return trial.run("package", "node", tree.getvalue())
+
+
+def test_a_node_cannot_do_more_than_a_program_that_bubblewrap_starts() -> None:
+    recording = run(SELF)
+    assert recording.stderr.text == ""
+    forked = json.loads(recording.stdout.text)
+    view = bubblewrap.ros_view(with_turtlesim(find_ros()), FASTDDS_PROFILE)
+    env = {"PATH": "/usr/bin:/bin", "PYTHONUNBUFFERED": "1"}
+    with call_filter() as filter_fd, cell_user() as user:
+        command = bubblewrap.lone_cell(
+            [sys.executable, "-c", SELF], view, env=env, limits=NODE_LIMITS, user=user, filter_fd=filter_fd
+        )
+        passed = () if filter_fd is None else (filter_fd,)
+        done = subprocess.run(command, capture_output=True, text=True, check=True, pass_fds=passed, env=env)
+    assert forked == json.loads(done.stdout)
+
+
+def test_a_traceback_shows_the_program_alone() -> None:
+    stderr = run("#!/usr/bin/env python3\ndef main():\n    exec('1 / 0')\n\nmain()\n").stderr.text
+    assert [line.split(",")[0].strip() for line in stderr.splitlines() if "File" in line] == [
+        'File "/ws/install/package/lib/package/node"',
+        'File "/ws/install/package/lib/package/node"',
+        'File "<string>"',
+    ]
+
+
+def test_nodes_do_not_share_random_numbers_and_inherit_no_module_of_the_grader() -> None:
+    script = """#!/usr/bin/env python3
+import random, sys
+print(random.random(), [name for name in sys.modules if name.startswith("grader")], sys.argv, sys.orig_argv[1:])
+"""
+    first, second = (run(script).stdout.text.split(" ", 1) for _ in range(2))
+    assert first[0] != second[0]
+    assert first[1] == second[1] == "[] ['/ws/install/package/lib/package/node'] []\n"
+
+
+@pytest.mark.parametrize(
+    ("end", "code"),
+    [("sys.exit(200)", 200), ("os.kill(os.getpid(), 9)", -9), ("raise KeyError", 1), ("", 0), ("os._exit(137)", 137)],
+)
+def test_the_exit_code_is_that_of_the_node(end: str, code: int) -> None:
+    assert run(f"#!/usr/bin/env python3\nimport os, sys\n{end}\n").end.exit_code == code
+
+
+def mapped(pid: int) -> set[str]:
+    """Return the places at which a process has mapped the C library."""
+    return {line.split("-")[0] for line in Path(f"/proc/{pid}/maps").read_text().splitlines() if "libc.so" in line}
+
+
+def test_a_node_does_not_have_the_memory_layout_of_the_conductor() -> None:
+    ros = with_turtlesim(find_ros())
+    with Trial(WALL, ros, in_cell=True) as first, Trial(WALL, ros, in_cell=True) as second:
+        conductors = [trial._conductor.pids()[1] for trial in (first, second)]
+        nodes = [trial._conductor.pids()[2] for trial in (first, second)]
+        layouts = [mapped(pid) for pid in (*conductors, *nodes)]
+    assert layouts[0] == layouts[1], "the conductors are not forks of one process"
+    assert layouts[2] == layouts[3], "the nodes are not forks of one process"
+    assert not layouts[0] & layouts[2]
+
+
+def test_a_server_that_was_killed_is_started_again() -> None:
+    ros = with_turtlesim(find_ros())
+    run("#!/usr/bin/env python3\n")
+    for server in (fork_client.conductors(ros), fork_client.nodes(ros)):
+        assert server._process is not None
+        os.kill(server._process.pid, signal.SIGKILL)
+        server._process.wait(HANG_S)
+    assert run("#!/usr/bin/env python3\nprint('again')\n").stdout.text == "again\n"
+
+
+def test_a_missing_part_of_ros_is_named() -> None:
+    ros = replace(find_ros(), underlay=None, prefixes=(), python_path=())
+    with Trial(WALL, ros, in_cell=True) as trial, pytest.raises(MachineError, match="No module named"):
+        trial.await_ready()
+
+
+SERVER = """
+import os, sys
+from grader.ros.installation import find_ros
+from grader.ros.underlay import with_turtlesim
+from grader.trial import fork_client
+from grader.trial.trial import Plan, Trial
+from grader.trial.recording import Pose
+
+ros = with_turtlesim(find_ros())
+with Trial(Plan("wall", Pose(5.5, 5.5, 0.0), None, 1.0), ros, in_cell=True) as trial:
+    trial.await_ready()
+    servers = [server._process.pid for server in (fork_client.conductors(ros), fork_client.nodes(ros))]
+    print(*servers, *trial._conductor.pids(), flush=True)
+    os.kill(os.getpid(), int(sys.argv[1]))
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+def test_the_servers_and_their_forks_end_with_the_grader(number: int) -> None:
+    start = interpreter("-c", SERVER, str(number), searches=True)
+    done = subprocess.run(start.argv, env=start.env, capture_output=True, text=True, check=False, timeout=HANG_S)
+    assert done.returncode == -number, done.stderr
+    pids = [int(pid) for pid in done.stdout.split()]
+    assert len(pids) == 5
+    for pid in pids:
+        until_gone(pid)

@@ -1,0 +1,78 @@
+"""A process that a fork server has forked (grader.trial.fork_server)."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import socket
+import struct
+import subprocess
+from contextlib import suppress
+from threading import Lock
+
+from grader.sandbox import entering
+
+STARTED = b"s"
+"""The message of the fork server with a descriptor of the new process (pidfd_open(2))."""
+STATUS = struct.Struct("<i")
+"""The message of the fork server at the end of the process: the exit code, or a negative signal number."""
+
+
+class Fork:
+    """A process that a fork server has forked, or will fork. Its methods are those of `subprocess.Popen`."""
+
+    def __init__(self, result: socket.socket) -> None:
+        """Watch the fork whose fork server has the other end of this socket."""
+        self.returncode: int | None = None
+        self._result = result
+        self._process: int | None = None
+        self._starting = Lock()
+
+    def close(self) -> None:
+        """Stop watching. The fork server then kills the process if it still runs."""
+        self._result.close()
+        if self._process is not None:
+            os.close(self._process)
+            self._process = None
+
+    def await_started(self) -> int | None:
+        """Wait until the process exists. Return its process id, or None if it has exited or could not be started."""
+        with self._starting:
+            if self._process is None:
+                data, passed, *_ = socket.recv_fds(self._result, 1, 1)
+                if data != STARTED or not passed:
+                    return None
+                self._process = passed[0]
+        with suppress(ProcessLookupError):
+            return entering.pid_of(self._process)
+        return None
+
+    def signal(self, number: int) -> None:
+        """Send a signal to the process if it has not exited."""
+        if self.await_started() is not None:
+            assert self._process is not None
+            with suppress(ProcessLookupError):
+                signal.pidfd_send_signal(self._process, number)
+
+    def poll(self) -> int | None:
+        """Return the exit code, or None if the process has not exited."""
+        with suppress(subprocess.TimeoutExpired):
+            return self.wait(0.0)
+        return None
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Wait until the process has exited, and return its exit code, or -SIGKILL if its fork server was killed.
+
+        Raises:
+            subprocess.TimeoutExpired: the process has not exited within this time (s).
+        """
+        if self.returncode is None:
+            self.await_started()
+            waiting = select.poll()
+            waiting.register(self._result, select.POLLIN)
+            if not waiting.poll(None if timeout is None else timeout * 1000.0):
+                raise subprocess.TimeoutExpired([], timeout or 0.0)
+            data = self._result.recv(STATUS.size)
+            self.returncode = STATUS.unpack(data)[0] if len(data) == STATUS.size else -signal.SIGKILL
+        return self.returncode

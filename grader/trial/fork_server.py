@@ -1,0 +1,196 @@
+"""Fork conductors or nodes from a process that has already imported rclpy, so that a trial imports nothing.
+
+A grader has two fork servers: one forks the conductors of its trials, the other one the nodes (grader.trial.launcher).
+They are separate, so that a student's node does not know the memory layout of the conductor, which reads the messages
+of the node. A server knows nothing about its trials. Its forks enter the sandbox before they read anything, and no
+student's code ever runs outside of it.
+
+The server runs outside of the sandbox. It reads requests of the grader from a socket, each with descriptors:
+
+- **conductor**: JSON with the control groups, the user and the limits. The descriptors are a process in the room
+  (pidfd_open(2)), standard input, output and error, the socket on which the conductor asks for nodes, and the socket
+  for the result;
+- **node**: JSON with the control groups, the limits, the system call filter and the number of nodes. The descriptors
+  are the socket on which the conductor asks for nodes, and the socket for the result. For each node, the conductor
+  sends only descriptors: a process in the node's cell, standard input, output and error, and the socket for the result.
+  The conductor sends them before it starts any node.
+
+On the socket for the result, the server sends STARTED with a descriptor of the new process, and at the end STATUS. If
+the other end of this socket is closed, the process is killed.
+"""
+
+from __future__ import annotations
+
+import base64
+import gc
+import importlib
+import json
+import os
+import select
+import signal
+import socket
+import sys
+import traceback
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from grader.sandbox import entering
+from grader.trial import launcher
+from grader.trial.fork import STARTED, STATUS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+NODES_SOCKET = 3
+"""The descriptor of the socket on which a conductor asks for nodes."""
+MOST_REQUEST = 64 * 1024
+"""The maximum size of a request (bytes)."""
+CONDUCTORS, NODES = 6, 5
+"""The number of descriptors with the request for a conductor, and with a cell for a node."""
+CELLS_USER = 1000
+"""The user id in a cell (bubblewrap.cell)."""
+_AHEAD = ("grader.trial.conductor", "grader.trial.simulated", "grader.trial.wall", "grader.trial.without_node")
+"""The modules of a conductor, which import all other modules that a conductor needs."""
+
+
+def main() -> None:
+    """Import everything, and serve requests until the socket is closed.
+
+    The arguments are "conductor" or "node", and the descriptor of the socket.
+    """
+    kind, requests = sys.argv[1], socket.socket(fileno=int(sys.argv[2]))
+    problem, postponed = "", []
+    try:
+        postponed = launcher.import_ahead() if kind == "node" else _import_conductor()
+    except Exception:  # a part of ROS 2 is missing, for example
+        problem = traceback.format_exc()
+    entering.allow_inspection(allow=False)
+    order, passed = _next_request(requests)
+    if kind == "node":
+        _enter_cell(order, problem, *passed)
+        launcher.run(postponed)
+    else:
+        _enter_room(order, problem, *passed)
+        from grader.trial import conductor
+
+        conductor.main(socket.socket(fileno=NODES_SOCKET))
+
+
+def _import_conductor() -> list[launcher.Postponed]:
+    with launcher.postponed() as modules:
+        for name in _AHEAD:
+            importlib.import_module(name)
+    return modules
+
+
+def _next_request(requests: socket.socket) -> tuple[dict[str, Any], list[int]]:
+    """Wait for requests. Each request is returned in a fork of this process, and never in this process."""
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the forks
+    gc.collect()
+    gc.freeze()
+    while True:
+        request, passed, *_ = socket.recv_fds(requests, MOST_REQUEST, 6)
+        if not request:
+            os._exit(0)
+        if os.fork() == 0:
+            break
+        for descriptor in passed:
+            os.close(descriptor)
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    requests.close()
+    entering.end_with_parent()
+    order = json.loads(request)
+    for folder in order["groups"]:
+        with suppress(OSError):
+            Path(folder, "cgroup.procs").write_text(str(os.getpid()), "ascii")
+    return order, passed
+
+
+def _enter_room(order: dict[str, Any], problem: str, room: int, *passed: int) -> None:
+    """Become a process in the room."""
+    *streams, result = passed
+    _report_to(streams[2], problem)
+    entering.enter(room)
+    _fork_supervised(result, [room, *streams])
+    entering.keep(streams)
+    entering.confine(order["limits"], user=order["user"])
+    os.chdir(os.environ["HOME"])
+
+
+def _enter_cell(order: dict[str, Any], problem: str, conductors: int, result: int) -> None:
+    """Become a process in the cell of a node."""
+    socket.send_fds(socket.socket(fileno=result), [STARTED], [os.pidfd_open(os.getpid())])
+    descriptors = _next_node(socket.socket(fileno=conductors), order["nodes"])
+    cell, *streams, its_result = descriptors
+    _report_to(streams[2], problem)
+    by_root = os.geteuid() == 0
+    entering.enter(cell)
+    _fork_supervised(its_result, [cell, *streams])
+    entering.keep(streams)
+    call_filter = base64.b64decode(order["filter"])
+    entering.confine(order["limits"], user=CELLS_USER if by_root else None, call_filter=call_filter)
+    entering.sacrifice()
+    os.chdir(order["workspace"])
+    os.environ["PWD"] = order["workspace"]
+    del sys.orig_argv[1:]
+    for name in [name for name in sys.modules if name.partition(".")[0] == "grader"]:
+        del sys.modules[name]
+
+
+def _report_to(stderr: int, problem: str) -> None:
+    """Write tracebacks of this process to this descriptor. Exit if there was a problem at the start of the server."""
+    os.dup2(stderr, 2)
+    if problem:
+        os.write(2, problem.encode())
+        os._exit(1)
+
+
+def _next_node(conductor: socket.socket, nodes: int) -> list[int]:
+    """Wait until the conductor has made the cell of a node. Each node is returned in a fork of this process."""
+    for _ in range(nodes):
+        data, descriptors, *_ = socket.recv_fds(conductor, 1, NODES)
+        if not data:  # the conductor has exited
+            os._exit(0)
+        if os.fork() == 0:
+            conductor.close()
+            entering.end_with_parent()
+            return descriptors
+        for descriptor in descriptors:
+            os.close(descriptor)
+    conductor.close()
+    for _ in range(nodes):
+        os.wait()
+    os._exit(0)
+
+
+def _fork_supervised(result: int, childs: Sequence[int]) -> None:
+    """Fork. Return in the child process. The parent process reports how the child process ends.
+
+    The parent process closes the descriptors `childs`, and kills the child process if nobody waits for the result.
+    """
+    child = os.fork()
+    if child == 0:
+        os.close(result)
+        return
+    for descriptor in childs:
+        os.close(descriptor)
+    process = os.pidfd_open(child)
+    results = socket.socket(fileno=result)
+    try:
+        socket.send_fds(results, [STARTED], [process])
+        ends = select.poll()
+        ends.register(process, select.POLLIN)
+        ends.register(results, 0)  # only the end of the connection
+        if all(descriptor != process for descriptor, _ in ends.poll()):
+            signal.pidfd_send_signal(process, signal.SIGKILL)
+        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        results.send(STATUS.pack(code))
+    except OSError:  # nobody waits for the result
+        with suppress(ProcessLookupError):
+            signal.pidfd_send_signal(process, signal.SIGKILL)
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,177 @@
+"""Start a launcher (grader.trial.launcher): as a fork in a new cell, or as a process without a cell."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+from abc import ABC, abstractmethod
+from contextlib import suppress
+from typing import IO, TYPE_CHECKING
+
+from grader.sandbox import bubblewrap
+from grader.sandbox.entering import HOLDER
+from grader.sandbox.holder import Holder, HolderError
+from grader.sandbox.system_calls import call_filter
+from grader.trial.fork import Fork
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from grader.sandbox.limits import Limits
+
+
+READY = b"\x00ready\n"
+"""The output of the launcher before any of the student's code runs."""
+_PLAIN = {"PATH": "/usr/bin:/bin"}
+_ENDS_S = 5.0
+
+
+class LaunchError(Exception):
+    """The launcher itself failed. The machine is at fault, since none of the student's code had run."""
+
+
+def await_launcher(stdout: IO[bytes], stderr: IO[bytes] | None = None) -> None:
+    """Wait until a launcher is ready to receive the command that it must run.
+
+    Raises:
+        LaunchError: the launcher exited. The message is the output of the launcher.
+    """
+    received = b""
+    while not received.endswith(READY):
+        # Read single bytes, because the following output is that of the node.
+        byte = os.read(stdout.fileno(), 1)
+        if not byte:
+            output = received + (stderr.read() if stderr is not None else b"")
+            raise LaunchError(output.decode("utf-8", "replace").strip())
+        received += byte
+
+
+class Launcher(ABC):
+    """The process of a launcher, which becomes a node, and the pipes of this process."""
+
+    stdin: IO[bytes]
+    stdout: IO[bytes]
+    stderr: IO[bytes]
+    in_cell: bool
+
+    @abstractmethod
+    def await_started(self) -> tuple[int, ...]:
+        """Wait until the process exists. Return its process id, and the id of the ancestor of orphans in the cell.
+
+        Raises:
+            LaunchError: the process could not be started.
+        """
+
+    @abstractmethod
+    def poll(self) -> int | None:
+        """Return the exit code, or None if the process has not exited."""
+
+    @abstractmethod
+    def wait(self, timeout: float) -> int:
+        """Wait until the process has exited, and return its exit code.
+
+        Raises:
+            subprocess.TimeoutExpired: the process has not exited within this time (s).
+        """
+
+    @abstractmethod
+    def kill(self) -> None:
+        """Kill the process, and all other processes of the cell."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Kill the processes, and wait until they have exited."""
+
+
+class LauncherProcess(Launcher):
+    """A launcher without a cell."""
+
+    in_cell = False
+
+    def __init__(self, argv: Sequence[str]) -> None:
+        pipe = subprocess.PIPE
+        self._process = subprocess.Popen(argv, stdin=pipe, stdout=pipe, stderr=pipe)
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        assert self._process.stderr is not None
+        self.stdin, self.stdout, self.stderr = self._process.stdin, self._process.stdout, self._process.stderr
+
+    def await_started(self) -> tuple[int, ...]:
+        """Return the id of the process."""
+        return (self._process.pid,)
+
+    def poll(self) -> int | None:
+        """Return the exit code, or None if the process has not exited."""
+        return self._process.poll()
+
+    def wait(self, timeout: float) -> int:
+        """Wait until the process has exited, and return its exit code."""
+        return self._process.wait(timeout)
+
+    def kill(self) -> None:
+        """Kill the process."""
+        self._process.kill()
+
+    def close(self) -> None:
+        """Kill the process, and wait for it."""
+        if self._process.poll() is None:
+            self._process.kill()
+            self._process.wait()
+
+
+class LauncherInCell(Launcher):
+    """A launcher that is a fork (grader.trial.fork_server) in a new cell."""
+
+    in_cell = True
+
+    def __init__(self, view: bubblewrap.View, limits: Limits, nodes: socket.socket) -> None:
+        """Make the cell, and ask for a fork on the socket `nodes`."""
+        with call_filter() as filter_fd:
+            self._cell = Holder(
+                lambda info_fd: bubblewrap.cell(
+                    HOLDER, view, env=_PLAIN, limits=limits, network=True, info_fd=info_fd, filter_fd=filter_fd
+                ),
+                () if filter_fd is None else (filter_fd,),
+            )
+        try:
+            process = self._cell.await_ready()
+        except HolderError as error:
+            self._cell.close()
+            raise LaunchError(str(error)) from error
+        pipes = [os.pipe(), os.pipe(), os.pipe()]
+        (its_stdin, stdin), (stdout, its_stdout), (stderr, its_stderr) = pipes
+        self.stdin = os.fdopen(stdin, "wb")
+        self.stdout, self.stderr = os.fdopen(stdout, "rb", buffering=0), os.fdopen(stderr, "rb", buffering=0)
+        result, its_result = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        passed = [process, its_stdin, its_stdout, its_stderr, its_result.detach()]
+        socket.send_fds(nodes, [b"."], passed)
+        for descriptor in passed:
+            os.close(descriptor)
+        self._fork = Fork(result)
+
+    def await_started(self) -> tuple[int, ...]:
+        """Wait for the fork. Return its id, and the id of bubblewrap."""
+        pid = self._fork.await_started()
+        if pid is None:
+            raise LaunchError(self.stderr.read().decode("utf-8", "replace").strip() or "It was not forked")
+        return (pid, self._cell.pid)
+
+    def poll(self) -> int | None:
+        """Return the exit code, or None if the process has not exited."""
+        return self._fork.poll()
+
+    def wait(self, timeout: float) -> int:
+        """Wait until the process has exited, and return its exit code."""
+        return self._fork.wait(timeout)
+
+    def kill(self) -> None:
+        """Kill all processes of the cell."""
+        self._cell.kill()
+
+    def close(self) -> None:
+        """Kill all processes of the cell, and wait for them."""
+        self._cell.close()
+        with suppress(subprocess.TimeoutExpired):
+            self._fork.wait(_ENDS_S)
+        self._fork.close()
