@@ -57,11 +57,8 @@ class PlainSetup:
 def read_plain_setup(setup_py: bytes, setup_cfg: bytes, paths: Collection[str]) -> PlainSetup | None:
     """Read setup.py and setup.cfg of a package with files at these paths. Return None if a file is unusual."""
     module = read_module("setup.py", setup_py)
-    call = _only_call(module)
-    if call is None:
-        return None
-    given = {keyword.arg: keyword.value for keyword in call.keywords}
-    if None in given or call.args or not _INSTALLED <= given.keys() <= _INSTALLED | _ONLY_METADATA:
+    given = _arguments(module)
+    if given is None or not given.keys() >= _INSTALLED:
         return None
     name, version = evaluate(given["name"], module.names), evaluate(given["version"], module.names)
     packages = _packages(given["packages"], module, paths)
@@ -74,6 +71,22 @@ def read_plain_setup(setup_py: bytes, setup_cfg: bytes, paths: Collection[str]) 
     if packages is None or data_files is None or entry_points is None:
         return None
     return PlainSetup(name, version, packages, data_files, entry_points)
+
+
+def only_calls_setup(setup_py: bytes, setup_cfg: bytes) -> bool:
+    """Return whether setup.py only calls setup() with the usual arguments, whose values may be wrong."""
+    module = read_module("setup.py", setup_py)
+    name = evaluate((_arguments(module) or {}).get("name"), module.names)
+    return isinstance(name, str) and _is_plain(setup_cfg, name)
+
+
+def _arguments(module: Module) -> dict[str, ast.expr] | None:
+    """Return the arguments of setup(), or None if the module or the arguments are unusual."""
+    call = _only_call(module)
+    if call is None or call.args:
+        return None
+    given = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
+    return given if len(given) == len(call.keywords) and given.keys() <= _INSTALLED | _ONLY_METADATA else None
 
 
 def _only_call(module: Module) -> ast.Call | None:

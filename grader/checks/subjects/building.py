@@ -16,7 +16,7 @@ from grader.checks.outcome import Finding, Status, failed, passed
 from grader.common.words import a_list, shorten
 from grader.submission.code import import_path
 from grader.submission.package_xml import line_of
-from grader.submission.plain_setup import read_plain_setup
+from grader.submission.plain_setup import only_calls_setup
 from grader.submission.search import IGNORE_MARKER
 from grader.submission.where import Where
 
@@ -59,7 +59,8 @@ def builds(evidence: Evidence, _: NoParams) -> Finding:
     known = early(evidence, _)
     if known is not None:
         return known
-    if build.timed_out and _only_calls_setup(evidence):
+    files = evidence.submission.files
+    if build.timed_out and only_calls_setup(files["setup.py"], files.get("setup.cfg", b"")):
         message = f"`colcon build` was still running after {build.seconds:.0f} s, although setup.py only calls setup()."
         return Finding(Status.ERROR, f"{message} Try again when the machine is less busy.")
     if build.timed_out:
@@ -75,12 +76,6 @@ def builds(evidence: Evidence, _: NoParams) -> Finding:
     if build.exit_code != 0 or build.package is None:
         return _broken(evidence)
     return _modules(evidence)
-
-
-def _only_calls_setup(evidence: Evidence) -> bool:
-    """Return whether setup.py has the usual form, so that the machine and not the package made the build slow."""
-    files = evidence.submission.files
-    return read_plain_setup(files["setup.py"], files.get("setup.cfg", b""), files.keys()) is not None
 
 
 def early(evidence: Evidence, _: NoParams) -> Finding | None:

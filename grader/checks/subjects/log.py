@@ -21,6 +21,7 @@ from grader.checks.subjects.rate import Rate, Subject, rate_of
 from grader.common.words import shorten
 from grader.evidence import student_log
 from grader.evidence.arrivals import measure_arrivals
+from grader.submission.constants import evaluate
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -183,11 +184,8 @@ def log_counter(evidence: Evidence, params: Counter) -> Finding:
         return failed(observed, expected, _sign_for_sum(evidence, "counter-step") or step)
     if numbers[0] != params.first:
         observed = f"The first number is {numbers[0]:.0f}."
-        cause = (
-            "Log the number first, then increase it."
-            if numbers[0] == params.first + 1
-            else f"Start with {params.first:.0f}."
-        )
+        too_early = numbers[0] == params.first + 1 and numbers[0] not in _begins_with(evidence)
+        cause = "Log the number first, then increase it." if too_early else f"Start with {params.first:.0f}."
         return failed(observed, expected, Cause("counter-start", cause, where))
     return passed(f"The counter starts at {params.first:.0f} and increases by one per line.")
 
@@ -228,6 +226,18 @@ def _set_again(evidence: Evidence) -> Cause | None:
                         text = f"{method.name} sets {shorten(names.pop())} to {ast.unparse(node.value)} in each call."
                         return Cause("counter-stuck", text, Where(module.file, node.lineno))
     return None
+
+
+def _begins_with(evidence: Evidence) -> set[float]:
+    """Return the numbers that the source assigns to names which it increases."""
+    found = set()
+    for module in evidence.code.modules:
+        increased = {ast.unparse(node.target) for node in module.nodes if isinstance(node, ast.AugAssign)}
+        for node in module.nodes:
+            if isinstance(node, ast.Assign) and increased & {ast.unparse(target) for target in node.targets}:
+                value = evaluate(node.value, module.names)
+                found |= {float(value)} if isinstance(value, int | float) else set()
+    return found
 
 
 def _logs(call: ast.Call) -> bool:

@@ -238,10 +238,20 @@ PLAIN: Files = {
         "[install]\ninstall_scripts=$base/lib/my_robot_controller\n"
     ),
 }
+MISSPELT: Files = {**PLAIN, "setup.py": str(PLAIN["setup.py"]).replace(":main", ".main")}
+CONFIGURED: Files = {**PLAIN, "setup.cfg": f"{PLAIN['setup.cfg']!s}[metadata]\nversion = attr: slow.VERSION\n"}
 SLEEPS: Files = {**PLAIN, "setup.py": f"import time\ntime.sleep(99)\n{PLAIN['setup.py']!s}"}
 
 
-@pytest.mark.parametrize(("files", "status"), [(PLAIN, Status.ERROR), (SLEEPS, Status.FAILED)])
+@pytest.mark.parametrize(
+    ("files", "status"),
+    [
+        (PLAIN, Status.ERROR),
+        (MISSPELT, Status.ERROR),
+        (SLEEPS, Status.FAILED),
+        (CONFIGURED, Status.FAILED),
+    ],
+)
 def test_a_slow_build_of_a_usual_setup_py_is_not_the_students_fault(files: Files, status: Status) -> None:
     found = of("build", files, SLOW)
     assert found.status is status

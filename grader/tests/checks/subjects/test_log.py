@@ -242,3 +242,12 @@ def found_in(trial: Recording) -> Finding:
 def test_one_line_is_too_few_to_compare(numbers: tuple[int, ...], *, few: bool) -> None:
     finding = found(LOG_COUNTER, evidence(recording([], log=hello(*numbers))), format=HELLO, counts="counter")
     assert (finding.observed == "There are fewer than two lines to compare.") == few
+
+
+@pytest.mark.parametrize(("begins", "cause"), [(1, "Start with 0."), (0, "Log the number first, then increase it.")])
+def test_a_counter_that_begins_at_1_is_told_from_one_that_is_increased_too_early(begins: int, cause: str) -> None:
+    source = f"class Node:\n    def __init__(self):\n        self.counter = {begins}\n\n    def call(self):\n"
+    changed = submission({NODE_FILE: source + "        self.counter += 1\n"})
+    trial = recording([], log=hello(1, 2, 3))
+    finding = found(LOG_COUNTER, evidence(trial, package=changed), format=HELLO, counts="counter")
+    assert finding.cause == cause
