@@ -24,7 +24,7 @@ BEGINS = "Traceback (most recent call last):"
 
 @dataclass(frozen=True)
 class Size:
-    """The number of bytes that the beginning, the end and the errors of a log may take up in a page."""
+    """The maximum bytes in a page for the beginning, the end and the errors of a log, respectively."""
 
     head: int
     tail: int

@@ -26,7 +26,7 @@ MOST_REPORT = 64 * 1024
 LATEST = 4.0
 """The maximum wall time of a run, as a multiple of its time limit. This limit also applies on a busy machine."""
 END_S = 30.0
-"""The time for making a cell, and for ending it (s)."""
+"""The time allowed (s) for making a cell, and again for ending it."""
 LOOK_S = 0.1
 _QUESTION = struct.Struct("<cHqdd")
 _HEADER = struct.Struct("<idI")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 LATE_S = 1.0
 """The maximum time that a call waits for its service, on the trial's clock (s)."""
 FOUND_S = 0.5
-"""The maximum wall time (s) for discovery before the first call, if simulated time is stopped meanwhile."""
+"""The maximum wall time (s) that each call waits for discovery while simulated time stands still."""
 
 
 class Caller:

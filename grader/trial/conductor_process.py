@@ -130,7 +130,7 @@ class ConductorInRoom(ConductorProcess):
     """A conductor that is a fork (grader.trial.fork_server) in a new room."""
 
     def __init__(self, ros: installation.Ros, nodes: int, errors: IO[bytes]) -> None:
-        """Make the room, and ask for the conductor and for this number of nodes.
+        """Make the room, and ask the fork servers for the conductor and for `nodes` nodes.
 
         Raises:
             HolderError: bubblewrap could not make the room.

@@ -20,7 +20,7 @@ SIDE_M = 11.088889122009277
 """The length of a side of the canvas (m), which is (SIDE_PX - 1) / PIXELS_PER_M as a float32."""
 
 TIME_OUT_S = 1.0
-"""The age (s) of the last command after which a turtle stops."""
+"""A turtle stops when its last command is older than this (s)."""
 
 ROTATE_SPEED = 1.0
 """The angular speed of rotate_absolute (rad/s)."""

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 EXPECTED = "No callback of the node waits."
 SILENT_S = 2.0
-"""A node that does nothing for this time (s) after a response hangs."""
+"""A node hangs if it does nothing for this long (s) after a response."""
 ALSO_S = 0.05
 """Anything that arrives at most this long (s) after a response may have been sent before the response."""
 SAME_GROUP = (
