@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grader.checks.diagnoses_of_files import OF_FILES
+from grader.checks.certain import ON_EVERY_MACHINE
 from grader.checks.outcome import Finding, Status
 
 if TYPE_CHECKING:
@@ -19,65 +19,6 @@ STARVED_S = 0.5
 """If the stalls of a trial are longer than this in total (s), the machine may explain a failed check. Shorter stalls
 matter only for the checks that measure times, and these checks take the stalls into account themselves."""
 TOO_BUSY = "The machine was too busy to judge the check in wall time. Try again when the machine is less busy."
-OF_EXCEPTIONS_AND_SOURCE = frozenset(
-    {
-        "crash",
-        "needs-stdin",
-        "no-init",
-        "init-twice",
-        "no-object",
-        "no-spin",
-        "no-publish",
-        "no-log",
-        "node-name-invalid",
-        "topic-name-invalid",
-        "parameter-undeclared",
-        "parameter-itself",
-        "timer-period-negative",
-        "forbidden-call",
-    }
-)
-OF_GRAPH = frozenset(
-    {
-        "node-name",
-        "node-namespace",
-        "wrong-type",
-        "second-type",
-        "topic-without-turtle",
-        "topic-capitals",
-        "topic-namespace",
-        "topic-other-turtle",
-        "qos-mismatch",
-        "service-type",
-        "action-name",
-        "action-type",
-    }
-)
-OF_CONTENT = frozenset(
-    {
-        "wrong-value",
-        "wrong-sign",
-        "wrong-field",
-        "values-swapped",
-        "degrees",
-        "empty-twist",
-        "not-a-number",
-        "intervention",
-        "not-driven",
-        "wrong-goal",
-        "wrong-request",
-        "log-format",
-        "log-capitals",
-        "log-more",
-        "print-instead",
-        "x-y-swapped",
-    }
-)
-OF_RATES = frozenset({"timer-period", "rate-for-period", "sleep-period", "timer-milliseconds", "wrong-rate"})
-"""A rate is measured only from intervals in which the machine did not stall."""
-CERTAIN = OF_EXCEPTIONS_AND_SOURCE.union(OF_GRAPH, OF_CONTENT, OF_RATES, *OF_FILES.values())
-"""The diagnoses that are true on every machine, however busy it is. Every other diagnosis of a trial may come from a
-lack of processor time."""
 
 
 def too_busy() -> Finding:
@@ -98,6 +39,6 @@ def unless_starved(finding: Finding, recording: Recording, off: float, per_s: fl
 
 def unless_too_busy(finding: Finding, recording: Recording) -> Finding:
     """Return the finding, or an error finding if the machine stalled so much that this may explain the failed check."""
-    if finding.status is not Status.FAILED or finding.diagnosis in CERTAIN or recording.stalled_s < STARVED_S:
+    if finding.status is not Status.FAILED or finding.diagnosis in ON_EVERY_MACHINE or recording.stalled_s < STARVED_S:
         return finding
     return too_busy()

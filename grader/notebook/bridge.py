@@ -20,6 +20,7 @@ from typing import Any
 import zmq
 
 from grader.common.interpreter import interpreter
+from grader.common.linux_calls import pidfd_open
 from grader.notebook.frames import CHANNELS, CHUNK, ORDER, Unpacker, packed
 
 IDENTITY = b"bridge"
@@ -125,7 +126,7 @@ def main() -> None:
         null = subprocess.DEVNULL
         with subprocess.Popen(kernel.argv, env=kernel.env, stdin=null, stdout=null, stderr=null) as child:
             try:
-                bridge.serve(os.pidfd_open(child.pid))
+                bridge.serve(pidfd_open(child.pid))
             finally:
                 child.kill()
 

@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING
 
 from grader.common import package_managers
 from grader.errors import MachineError
+from grader.sandbox import entering
 from grader.sandbox.limits import MIB, NODE_LIMITS, Limits, limited
 from grader.sandbox.system_calls import call_filter
 from grader.sandbox.user import cell_user
@@ -190,7 +191,7 @@ def why_unavailable() -> str | None:
             tried, capture_output=True, text=True, timeout=20, check=False, stdin=subprocess.DEVNULL, pass_fds=inherited
         )
     if done.returncode == 0:
-        return None
+        return entering.why_impossible()
     lines = done.stderr.strip().splitlines()[-1:] or ["no message"]
     return (
         f"bubblewrap cannot create its namespaces ({lines[0]}). On Ubuntu 24.04, AppArmor forbids them to "

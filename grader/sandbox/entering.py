@@ -4,18 +4,21 @@ bubblewrap makes the room or cell. Its first program is `cat`, which keeps it op
 namespaces of `cat`, and the forks of this process are processes of the room or cell. A fork must then give up by itself
 what bubblewrap takes from the programs that it starts.
 
-Like the scripts that run in a cell, this module needs only the standard library.
+Like the scripts that run in a cell, this module needs only the standard library and grader.common.linux_calls.
 """
 
 from __future__ import annotations
 
 import ctypes
+import errno
 import os
 import resource
 import signal
 import struct
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from grader.common.linux_calls import pidfd_open
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -40,6 +43,20 @@ _LAST_CAPABILITY = 63
 _C = ctypes.CDLL(None, use_errno=True)
 
 
+def why_impossible() -> str | None:
+    """Return why no process can enter a room or cell on this kernel, or None. setns(2) with a pidfd needs Linux 5.8."""
+    try:
+        own = pidfd_open(os.getpid())
+    except OSError as error:
+        refused: int | None = error.errno
+    else:
+        refused = None if _C.setns(own, _NAMESPACES["uts"]) == 0 else ctypes.get_errno()
+        os.close(own)
+    if refused in (None, errno.EPERM):  # a kernel that knows the call allows it to root only
+        return None
+    return f"the grader cannot enter a sandbox on this kernel, Linux {os.uname().release}. It needs Linux 5.8 or later"
+
+
 def enter(holder: int) -> None:
     """Move this process into all namespaces of the process with this descriptor (pidfd_open(2)).
 
@@ -56,7 +73,8 @@ def enter(holder: int) -> None:
         if Path(f"/proc/{pid_of(holder)}/ns/{name}").readlink() != Path(f"/proc/self/ns/{name}").readlink():
             flags |= flag
     if _C.setns(holder, flags) != 0:
-        raise OSError(ctypes.get_errno(), "setns")
+        number = ctypes.get_errno()
+        raise OSError(number, f"the kernel did not let this process enter the sandbox: {os.strerror(number)}")
 
 
 def pid_of(pidfd: int) -> int:

@@ -10,6 +10,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common.linux_calls import pidfd_open
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
@@ -62,7 +64,7 @@ class Holder:
                 if self._process.stdout.read(1):  # HOLDER runs, so that all namespaces and mounts exist
                     first = int(json.loads(about.read())["child-pid"])
                     children = Path(f"/proc/{first}/task/{first}/children").read_text("ascii")
-                    return os.pidfd_open(int(children.split()[0]))
+                    return pidfd_open(int(children.split()[0]))
             except (OSError, ValueError, IndexError) as error:
                 problem = error
         self.kill()

@@ -18,6 +18,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common.linux_calls import F_OFD_SETLK
 from grader.common.private_folder import private_folder
 from grader.errors import MachineError
 
@@ -91,7 +92,7 @@ def _lock(file: int, byte: int) -> bool:
     # The fields of struct flock are type, whence, start, length, pid.
     wanted = struct.pack("hhqqi4x", fcntl.F_WRLCK, os.SEEK_SET, byte, 1, 0)
     try:
-        fcntl.fcntl(file, fcntl.F_OFD_SETLK, wanted)
+        fcntl.fcntl(file, F_OFD_SETLK, wanted)
     except (BlockingIOError, PermissionError):
         return False
     return True

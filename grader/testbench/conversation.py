@@ -13,6 +13,7 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from grader.common.linux_calls import pidfd_send_signal
 from grader.testbench.patience import Patience
 from grader.testbench.result import Ended
 
@@ -146,7 +147,7 @@ class Conversation:
     def _kill(self) -> None:
         assert self._process is not None
         with suppress(ProcessLookupError):
-            signal.pidfd_send_signal(self._process, signal.SIGKILL)
+            pidfd_send_signal(self._process, signal.SIGKILL)
 
 
 def _pid_of(process: int) -> int:

@@ -11,6 +11,7 @@ import subprocess
 from contextlib import suppress
 from threading import Lock
 
+from grader.common.linux_calls import pidfd_send_signal
 from grader.sandbox import entering
 
 STARTED = b"s"
@@ -53,7 +54,7 @@ class Fork:
         if self.await_started() is not None:
             assert self._process is not None
             with suppress(ProcessLookupError):
-                signal.pidfd_send_signal(self._process, number)
+                pidfd_send_signal(self._process, number)
 
     def poll(self) -> int | None:
         """Return the exit code, or None if the process has not exited."""

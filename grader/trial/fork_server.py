@@ -35,6 +35,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from grader.common.linux_calls import pidfd_open, pidfd_send_signal
 from grader.sandbox import entering
 from grader.trial import launcher
 from grader.trial.fork import STARTED, STATUS
@@ -120,7 +121,7 @@ def _enter_room(order: dict[str, Any], problem: str, room: int, *passed: int) ->
 
 def _enter_cell(order: dict[str, Any], problem: str, conductors: int, result: int) -> None:
     """Become a process in the cell of a node."""
-    socket.send_fds(socket.socket(fileno=result), [STARTED], [os.pidfd_open(os.getpid())])
+    socket.send_fds(socket.socket(fileno=result), [STARTED], [pidfd_open(os.getpid())])
     descriptors = _next_node(socket.socket(fileno=conductors), order["nodes"])
     cell, *streams, its_result = descriptors
     _report_to(streams[2], problem)
@@ -175,7 +176,7 @@ def _fork_supervised(result: int, childs: Sequence[int]) -> None:
         return
     for descriptor in childs:
         os.close(descriptor)
-    process = os.pidfd_open(child)
+    process = pidfd_open(child)
     results = socket.socket(fileno=result)
     try:
         socket.send_fds(results, [STARTED], [process])
@@ -183,12 +184,12 @@ def _fork_supervised(result: int, childs: Sequence[int]) -> None:
         ends.register(process, select.POLLIN)
         ends.register(results, 0)  # only the end of the connection
         if all(descriptor != process for descriptor, _ in ends.poll()):
-            signal.pidfd_send_signal(process, signal.SIGKILL)
+            pidfd_send_signal(process, signal.SIGKILL)
         code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
         results.send(STATUS.pack(code))
     except OSError:  # nobody waits for the result
         with suppress(ProcessLookupError):
-            signal.pidfd_send_signal(process, signal.SIGKILL)
+            pidfd_send_signal(process, signal.SIGKILL)
     os._exit(0)
 
 

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.checks.certain import FACTS
 from grader.checks.diagnoses import DIAGNOSES
 from grader.checks.outcome import Finding, Outcome, Status
-from grader.report.certainty import FACTS, cause_label, cause_sentence
+from grader.report.certainty import cause_label, cause_sentence
 from grader.report.github import to_summary
 from grader.report.gradescope import to_gradescope
 from grader.report.html import html_page

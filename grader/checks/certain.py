@@ -1,0 +1,106 @@
+"""Which diagnoses are facts, and which diagnoses hold even if the machine was busy.
+
+The two questions are independent. "The class has no object" is a fact, and no busy machine can make it wrong. "No call
+of spin() was found" holds on every machine, but it is a conclusion from the source code and may not be the true cause.
+"The node drives before the first pose" is a fact of the recording, but a busy machine can cause it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.checks.diagnoses_of_files import OF_FILES
+
+if TYPE_CHECKING:
+    from grader.checks.diagnosis import Diagnosis
+
+FROM_FILES: frozenset[Diagnosis] = frozenset().union(*OF_FILES.values())
+FROM_EXCEPTIONS: frozenset[Diagnosis] = frozenset(
+    {
+        "crash",
+        "needs-stdin",
+        "no-object",
+        "node-name-invalid",
+        "topic-name-invalid",
+        "parameter-undeclared",
+        "parameter-itself",
+        "timer-period-negative",
+        "init-twice",
+    }
+)
+FROM_GRAPH: frozenset[Diagnosis] = frozenset(
+    {
+        "node-name",
+        "node-namespace",
+        "wrong-type",
+        "second-type",
+        "topic-without-turtle",
+        "topic-capitals",
+        "qos-mismatch",
+        "action-name",
+        "action-type",
+    }
+)
+"""The names, types and QoS of nodes, topics, services and actions."""
+FROM_CONTENT: frozenset[Diagnosis] = frozenset(
+    {
+        "wrong-value",
+        "wrong-sign",
+        "wrong-field",
+        "intervention",
+        "not-driven",
+        "log-format",
+        "log-capitals",
+        "log-more",
+        "x-y-swapped",
+    }
+)
+"""What messages, calls, goals and log lines contain, whenever they came."""
+FROM_ORDER: frozenset[Diagnosis] = frozenset(
+    {
+        "wrong-direction",
+        "goal-replaced",
+        "goal-aborted-by-command",
+        "drives-before-pose",
+        "before-first-pose",
+        "counter-step",
+        "result-order",
+        "nanoseconds",
+        "rate-off-by-one",
+        "program-traceback",
+        "exit-code",
+    }
+)
+"""What the recording or a program's output shows, but what a busy machine can cause, too."""
+CONCLUSIONS: frozenset[Diagnosis] = frozenset(
+    {
+        "no-init",
+        "no-spin",
+        "no-publish",
+        "no-log",
+        "print-instead",
+        "forbidden-call",
+        "topic-namespace",
+        "topic-other-turtle",
+        "service-type",
+        "values-swapped",
+        "degrees",
+        "empty-twist",
+        "not-a-number",
+        "wrong-goal",
+        "wrong-request",
+        # A rate is measured only from intervals in which the machine did not stall.
+        "timer-period",
+        "rate-for-period",
+        "sleep-period",
+        "timer-milliseconds",
+        "wrong-rate",
+    }
+)
+"""Conclusions from the source code or from values, which a busy machine does not change."""
+
+SHOWN = FROM_FILES | FROM_EXCEPTIONS | FROM_GRAPH | FROM_CONTENT
+FACTS = SHOWN | FROM_ORDER
+"""A report states these causes as facts, and every other cause as a possibility until a fix has proved it."""
+ON_EVERY_MACHINE = SHOWN | CONCLUSIONS
+"""In a trial in wall time, every other diagnosis may come from a lack of processor time."""

@@ -1,0 +1,52 @@
+"""System calls of Linux, also for a Python that does not have them.
+
+Python has only those calls that the headers of the machine on which it was built declare. The Python of conda, for
+example, is built for old systems and has no `os.pidfd_open`, even if it runs on a new kernel.
+
+Like the scripts that run in a cell, this module needs only the standard library.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import signal
+
+F_OFD_SETLK: int = getattr(fcntl, "F_OFD_SETLK", 37)
+"""The command of fcntl(2) that locks a part of a file for an open file description. (Value: asm-generic/fcntl.h.)"""
+_PIDFD_SEND_SIGNAL, _PIDFD_OPEN = 424, 434
+"""The numbers of the system calls, the same on x86-64 and on arm64."""
+
+
+def pidfd_open(pid: int) -> int:
+    """Return a descriptor of a process (pidfd_open(2)).
+
+    Raises:
+        OSError: there is no such process, or the kernel is older than Linux 5.3.
+    """
+    if hasattr(os, "pidfd_open"):
+        return os.pidfd_open(pid)
+    return _call(_PIDFD_OPEN, pid, 0)  # the kernel makes it close-on-exec
+
+
+def pidfd_send_signal(pidfd: int, number: int) -> None:
+    """Send a signal to the process of this descriptor (pidfd_send_signal(2)).
+
+    Raises:
+        OSError: the process has exited (ProcessLookupError), or the kernel refused.
+    """
+    if hasattr(signal, "pidfd_send_signal"):
+        signal.pidfd_send_signal(pidfd, number)
+    else:
+        _call(_PIDFD_SEND_SIGNAL, pidfd, number, None, 0)
+
+
+def _call(number: int, *arguments: int | None) -> int:
+    import ctypes
+
+    library = ctypes.CDLL(None, use_errno=True)
+    result: int = library.syscall(number, *arguments)
+    if result < 0:
+        error = ctypes.get_errno()
+        raise OSError(error, os.strerror(error))
+    return result
