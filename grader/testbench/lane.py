@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common import linux_calls
 from grader.common.interpreter import interpreter
 from grader.errors import MachineError
 from grader.ros import installation
@@ -40,7 +41,7 @@ READY = b"ready\n"
 """The session writes this line when it is ready to run tests (see session.py)."""
 FILTER, ASKS, ANSWERS = 100, 3, 4
 """Descriptors: see session.py."""
-OURS = (SESSION, Path(entering.__file__), Path(holder.__file__))
+OURS = (SESSION, Path(linux_calls.__file__), Path(entering.__file__), Path(holder.__file__))
 """The files of the grader that a session imports."""
 
 
