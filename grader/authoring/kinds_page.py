@@ -82,7 +82,7 @@ def _contents() -> str:
 def _examples() -> dict[str, tuple[str, CheckSpec]]:
     """Map each kind to the first check of this kind in the course and to its step.
 
-    Raises UsageError if the course has no check of a kind.
+    Raises UsageError if there is a kind of check that the course does not use.
     """
     found: dict[str, tuple[str, CheckSpec]] = {}
     for step, file in catalogue().items():

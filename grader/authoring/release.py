@@ -36,7 +36,7 @@ else:
 
 
 RECORDED = (".mcap", "/metadata.yaml")
-"""The names of a bag's files. Each student records a separate bag."""
+"""The endings of the paths of a bag's files. These files are not released, because each student records a new bag."""
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ def _stale_step(solution: Path, exercise: Path) -> list[str]:
 
 
 def release_file(data: bytes, path: str, name: str) -> bytes | None:
-    """Return the released content of a file, or None if the student creates the file. Messages call the file `name`."""
+    """Return the released content of a file, or None if the student creates the file. Messages use `name` for it."""
     if path.endswith(RECORDED):
         return None
     if path.endswith(".ipynb"):

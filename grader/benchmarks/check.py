@@ -3,7 +3,8 @@
     python -m grader.benchmarks.check [--times N] [--submission FOLDER]
 
 Everything is measured in one run on the same machine. The measurements alternate, so that other load affects all of
-them. The first check of a package builds the package. The next check reuses the build, as after a change of a module.
+them. The first check of a package builds the package. The next check reuses the build, as it does after a change to a
+module.
 """
 
 from __future__ import annotations

@@ -51,8 +51,8 @@ _OBSERVE = """(line) => {
     });
     return null;
 }"""
-"""Wait without polling, which would keep the browser busy while the grader works. The result is the time at which the
-browser drew the verdict, because a message from the browser to this process takes some time too."""
+"""This script does not poll, because polling would keep the browser busy while the grader works. It returns the time at
+which the browser drew the verdict, so the time of a message from the browser to this process is not included."""
 
 
 def main() -> None:
@@ -127,7 +127,7 @@ def _screen(learner: Course) -> Iterator[pexpect.spawn[str]]:
 def _rest() -> None:
     """Wait until all descendants of this process are idle, that is, until nothing is prepared or tested any more.
 
-    A learner also needs some seconds between two saves.
+    The pause is realistic, because a learner also needs some seconds between two saves.
     """
     used_s = [0.0, sum(_used_s().values())]
     while used_s[-1] - used_s[-2] > _IDLE_S:

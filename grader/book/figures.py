@@ -19,7 +19,7 @@ FIGURES = {
     "07-challenges": Figure("goal", "d-a-drive-to-a-goal"),
     "09-parameters": Figure("radius", "reject-a-value"),
 }
-"""The figures by step. A figure whose section does not exist is at the end of the lesson."""
+"""The figures by step. If the section does not exist, the figure is placed at the end of the lesson."""
 
 
 def figure_html(figure: Figure) -> str:

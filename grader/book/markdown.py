@@ -145,7 +145,7 @@ def _add_anchors(tokens: list[Token]) -> None:
 
 
 def _link(tokens: list[Token]) -> None:
-    """Make links to lessons point to their pages, and make a figure of each paragraph that contains only a picture."""
+    """Change links to lessons into links to pages, and turn each paragraph with only a picture into a figure."""
     for token in _inner(tokens):
         if token.type == "link_open":
             token.attrSet("href", _LESSON_LINK.sub(rf"\1{PAGE}\2", str(token.attrs["href"])))

@@ -41,7 +41,7 @@ def find_exercise(name: str, course: Path | None = None) -> Exercise:
 
 
 def _nearest(name: str, known: Iterable[str]) -> str | None:
-    """Return the most likely id for a name with a typing error, with O for 0, or with only one word of it, or None."""
+    """Return the id that a name with a typo, with O for 0, or with one word of the id probably means, or None."""
     number = name.translate(str.maketrans("OoIl", "0011"))
     same = [each for each in known if name and (name.lower() in each.split("-") or each.startswith(f"{number}-"))]
     return nearest(name, known) or (same[0] if len(same) == 1 else None)

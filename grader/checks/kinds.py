@@ -1,4 +1,4 @@
-"""All kinds of checks, by the names that the key `kind` in exercise.toml may have as its value.
+"""All kinds of checks, by the names that are allowed as the value of the key `kind` in exercise.toml.
 
 An exercise uses only a few kinds. The module of a kind is imported when the kind is first used: importing all of them
 takes 0.1 s.

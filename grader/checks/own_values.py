@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def numbers_spec(evidence: Evidence) -> NumbersSpec:
-    """Return the table `[numbers]` of the exercise. A check that needs it is refused if exercise.toml has none."""
+    """Return the table `[numbers]` of the exercise. An exercise without it cannot have a check that needs it."""
     assert evidence.exercise.numbers is not None
     return evidence.exercise.numbers
 

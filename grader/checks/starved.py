@@ -1,6 +1,6 @@
 """Decide whether the machine, and not the node, may have made a check of a trial in wall time fail.
 
-A node that rarely gets a processor does everything later, so that it does less before the end of the trial. A lack of
+A node that rarely gets a processor does everything later, so it does less before the end of the trial. A lack of
 processor time can therefore explain each failed check that compares times, numbers of messages or trajectories. It
 cannot explain a wrong name, a wrong type, a wrong value in a message, or an exception.
 """

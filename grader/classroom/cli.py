@@ -20,7 +20,7 @@ gradescope = App(name="gradescope", help="Grade with Gradescope.", no_args_is_he
 
 
 class Clock(str, Enum):
-    """The clock by which submissions are judged."""
+    """The clock of the trials in which submissions are judged."""
 
     auto = "auto"
     simulated = "simulated"

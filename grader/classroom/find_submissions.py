@@ -189,12 +189,12 @@ def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
 
 
 def _is_one(folder: Path) -> bool:
-    """Return whether a folder is a submission itself: a package, or a clone of the course."""
+    """Return whether the folder itself is a submission: a package, or a clone of the course."""
     return any(os.path.exists(folder / name) for name in (*PACKAGE_FILES, OWN))
 
 
 def _is_one_alone(folder: Path) -> bool:
-    """Return whether a folder of the command line is a submission, and not a class.
+    """Return whether a folder that was given to the command is itself a submission, and not a class.
 
     In a class, a student's folder can have any name, such as "setup.py" or "exercises".
     """

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 MOST_PACKED = 100 * 1024 * 1024
 """The maximum size of an archive (bytes)."""
 MOST_BYTES = 96 * 1024 * 1024
-"""The maximum unpacked size (bytes): 1.5 times the size limit of a package, with space for build/ and install/."""
+"""The maximum unpacked size (bytes): 1.5 times the size limit of a package, so that build/ and install/ fit too."""
 MOST_ENTRIES = 20_000
 MOST_DEPTH = 40
 MOST_PATH_BYTES = 1000

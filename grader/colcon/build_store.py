@@ -98,7 +98,7 @@ def _tools() -> tuple[str, ...]:
 
 
 def _packed(built: runner.Built) -> bytes:
-    """Return the result of the build as one line of JSON, the tree, and a hash of both in front."""
+    """Return a hash of the rest, then the result of the build as one line of JSON, then the tree."""
     content = json.dumps(asdict(built.build)).encode() + b"\n" + built.tree
     return hashlib.sha256(content).hexdigest().encode() + b"\n" + content
 

@@ -43,7 +43,7 @@ _USUAL_FOLDER = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
 
 
 class SharedBuilds:
-    """A replacement for `runner.build` that reuses the build of a package whose files, except modules, are the same.
+    """A replacement for `runner.build` that reuses the build of a package with the same files apart from modules.
 
     `runs` counts the builds with colcon. With a `store`, builds in cells are also reused by later commands.
     """
@@ -123,7 +123,8 @@ def build_for(*, marks: bool) -> Callable[..., runner.Built]:
 class Usual:
     """A package of the usual form with empty modules, and the files that colcon is expected to install from it.
 
-    The folder of the package has the name of the package, since colcon installs the same files for each folder name.
+    The folder of the package has the name of the package, because colcon installs the same files whatever the folder is
+    called.
     """
 
     empty: Submission
@@ -155,7 +156,7 @@ def without_modules(submission: Submission, ros: Ros) -> Usual | None:
 def _differ_only_in(modules: set[str], submission: Submission, predicted: Predicted, of_empty: Predicted) -> bool:
     """Return whether the two install trees are equal except for the modules.
 
-    They are not if a data file has the path of a module, or if a module is also installed as a data file.
+    They are not equal if a data file has the path of a module, or if a module is also installed as a data file.
     """
     texts = {f"{SITE}/{path}": submission.files[path] for path in modules}
     expected = {path: (texts.get(path, content), mode) for path, (content, mode) in of_empty.files.items()}

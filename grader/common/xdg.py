@@ -19,7 +19,7 @@ def state() -> Path:
 def _folder(variable: str, default: str) -> Path:
     """Return the grader's folder inside the folder that the environment variable names.
 
-    As the specification demands, relative paths are ignored.
+    As the specification requires, relative paths are ignored.
     """
     named = os.environ.get(variable, "")
     folder = Path(named) if named.startswith("/") else Path.home() / default

@@ -48,7 +48,7 @@ class Run:
 
     recording: Recording | None = None
     overwhelmed: str | None = None
-    """The way in which the node made the simulator fail twice. There is no recording in that case."""
+    """A description of how the node made the simulator fail twice. There is no recording in that case."""
     called: tuple[Called, ...] | None = None
     """The results of the calls in a trial without a simulator. There is no recording in that case."""
     bench: BenchResult | None = None
@@ -206,7 +206,7 @@ class Evidence:
     def bench(self) -> BenchResult:
         """The result of the student's tests. Only checks of a trial that runs tests may use this result."""
         if self.run.bench is None:
-            message = "a check of tests was judged without their result"
+            message = "a check of tests was judged without the result of the tests"
             raise ValueError(message)
         return self.run.bench
 

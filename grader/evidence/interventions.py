@@ -67,7 +67,7 @@ def _moved(recording: Recording, first: int) -> bool:
 
 
 def _jumped(recording: Recording, first: int) -> bool:
-    """Return whether the turtle moved farther or turned more in this frame or a later frame than at its velocities."""
+    """Return whether, in this frame or a later one, the turtle moved or turned further than its velocities allow."""
     path = _path(recording, first)
     far = np.hypot(np.diff(path.x), np.diff(path.y)) - np.abs(recording.frames.linear[path.frames]) * FRAME_S
     return bool((~(far <= SAME) | path.turned_otherwise).any())

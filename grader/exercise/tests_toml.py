@@ -46,7 +46,7 @@ def read_tests(table: Table) -> TestsSpec:
 
 
 def unknown_numbers(trials: Sequence[TrialSpec], numbers: NumbersSpec | None) -> Iterator[str]:
-    """Yield a message for each name in `own` that is not a number both of the correct node and in `[numbers]`."""
+    """Yield a message for each name in `own` that is not in `[numbers]` or is not a number of the correct node."""
     options = {} if numbers is None else numbers.options
     for tests in (trial.tests for trial in trials if trial.tests is not None):
         for name in tests.own:

@@ -60,7 +60,8 @@ def sync(
     trusted: Annotated[
         bool,
         typer.Option(
-            "--trust-submissions", help="Run submissions even without a sandbox, on a machine without important data."
+            "--trust-submissions",
+            help="Run submissions even without a sandbox. Use this only on a machine without important data.",
         ),
     ] = False,
 ) -> None:

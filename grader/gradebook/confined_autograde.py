@@ -111,7 +111,7 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
 
     trust_submissions = Bool(
         default_value=False,
-        help="Run submitted notebooks even without a sandbox, on a machine without important data.",
+        help="Run notebooks even without a sandbox. Use this only on a machine without important data.",
     ).tag(config=True)
 
     cell_s = Integer(20, help="Time limit for a student's cell, in seconds.").tag(config=True)

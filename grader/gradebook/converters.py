@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     Converted = tuple[Any, Resources]
 
 _USERS = ("nbgrader.converters", "nbgrader.apps.autogradeapp", "nbgrader.apps.api")
-"""The modules that import Autograde by name. nbgrader has no setting for the class."""
+"""The modules that import Autograde by name. nbgrader has no setting that replaces this class."""
 
 
 _NEVER = datetime(1, 1, 1)  # noqa: DTZ001 - nbgrader compares times without a zone
@@ -73,7 +73,7 @@ class BoundedNotebook(NotebookExporter):
     """Reads a notebook in the reading process, so that nbconvert gets only small and valid notebooks."""
 
     def from_filename(self, filename: str, resources: Resources | None = None, **kw: Any) -> Converted:  # noqa: ANN401
-        """Convert a file as in the base class."""
+        """Convert a file as the base class does."""
         text, named = _read(filename, resources)
         return self.from_file(io.StringIO(text), resources=named, **kw)  # type: ignore[no-any-return, unused-ignore]
 
@@ -82,7 +82,7 @@ class BoundedPage(HTMLExporter):
     """Renders feedback in the reading process, because rendering parses a student's Markdown."""
 
     def from_filename(self, filename: str, resources: Resources | None = None, **kw: Any) -> Converted:  # noqa: ANN401
-        """Convert a file as in the base class."""
+        """Convert a file as the base class does."""
         text, named = _read(filename, resources)
         notebook = nbformat.reads(text, as_version=4)  # type: ignore[no-untyped-call]
         page, extension = read(self._page, notebook, named, kw, self._files())
@@ -125,7 +125,7 @@ class BoundedCollect(ExchangeCollect):  # type: ignore[misc, unused-ignore]
         return record
 
     def copy_files(self) -> None:
-        """Copy the files as in the base class, except folders that nbgrader cannot have created."""
+        """Copy the files as the base class does, except folders that nbgrader cannot have created."""
         self.src_records: list[dict[str, Any]] = [record for record in self.src_records if record["username"]]
         self.check_owner = False  # nbgrader would stop if a student removed a folder now
         super().copy_files()

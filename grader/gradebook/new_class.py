@@ -47,7 +47,7 @@ def make_class(folder: Path, roster: Path | None) -> int:
 
 
 def _enrol(students: list[dict[str, str]], folders: ClassFolders) -> None:
-    """Add the students to the gradebook, which is created."""
+    """Create the gradebook, and add the students to it."""
     with folders.gradebook() as gradebook:
         for student in students:
             about = {key: value for key, value in student.items() if key != "id" and value}

@@ -30,13 +30,14 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 QUIET_S = 0.1
-"""The graph has settled if nothing new arrives for this long. Time in which this process cannot run is not counted."""
+"""The graph has settled if nothing new arrives for this long (s). Time for which this process cannot run does not
+count."""
 DEADLINE_S = 4.0
-"""The maximum time to wait for participants that have open ports but send nothing, such as a stopped process. If the
-answer of a node that does not use our profile is lost, the node announces itself again after 3 s (leaseAnnouncement),
-and then sends its endpoints."""
+"""The maximum time (s) to wait for participants that have open ports but send nothing, such as a stopped process. If
+the answer of a node that does not use our profile is lost, the node announces itself again after 3 s
+(leaseAnnouncement), and then sends its endpoints."""
 NOTHING_THERE_S = 0.5
-"""The time to listen if the number of participants is unknown, as in the real `ros2`."""
+"""The time (s) to listen if the number of participants is unknown, as in the real `ros2`."""
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
 """The Fast DDS profile for the nodes that commands create on the loopback interface."""
 PATIENT_PROFILE = LOOPBACK_PROFILE.with_name("loopback_patient.xml")
@@ -44,7 +45,7 @@ PATIENT_PROFILE = LOOPBACK_PROFILE.with_name("loopback_patient.xml")
 _RANGE, _PROFILE = "ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTRTPS_DEFAULT_PROFILES_FILE"
 _POLL_S = 0.01
 _WAKE_S = 0.1
-"""The maximum time that one call into rclpy may wait: Python handles Ctrl-C only after the call has returned."""
+"""The maximum time (s) that one call into rclpy may wait: Python handles Ctrl-C only after the call has returned."""
 HIGHEST_DOMAIN = 232
 """The highest domain id that has ports (DDSI-RTPS, 9.6.1)."""
 PREFIX = "_ros2cli"

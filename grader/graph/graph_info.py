@@ -31,7 +31,7 @@ class EndpointLook:
     topic: str
     publishes: bool
     node: str
-    """The name of its node, without the namespace."""
+    """The name of the endpoint's node, without the namespace."""
     reliability: str
     """The reliability is "reliable" or "best_effort", as in `--qos-reliability`."""
     durability: str

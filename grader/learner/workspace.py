@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 APART = "apart"
-"""The folder in a workspace for other workspaces, which colcon must not build together with it."""
+"""The folder in a workspace for separate workspaces, which colcon must not build together with this workspace."""
 _PACKAGE_FILES = ("package.xml", "setup.py", "setup.cfg")
 """Package files to which later steps add lines."""
 _ENTRY_POINT = re.compile(r"[\"'](?P<name>[\w.-]+) = [\w.]+:\w+[\"'],?")

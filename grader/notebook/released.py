@@ -29,7 +29,7 @@ def released_notebook(data: bytes, name: str) -> bytes:
         for number, cell in enumerate(notebook["cells"], 1):
             _release(cell, f"{name}, cell {number}")
     except (ValueError, KeyError, TypeError, AttributeError) as error:
-        message = f"{name}: is not a notebook ({error!r})."
+        message = f"{name} is not a notebook ({error!r})."
         raise UsageError(message) from error
     return to_bytes(notebook)
 

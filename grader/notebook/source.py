@@ -37,7 +37,7 @@ def refreshed(data: bytes, exercise: Exercise, files: Mapping[str, bytes], name:
         notebook["cells"] = [cell for cell in cells if not _is_grade(cell)]
         notebook["cells"] += [_grade_cell(exercise, spec) for spec in exercise.checks]
     except (ValueError, KeyError, TypeError, AttributeError) as error:
-        message = f"{name}: is not a notebook ({error!r})."
+        message = f"{name} is not a notebook ({error!r})."
         raise UsageError(message) from error
     return to_bytes(notebook)
 

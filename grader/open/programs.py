@@ -32,7 +32,7 @@ READY_S = 30.0
 NO_CELL = "There is no sandbox here, so the program runs under your account, as in a terminal."
 _LOOK_S = 0.05
 _NO_DAEMON = {"GRADER_ROS2_DAEMON": "0"}
-"""A ros2 daemon would continue to run."""
+"""Without this variable, a ros2 daemon would be started, which would not exit together with the page."""
 _ADDRESS = re.compile(r"See the turtle move: http://127\.0\.0\.1:(\d+)/#(\S+)")
 _SCREENS = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
 
@@ -192,7 +192,7 @@ class Programs:
         await asyncio.gather(self.node.stop(), self.turtlesim.stop())
 
     def data(self, step: str, digest: str) -> Mapping[str, object]:
-        """Return the data for a page, ready for JSON. `digest` is the present digest of the current step's code."""
+        """Return the data for a page, ready for JSON. `digest` is the current digest of the step's code."""
         ran_step, ran_digest = self._ran
         failed = not self.turtlesim.running and not self.turtlesim.was_stopped
         # The address of the view contains its token.

@@ -88,7 +88,7 @@ def arguments(text: str) -> list[str]:
 def _meant(words: list[str]) -> str:
     """Return the group and the verb that are similar to the first two words, or an empty string.
 
-    A command of `ros2` that cannot be run here is not taken for a typing error.
+    A command of `ros2` that exists but cannot be run here does not count as a typo.
     """
     group = nearest(words[0], VERBS) if words else None
     if group is None or words[1:2] in ([], [""]):

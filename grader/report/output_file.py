@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 def check_writable(file: Path | None) -> None:
-    """Check that the folder of a file exists, and that the file is not a folder, before time is spent on its content.
+    """Check that the folder of a file exists and that the file is not a folder. Call this before doing any work.
 
-    Raises UsageError otherwise.
+    Raises UsageError if the file could not be written.
     """
     if file is not None and not file.absolute().parent.is_dir():
         message = f"There is no folder {file.absolute().parent} to write {file.name} to."

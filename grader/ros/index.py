@@ -55,8 +55,7 @@ def prefix_of(package: str, unknown: str, likely: Iterable[str] = ()) -> Path:
 
     Raises:
         Ros2Error: the package is not installed. The message consists of `unknown` and the most similar name from
-        `likely`, or
-            from all packages if `likely` is empty.
+        `likely` (if empty, from all packages).
     """
     found = packages()
     if package not in found:

@@ -18,7 +18,7 @@ PROFILES = (
     "action_status_default",
     "best_available",
 )
-"""The names of rclpy's preset profiles, copied so that `--help` does not import rclpy. A test compares them."""
+"""The names of rclpy's preset profiles, copied so that `--help` does not import rclpy. A test compares the two."""
 POLICIES = {
     "history": ("system_default", "keep_last", "keep_all", "unknown"),
     "reliability": ("system_default", "reliable", "best_effort", "unknown", "best_available"),

@@ -1,8 +1,8 @@
 """Enter a sandbox room or cell: a fork of a process that has imported everything becomes a process of the cell.
 
-bubblewrap makes the room or cell. Its first program is `cat`, which keeps it open. setns(2) moves a process into the
-namespaces of `cat`, and the forks of this process are processes of the room or cell. A fork must then give up by itself
-what bubblewrap takes from the programs that it starts.
+bubblewrap makes the room or cell. The first program in it is `cat`, which keeps it open. setns(2) moves a process into
+the namespaces of `cat`, and the forks of this process are processes of the room or cell. A fork must then give up the
+same rights that bubblewrap takes from the programs that it starts.
 
 Like the scripts that run in a cell, this module needs only the standard library and grader.common.linux_calls.
 """
@@ -78,7 +78,7 @@ def enter(holder: int) -> None:
 
 
 def pid_of(pidfd: int) -> int:
-    """Return the process id in the pid namespace of the caller. Raises OSError if the process has been collected."""
+    """Return the process id in the pid namespace of the caller. Raises OSError if the process no longer exists."""
     about = Path(f"/proc/self/fdinfo/{pidfd}").read_text("ascii")
     pid = int(next(line.split()[1] for line in about.splitlines() if line.startswith("Pid:")))
     if pid <= 0:
@@ -95,7 +95,7 @@ def keep(descriptors: Iterable[int]) -> None:
 
 
 def confine(limits: Iterable[tuple[int, int]], *, user: int | None, call_filter: bytes = b"") -> None:
-    """Give up what no process in a room or cell has: other users, capabilities, new privileges, unlimited resources.
+    """Give up what a process in a room or cell must not have: other users, capabilities, privileges and resources.
 
     `limits` are pairs of a constant of the module `resource` and a value. `user` is the user id to switch to if root
     has entered, or None. `call_filter` comes from system_calls.program(). With an empty filter, all system calls remain

@@ -21,7 +21,7 @@ class HolderError(Exception):
 
 
 class Holder:
-    """The processes of bubblewrap and of entering.HOLDER. The room or cell with all its processes ends with them."""
+    """The processes of bubblewrap and of entering.HOLDER. The room or cell exists until they exit."""
 
     def __init__(self, command: Callable[[int], Sequence[str]], pass_fds: Sequence[int] = ()) -> None:
         """Start bubblewrap. `command(info_fd)` returns the command line, whose program is entering.HOLDER."""

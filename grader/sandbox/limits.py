@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 MIB = 1024 * 1024
 MOST_SIGNALS = 1000
-"""The maximum number of pending signals and POSIX timers of a cell. The kernel counts them for each user as well."""
+"""The maximum number of pending signals and POSIX timers of a cell. The kernel counts them per user."""
 NO_CORE_DUMP = 1
 """The limit on core dumps (bytes). With the limit 0, the kernel would still pass core dumps to another program:
 core(5)."""
@@ -33,7 +33,7 @@ class Limits:
     total_memory: int = 2048 * MIB
     """The maximum memory of all processes and disks of a cell together (bytes), which usage.py watches."""
     processes: int = 600
-    """The maximum number of processes and threads together. A node with 400 timers needs no thread for them."""
+    """The maximum number of processes and threads together. A node needs no threads for its timers."""
     open_files: int = 1024
     file_size: int = 256 * MIB
     disk: int = 256 * MIB

@@ -90,10 +90,10 @@ class _Pump:
         return len(self.stdout) > self._most
 
     def serve(self, left: Callable[[], float], stopped: Callable[[], bool]) -> bool:
-        """Serve until the child has closed its pipes or written too much. Return False when no time is left.
+        """Serve until the child closes its pipes or writes too much, the time is over, or `stopped` returns True.
 
-        `left` returns the rest of the time (s). `left` and `stopped` are called several times per second. Serving also
-        ends if `stopped` returns True.
+        Return False in the last two cases. `left` returns the remaining time (s). `left` and
+        `stopped` are called several times per second.
         """
         with self._selector:
             while self._selector.get_map() and not self.too_much:
@@ -138,10 +138,9 @@ def run(
 
     The beginning and the end of standard error are kept.
 
-    With `watch`, the child is killed when its processes exceed these limits together, and the time for which they wait
-    for a processor does not count. On a crowded machine, the child may take up to MOST_TIME times `timeout_s`. The CPU
-    time of its processes together has the limit `timeout_s`, too, so that they gain no time by keeping the processors
-    busy.
+    With `watch`, the child is killed when its processes together exceed these limits. The time for which they wait for
+    a processor does not count. On a crowded machine, the child may take up to MOST_TIME times `timeout_s`. The total
+    CPU time of its processes is also limited to `timeout_s`, so that they gain no time by keeping the processors busy.
 
         done = run(["cat"], stdin=b"text", timeout_s=60.0, most_stdout=1000, most_stderr=1000)
     """

@@ -29,7 +29,8 @@ In a cell, the kernel counts processes too and refuses new ones before this numb
 _DISKS = ("ws", "tmp", "dev/shm")
 _SOCKETS = {"udp": "", "udp6": "", "tcp": "sockstat", "tcp6": "sockstat6"}
 """Maps a list of sockets in /proc/PID/net to the file that counts these sockets. For a list of TCP sockets, the kernel
-looks through the TCP sockets of all networks, which takes 4 ms, so it is read only if this network has TCP sockets."""
+looks through the TCP sockets of all networks, which takes 4 ms, so such a list is read only if this network has TCP
+sockets."""
 _IN_USE = re.compile(rb"^TCP6?: inuse (\d+)", re.MULTILINE)
 _MOST_LISTED = 4 * 1024 * 1024
 """A list of sockets that is longer than this (bytes) has more than 25,000 lines, which only an attack has."""

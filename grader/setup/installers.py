@@ -19,7 +19,7 @@ _KEPT = re.compile(
     "OFFLINE|INSECURE_HOST|NATIVE_TLS|SYSTEM_CERTS|KEYRING_PROVIDER|HTTP_\\w+|REQUEST_TIMEOUT|CONCURRENT_\\w+|"
     "CACHE_DIR|NO_CACHE|CONFIG_FILE)$"
 )
-"""Where packages come from, how they are reached, and where the downloads are kept."""
+"""Variables that say where packages come from, how to reach the network, and where downloads are kept."""
 
 
 def environment(env: Mapping[str, str]) -> Dict[str, str]:
@@ -36,7 +36,8 @@ def environment(env: Mapping[str, str]) -> Dict[str, str]:
 def of_configuration(env: Mapping[str, str]) -> Dict[str, str]:
     """Return variables with the settings from pip's configuration files that are kept.
 
-    With PIP_CONFIG_FILE=/dev/null, pip ignores its files, which can also contain what is dropped from the environment.
+    With PIP_CONFIG_FILE=/dev/null, pip ignores its files, which can also contain the settings that `environment`
+    removes.
     """
     read = RawConfigParser()
     for file in configuration_files(env):

@@ -33,12 +33,12 @@ def provide(needs: Sequence[package_managers.Need], env: Mapping[str, str], say:
     groups = _groups(needs)
     rights = _rights(path)
     if rights is None:
-        return "only root can install it, and sudo is not installed"
+        return "only root can install programs, and sudo is not installed"
     script = package_managers.script(manager, groups)
     command = package_managers.command(manager, needs, root=os.getuid() == 0)
     if rights[-1:] == ["-n"] and not _quietly(rights):
         if not _at_terminal():
-            return "only root can install it, and sudo needs a terminal to ask for a password"
+            return "only root can install programs, and sudo needs a terminal to ask for a password"
         rights = rights[:-1]
         say("The system lacks some programs. sudo asks for your password to install them (unless INSTALL_SYSTEM=0):")
         print(f"    sudo sh -c '{script}'", flush=True)

@@ -74,6 +74,6 @@ def _answer(value: object) -> Answer | None:
 
 
 def _is_empty(value: object) -> bool:
-    """Return whether a value stands for an answer that is still missing, as in the handout."""
+    """Return whether a value stands for an answer that is still missing, as in the starting point."""
     blank = isinstance(value, str) and not value.strip()
     return (value in ("", 0, []) and not isinstance(value, bool)) or blank

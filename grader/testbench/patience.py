@@ -116,7 +116,7 @@ class Patience:
 
 
 def _has_log(pid: int) -> bool:
-    """Return whether rclpy is initialized. Then a thread writes the log every few seconds. It wakes no other."""
+    """Return whether rclpy is initialized. If it is, a thread writes the log regularly, but wakes no other thread."""
     threads = Threads(pid, of_dds)
     try:
         return bool(threads.look().runs)

@@ -50,15 +50,16 @@ HEAD = """\
 # The catalogue of mistakes
 
 A failed check names its cause by a stable id, the diagnosis. This page lists all diagnoses with the cases that show
-them. A case is a folder in `grader/tests/mistakes/` (here its number alone) or `grader/tests/cases/`: a submission and
-what the report must say about it. A few diagnoses are shown by a test instead. [diagnoses.py](diagnoses.py) holds the
-ids and their meanings. `python -m grader.tests.catalogue` generates this page, and a test fails when the page is stale.
+them. A case is a folder with a submission and with the requirements for its report. The folder is in
+`grader/tests/mistakes/` (the tables below contain only its number) or in `grader/tests/cases/`. A few diagnoses are
+shown by a test instead. [diagnoses.py](diagnoses.py) contains the ids and their meanings.
+`python -m grader.tests.catalogue` generates this page, and a test fails when the page is out of date.
 
 To add a mistake:
 
 1. Make a folder `grader/tests/mistakes/NNN-name/` with a new number. Put the submission and a file `expected.toml` into
    it. The keys of that file are the fields of `Case` in [case.py](../tests/case.py).
-2. If no id fits, add one to [diagnoses.py](diagnoses.py), and write the code that recognises the mistake in the module
+2. If no id fits, add one to [diagnoses.py](diagnoses.py), and write the code that recognizes the mistake in the module
    of its subject.
 3. Run the case:
 

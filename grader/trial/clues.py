@@ -44,7 +44,7 @@ _NAMES = {
     "use_global_arguments",
 }
 _CLOCKS = {"Clock", "ROSClock"}
-"""A clock other than the node's own clock does not follow /clock."""
+"""Classes of clocks. A clock that the program creates itself does not follow /clock."""
 _TIMELESS = {"threading.Lock", "threading.RLock", "threading.local", "threading.current_thread", "threading.get_ident"}
 """Names that multi-threaded nodes need. None of them waits for time to pass."""
 MOST_NODES = 30

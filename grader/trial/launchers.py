@@ -154,7 +154,7 @@ class LauncherInCell(Launcher):
         """Wait for the fork. Return its id, and the id of bubblewrap."""
         pid = self._fork.await_started()
         if pid is None:
-            raise LaunchError(self.stderr.read().decode("utf-8", "replace").strip() or "It was not forked")
+            raise LaunchError(self.stderr.read().decode("utf-8", "replace").strip() or "The launcher was not forked")
         return (pid, self._cell.pid)
 
     def poll(self) -> int | None:

@@ -197,7 +197,7 @@ class Recording:
     """The number of topics, nodes, endpoints and snapshots of the graph that were not kept because there were too
     many."""
     doubts: tuple[str, ...] = ()
-    """The reasons why simulated time may misjudge this node; empty if it can be trusted."""
+    """The reasons why simulated time may misjudge this node. Empty if simulated time can be trusted."""
     seconds: dict[str, float] = field(default_factory=dict)
     """The wall time of each part of the trial: discovery, run, stop (s)."""
     stalls: tuple[tuple[float, float], ...] = ()

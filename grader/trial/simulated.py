@@ -98,7 +98,7 @@ class SimulatedTrial(Simulation):
                     self.follow_graph()
                     self.recorder.snapshot()
                     if self._node.run_time_s() > MOST_CPU * duration_s:
-                        self._doubt("it uses too much CPU time")
+                        self._doubt("the node uses too much CPU time")
                         break
                 if frame % WAITS_EVERY == 0:
                     self._doubt_sleepers()

@@ -58,7 +58,7 @@ class WatchedCanvas(Canvas):
 
 @dataclass
 class Received:
-    """The commands on a topic since the last message to the view: their number, and the time of the last (s)."""
+    """The commands on a topic since the last message to the view: their number, and the time of the last one (s)."""
 
     count: int = 0
     last_s: float = 0.0

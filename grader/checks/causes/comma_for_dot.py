@@ -56,7 +56,7 @@ def _pairs(values: list[ast.expr]) -> Iterator[tuple[ast.expr, ast.expr]]:
 
 
 def _touch(left: ast.expr, right: ast.expr) -> bool:
-    """Return whether only a comma, and no space, is between two values."""
+    """Return whether there is only a comma, and no space, between two values."""
     return left.end_col_offset == right.col_offset - 1
 
 

@@ -23,11 +23,11 @@ OTHER_FIELD = {
 }
 """Maps a part of a Twist to patterns of names that belong to the other part.
 
-If a value comes from such a name, the mistake is the assignment to the field."""
+If a value comes from such a name, the mistake is in the assignment to the field, not in the value."""
 
 
 def line_of_value(evidence: Evidence, field: str, value: float) -> Where | None:
-    """Return the line on which this value was written, if a field such as "linear.x" gets it from there, else None.
+    """Return the line that contains this value, if a field such as "linear.x" gets the value from there, else None.
 
     The value must reach the field through a named constant, or through an argument of a function that sets the field.
     If the field is assigned the number itself, or if there are several such lines, return None.

@@ -93,7 +93,7 @@ OTHER_LANGUAGES = (
 )
 """(pattern of a line that Python cannot read, cause): syntax of other languages, and an else without an if."""
 GAP = re.compile(r"""(?P<left>[\w.]+|"[^"]*"|'[^']*')(?=\s+(?P<right>[\w.]+|"[^"]*"|'[^']*'))""")
-"""Two values with only space between them. The match ends before the space."""
+"""Two values with only spaces between them. The match ends before the spaces."""
 NO_SPACE = re.compile(r"\s*(?P<keyword>def|class)(?P<rest>\w+\s*[(:].*)")
 """A line in which the keyword `def` or `class` is not followed by a space."""
 AND = "In Python, and is a word: write and, not &&."

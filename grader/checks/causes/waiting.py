@@ -28,7 +28,7 @@ SERVERS = ("wait_for_service", "wait_for_server")
 SLEEPS = ("sleep", "sleep_for", "sleep_until")
 WAITS = (*RESPONSES, *SPINS, *SERVERS, *SLEEPS)
 LOOP = "while"
-"""The name of a wait that is a loop on done()."""
+"""The name of a wait that is a loop until done() returns True."""
 THREADS = frozenset({"MultiThreadedExecutor", "Thread", "ThreadPoolExecutor", "Timer", "start_new_thread"})
 """With one of these, another thread can receive the response while a callback waits."""
 STARTS = frozenset({"Thread", "Timer", "start_new_thread", "submit", "to_thread", "run_in_executor"})
@@ -49,7 +49,7 @@ class Wait:
 
     @property
     def deadlock(self) -> bool:
-        """Whether the wait is for a response, which a node with one thread never receives."""
+        """Whether the wait is for a response. A node with one thread never receives this response."""
         return self.name in (LOOP, *RESPONSES, *SPINS)
 
     @property
@@ -82,7 +82,7 @@ class Wait:
     @property
     def _subject(self) -> str:
         if self.name == LOOP:
-            return "A loop on done()"
+            return "A loop that checks done()"
         return self.name if self.name == self.written else f"{self.written}, which is {self.name},"
 
     @property
@@ -194,7 +194,7 @@ def _function_named(value: ast.expr, module: Module) -> str:
 
 
 def _in_callbacks(modules: Iterable[Module]) -> Iterator[tuple[Module, Function]]:
-    """Yield lambdas and functions that are passed on instead of called, and all functions that these call."""
+    """Yield the lambdas and functions that are passed as arguments or stored, and all functions that these call."""
     functions: dict[str, list[tuple[Module, Function]]] = {}
     waiting: list[tuple[Module, Function]] = []
     passed: set[str] = set()

@@ -59,6 +59,6 @@ def _set(method: ast.FunctionDef, *, empty: bool) -> Iterator[tuple[str, int]]:
 
 
 def _tested(module: Module) -> set[str | None]:
-    """Return the names that a condition of the module contains."""
+    """Return the names that the conditions of the module contain."""
     tests = [node.test for node in module.nodes if isinstance(node, ast.If | ast.While | ast.IfExp)]
     return {dotted(each) for test in tests for each in ast.walk(test) if isinstance(each, ast.Attribute)}

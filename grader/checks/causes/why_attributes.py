@@ -91,7 +91,7 @@ def _without_setter(scene: CrashScene, name: str) -> Cause | None:
 
 
 def _written_name(scene: CrashScene, name: str) -> str:
-    """Return the name as the source has it, if the prefix names one of the student's classes and not rclpy's Node."""
+    """Return the name as in the source, if the prefix names one of the student's classes and not rclpy's Node."""
     mangled = MANGLED.match(name)
     own = mangled is not None and any(each.name.lstrip("_") == mangled["of"] for each in scene.classes)
     return MANGLED.sub("__", name) if own else name

@@ -64,7 +64,7 @@ def _leaves(node: ast.AST) -> bool:
 
 
 def _loops(evidence: Evidence) -> tuple[str, Where] | None:
-    """Return the reason if a loop has no way out, else None."""
+    """Return the reason if a loop never ends, else None."""
     for file, loop in _endless_loops(evidence):
         if not _leaves(loop):
             return "This loop never ends, so it may keep the program running after Ctrl-C.", Where(file, loop.lineno)

@@ -47,5 +47,5 @@ def why_interface(scene: CrashScene) -> Cause | None:
     inner = next((field for ending, field in WRAPPED.items() if owner.endswith(ending)), None)
     if inner is None or name in OF_A_RESULT:
         return None
-    text = f"rclpy puts the {inner} into another message: {shorten(name)} is a field of its field {inner}."
+    text = f"rclpy puts the {inner} into another message: look for {shorten(name)} in its field {inner}."
     return Cause("message-field", text)

@@ -48,7 +48,7 @@ def why_not_heard(run: NodeRun, code: TestCode, right: Behaviour) -> Cause | Non
         return Cause("bench-clock-stands", LATE, _place(code, run, OVERRIDE))
     text = (
         f"The node has published {count(events.commands, 'command')} on {right.topic}, but the test has received none. "
-        "Is the node that listens in the executor, does it listen on this topic, and does the bench spin often enough?"
+        "Is the subscribing node in the executor, is its topic right, and does the bench spin often enough?"
     )
     return Cause("bench-not-heard", text, _place(code, run, "create_subscription"))
 
@@ -74,7 +74,7 @@ def _too_few(events: NodeEvents, run: NodeRun, code: TestCode, right: Behaviour)
 
 
 def why_not_called(run: NodeRun | None, code: TestCode, right: Behaviour) -> Cause | None:
-    """Return the reason why the callback of a node's timer ran in no test of a run, or None if it ran in a test."""
+    """Return the reason why the timer's callback did not run in any test of a run, or None if it ran in a test."""
     if run is None or run.events is None or run.events.all_calls:
         return None
     if _moves_the_wrong_clock(run.events, code):
@@ -116,7 +116,7 @@ LATE = "The pose arrived after the last run of the timer's callback. Advance the
 
 
 def _place(code: TestCode, run: NodeRun, call: str) -> Where | None:
-    """Return the first line of the tests that calls this function, or else the line that failed."""
+    """Return the first line of the tests that calls this function, or else the line that failed, or None."""
     uses = _uses(code, call)
     return uses[0].where if uses else place_of(run, code)
 

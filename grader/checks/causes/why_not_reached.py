@@ -26,15 +26,15 @@ LEVELS = ("debug", "info", "warning", "warn", "error", "fatal")
 TURNS_RAD_S = 0.1
 """A smaller angular velocity is not a turn (rad/s)."""
 ASIDE_RAD = 0.3
-"""A target within this angle is straight ahead or straight behind, so that each direction is right (rad)."""
+"""A target within this angle is straight ahead or straight behind, so a turn in either direction is right (rad)."""
 MOST = 0.8
-"""The share of the commands in which the turtle must turn or face away from the target."""
+"""The cause is reported only if the turtle turned away or faced away in at least this share of the commands."""
 FEWEST, FEWEST_AWAY = 10, 3
 """The minimum numbers of turns, and of turns away from the target, that a conclusion needs."""
 
 
 def why_not_reached(evidence: Evidence, name: str, near_m: float) -> Cause | None:
-    """Return the reason why the target that turtle1 came nearest to (m) was not caught, or None if it is unknown."""
+    """Return the reason why turtle1 came within `near_m` (m) of this target without catching it, or None."""
     reach_m = _own_reach_m(evidence)
     asked = any(call.service == CATCH and call.request["name"] == name for call in evidence.recording.calls)
     if reach_m is not None and near_m < reach_m and not asked:
@@ -53,7 +53,7 @@ def _own_reach_m(evidence: Evidence) -> float | None:
 
 
 def _constant(evidence: Evidence, name: str) -> Where | None:
-    """Return the line that assigns a constant with this name."""
+    """Return the line that assigns a constant with this name, or None."""
     for module in evidence.code.modules:
         for node in module.body:
             if isinstance(node, ast.Assign) and any(isinstance(t, ast.Name) and t.id == name for t in node.targets):
@@ -93,7 +93,7 @@ def _axes(node: ast.expr) -> set[str]:
 
 
 def _farthest(evidence: Evidence) -> Cause | None:
-    """Return the cause if the node chooses a target with max and a key."""
+    """Return the cause if the node chooses a target with max and a key, else None."""
     chosen = [call for call in evidence.code.calls("max") if (key := call.argument(99, "key")) and not _negates(key)]
     if not chosen or evidence.code.calls("min"):
         return None

@@ -35,7 +35,7 @@ FRAME_S = 0.016
 
 
 def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:
-    """Return the cause if a loop or a timer without a pause, or a callback for poses, calls `call`, else None."""
+    """Return the cause if a loop or a timer without a pause, or the callback for poses, calls `call`, else None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             where = Where(module.file, getattr(node, "lineno", None))

@@ -27,7 +27,7 @@ INCOMPATIBLE = "incompatible QoS"
 WAKES = ("create_timer", "create_subscription", "create_service", "create_client", "ActionServer", "ActionClient")
 """Functions that give a node something to do in spin_once."""
 ANSWERS = ("wait_for_service", "service_is_ready", "wait_for_server", "server_is_ready")
-"""Methods of clients that become true as soon as the server exists."""
+"""Methods of clients that return True as soon as the server exists."""
 ALWAYS = ("True", "1", "rclpy.ok()")
 
 
@@ -176,7 +176,7 @@ def _never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
 
 
 def _is_called_by_others(evidence: Evidence, module: Module, method: ast.FunctionDef) -> bool:
-    """Return whether Python, a library or getattr may call the method, such as __call__ or the run of a thread."""
+    """Return whether Python, a library or getattr may call the method, such as __call__, or run in a thread class."""
     classes = [node for each in evidence.code.modules for node in each.nodes if isinstance(node, ast.ClassDef)]
     own = next(each for each in classes if method in each.body)
     bases = {(dotted(base) or "").rpartition(".")[2] for base in own.bases} - {each.name for each in classes}

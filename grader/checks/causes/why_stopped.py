@@ -11,7 +11,7 @@ from grader.submission.where import Where
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
-CANCELS = "cancel stops the timer, so it does not call its method again."
+CANCELS = "cancel stops the timer, so the timer does not call its method again."
 
 
 def cancelled(evidence: Evidence) -> Where | None:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def why_topic(wanted: str, topic: str, evidence: Evidence, maker: str = "create_publisher") -> Cause:
-    """Return the cause of a wrong topic name, with the line of the `maker` that has the name, if the source shows it.
+    """Return the cause of a wrong topic name, with the line that calls `maker` with this name, if known.
 
     `maker` is create_publisher or create_subscription.
     """

@@ -29,7 +29,7 @@ LATE_S = 1.05
 """The maximum delay of an announcement (s): two periods of the topic."""
 AT_ONCE_S = 0.1
 """The maximum time between the last announcement of a turtle and its removal (s)."""
-EMPTY = "At this time, no target was left. The node publishes even then, with an empty string."
+EMPTY = "At this time, no target was left. Even then, the node must publish a message, with an empty string."
 NOT_IN_NAMES = re.compile(r"\W")
 OFTEN = 3
 """The maximum number of messages, as a multiple of the timer's messages. A node may also publish after each change."""

@@ -133,7 +133,7 @@ def _other_angle(evidence: Evidence, params: Arc, chosen: Steps, angle: float) -
     too_long = angle > params.angle_deg
     if too_long and np.flatnonzero(chosen)[-1] == len(chosen) - 1:
         observed = f"This arc has an angle of {angle:.0f} degrees, and the turtle was still driving it at the end."
-        text = "The state does not change after the last timer call of this arc. At which value does the counter start?"
+        text = "The state must change after the last timer call of this arc. At which value does the counter start?"
         return observed, Cause("drives-on", text, evidence.place("publish"))
     if not too_long and params.color is not None and _always_draws(evidence) and _goes_on(evidence, chosen):
         text = "The pen must have this colour before the turtle moves: wait for the response before you drive."
@@ -190,7 +190,7 @@ def _pieces(evidence: Evidence, chosen: Steps) -> int:
 def _goes_on(evidence: Evidence, chosen: Steps) -> bool:
     """Return whether the turtle also drove this arc in the frame before or after this piece.
 
-    The frame belongs to the same arc if the turtle turned equally far on the same distance.
+    The frame belongs to the same arc if the turtle turned by the same angle per metre.
     """
     trajectory, ends = evidence.trajectory, np.flatnonzero(chosen)
     turn_per_m = np.median(trajectory.turn[chosen] / trajectory.steps[chosen])

@@ -119,5 +119,5 @@ ANSWER = Kind(
     "The answer matches the bag",
     BagAnswer,
     bag_answer,
-    about="An answer in `answers.toml`, a number with its unit, matches the student's bag.",
+    about="A value in `answers.toml`, with its unit if it has one, matches the student's bag.",
 )

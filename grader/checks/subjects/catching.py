@@ -99,7 +99,7 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
 
 
 def _uncaught(recording: Recording, gone: list[Track], service: str) -> Track | None:
-    """Return the first target that was removed before the service was called with its name, or None."""
+    """Return the first target that was removed before the service was called for it, or None."""
     if not service:
         return None
     asked_s: dict[object, float] = {}

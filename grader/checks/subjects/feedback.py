@@ -34,7 +34,7 @@ lines."""
 
 @dataclass(frozen=True, kw_only=True)
 class LogFeedback:
-    """While a goal is active, the node logs one line per `period_s`. The remaining angle is at most `lag_s` old."""
+    """While a goal is active, the node logs a line every `period_s` seconds. The angle in it is at most `lag_s` old."""
 
     format: str = string("a log line with remaining in it", about="The format of a line with the number `remaining`.")
     period_s: float = number(0.5, above=0, about="The time between two lines.")
@@ -166,5 +166,5 @@ LOG_FEEDBACK = Kind(
     "The log shows the feedback",
     LogFeedback,
     log_feedback,
-    about="While the turtle follows a goal of `/turtle1/rotate_absolute`, lines show how far it must still turn.",
+    about="While the turtle follows a rotate_absolute goal, log lines show how far the turtle must still turn.",
 )

@@ -196,7 +196,7 @@ def _form(called: Called) -> str:
 def _arc(evidence: Evidence, id_: str) -> Arc:
     arc = next((each.arc for each in evidence.trial.calls.points if each.id == id_), None)
     if arc is None:
-        message = f"the points {id_} are not those of an arc"
+        message = f"the points {id_} are not points of an arc"
         raise ValueError(message)
     return arc
 

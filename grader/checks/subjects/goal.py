@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 STROKE_M = 0.3
-"""The length of each of the four strokes that lead to a goal in a drawing."""
+"""The length of each of the four lines that point to a goal in a drawing."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,7 +88,7 @@ def _in_code(evidence: Evidence, *numbers: float) -> bool:
 
 
 def requested_goal(_: Evidence, params: Goal) -> Requested:
-    """Return a ring around all positions that count as an arrival, and four strokes that lead to the ring."""
+    """Return a circle around all positions that count as reaching the goal, and four lines that point to it."""
     x, y = params.x_m, params.y_m
     near, far = params.tolerance_m, params.tolerance_m + STROKE_M
     rays = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))

@@ -29,7 +29,7 @@ SAME_RAD = 0.02
 HALF_TURN_S = 3.2
 """The longest time that the turtle needs to reach a goal: it turns by at most pi rad, at 1 rad/s."""
 STILL_DRIVES_S = 0.5
-"""If the node still drove during this time before the end of the trial (s), it has not ended its drive."""
+"""If the node still drove during this last part of the trial (s), it has not ended its drive."""
 LARGE_RAD = 7.0
 """A larger angle than this is more than a full turn, so it may be in degrees."""
 

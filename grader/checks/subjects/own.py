@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from grader.exercise.own_numbers import OwnNumbers
 
 EARLY, LATE = 0.8, 1.3
-"""The shortest and the longest allowed interval, as a share of the period."""
+"""The shortest and the longest allowed interval, as multiples of the period."""
 
 
 def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
@@ -121,7 +121,7 @@ NUMBERS = Kind(
     "The numbers are your own",
     NoParams,
     own_numbers,
-    about="The file of `[numbers]` contains the numbers that are drawn from the id of the student who submitted it.",
+    about="The file named in `[numbers]` contains the numbers that belong to the student who submitted it.",
 )
 CIRCLE = Kind(
     "own_circle",

@@ -227,7 +227,7 @@ DEPENDENCIES = Kind(
     "package.xml declares what the node uses",
     Dependencies,
     dependencies,
-    about="package.xml declares the packages with `<depend>` or `<exec_depend>`.",
+    about="package.xml declares the required packages with `<depend>` or `<exec_depend>`.",
 )
 NAME = Kind(
     "package_name",

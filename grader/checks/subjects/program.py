@@ -195,8 +195,8 @@ PRINTS = Kind(
     "The program prints the content of the bag",
     Printed,
     prints,
-    about="The executable, started with the name of a `[[trial.bag]]`, prints a line in the given format, with the "
-    "right numbers for the poses in the bag, and ends with exit code 0.",
+    about="When the executable gets the name of a `[[trial.bag]]` as its argument, it prints a line in the given "
+    "format with the right numbers for the poses in the bag, and ends with exit code 0.",
 )
 ENDS = Kind(
     "ends_with_message",
@@ -204,6 +204,6 @@ ENDS = Kind(
     "The program reports what is missing",
     OneCall,
     ends_with_message,
-    about="The executable, started with the name of a `[[trial.bag]]` without poses, prints a sentence and "
-    "ends with an exit code other than 0, without a traceback.",
+    about="When the executable gets the name of a `[[trial.bag]]` without poses as its argument, it prints a sentence "
+    "and ends with an exit code other than 0, without a traceback.",
 )

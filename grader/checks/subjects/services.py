@@ -175,7 +175,7 @@ def _missing(evidence: Evidence, service: str, type_: str, expected: str) -> Fin
         )
         if guess.endswith(service):
             text = (
-                "A name without a slash at the beginning is in the namespace of the node; with ~, it is below the "
+                "A name without a slash at the beginning is in the node's namespace. A name with ~ is below the "
                 "node's name."
             )
         return failed(observed, expected, Cause("service-name", text, where))

@@ -39,8 +39,8 @@ class Spawns:
         default="target",
         about="The prefix of the names of the turtles. A number follows the prefix.",
     )
-    low_m: float = number(1.0, at_least=0, about="The smallest coordinate of a turtle.")
-    high_m: float = number(10.0, at_least=0, about="The largest coordinate of a turtle.")
+    low_m: float = number(1.0, at_least=0, about="The smallest allowed x or y of a turtle.")
+    high_m: float = number(10.0, at_least=0, about="The largest allowed x or y of a turtle.")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -97,7 +97,7 @@ def outside(evidence: Evidence, _: NoParams) -> Finding:
 
 
 SPIN = "Import the class, create the node in the test, and spin it. Then the test controls the time."
-LOOKS = "The same node can be written in many ways. A test of the source rejects some, although all are correct."
+LOOKS = "The same node can be written in many ways. A test of the source rejects some of the correct nodes."
 
 
 def _imported(node: ast.AST, modules: frozenset[str]) -> str:

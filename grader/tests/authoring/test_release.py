@@ -123,7 +123,7 @@ def test_wrong_markers_in_a_notebook_name_the_cell(root: Path) -> None:
 @pytest.mark.parametrize("text", ["no json", "[]", '{"cells": [{}]}'])
 def test_a_broken_notebook_is_an_error(root: Path, text: str) -> None:
     (root / "solutions" / "01-x" / "a.ipynb").write_text(text)
-    with pytest.raises(UsageError, match=r"a\.ipynb: is not a notebook"):
+    with pytest.raises(UsageError, match=r"a\.ipynb is not a notebook"):
         released(root / "solutions" / "01-x")
 
 

@@ -127,7 +127,7 @@ def test_nothing_is_touched_where_that_was_requested(machine: Machine) -> None:
 def test_without_a_manager_or_sudo_nothing_is_tried(machine: Machine) -> None:
     assert machine.provide(CMAKE) == "the set-up does not support the package manager of this system"
     machine.stand_ins.add("apt-get")
-    assert machine.provide(CMAKE) == "only root can install it, and sudo is not installed"
+    assert machine.provide(CMAKE) == "only root can install programs, and sudo is not installed"
     assert (machine.stand_ins.calls(), machine.said) == ([], [])
 
 

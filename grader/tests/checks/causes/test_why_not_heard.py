@@ -90,7 +90,7 @@ def cause(message: str, events: NodeEvents | None, source: str = BENCH) -> str:
             "bench-not-heard test/test_it.py:3",
             "The node has published 10 commands on /turtle",
         ),
-        (NONE, RIGHT, NO_POSE, "bench-not-heard", "Is the node that listens in the executor, does it listen on this"),
+        (NONE, RIGHT, NO_POSE, "bench-not-heard", "Is the subscribing node in the executor, is its topic right"),
         (
             FIVE,
             RARE,

@@ -134,7 +134,7 @@ def test_an_arc_that_does_not_end_is_told(until_s: float, *, found: bool) -> Non
     given = about(CIRCLE, angle_deg=90.0, until_s=until_s)
     assert "This arc has an angle of 5" in given
     assert ("degrees, and the turtle was still driving it at the end." in given) == found
-    assert ("The state does not change after the last timer call of this arc." in given) == found
+    assert ("The state must change after the last timer call of this arc." in given) == found
 
 
 NOT_FOLLOWED = "The parameter was set, but the commands did not change."

@@ -238,6 +238,6 @@ def test_an_import_that_raises_a_value_error_refuses_nothing() -> None:
 def test_only_the_points_of_an_arc_have_a_circle() -> None:
     run = Run(called=(Called("too-few", "exit 0"), RIGHT))
     given = Evidence(EXERCISE, solution(), runs={"fit": run}).from_trial("fit")
-    with pytest.raises(ValueError, match="the points too-few are not those of an arc"):
+    with pytest.raises(ValueError, match="the points too-few are not points of an arc"):
         found(FITS, given, call="too-few")
     assert found(FITS, given, call="whole").diagnosis is None

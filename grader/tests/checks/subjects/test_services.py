@@ -167,5 +167,5 @@ def test_the_services_that_a_node_offers_are_named() -> None:
     right_name = (Offer("/node", "/pause", "std_srvs/srv/Empty"),)
     assert "No service is named /pause." not in about_answers(missing, offers=right_name)
     below = about_answers(missing, offers=(Offer("/node", "/node/pause", BOOL),))
-    assert "A name without a slash at the beginning is in the namespace of the node" in below
+    assert "A name without a slash at the beginning is in the node's namespace" in below
     assert "A name without a slash" not in about_answers(missing, offers=others)
