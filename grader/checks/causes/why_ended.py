@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from grader.checks.diagnosis import Diagnosis
     from grader.evidence.evidence import Evidence
 
+EXITS = ("exit", "quit", "sys.exit", "os._exit", "SystemExit")
 SPINS = ("spin", "spin_once", "spin_until_future_complete")
 
 
@@ -34,7 +35,7 @@ def why_ended(evidence: Evidence) -> Cause:
     stop = _exits(evidence)
     ended: Diagnosis = "ends-at-once" if ended_at_start(evidence.recording) else "ended-early"
     if stop is not None:
-        return Cause(ended, "This call to exit may end the program.", stop)
+        return Cause(ended, "This line may end the program.", stop)
     return Cause(ended, "", evidence.place("spin", "init"))
 
 
@@ -68,12 +69,13 @@ def _spins_only_as_script(evidence: Evidence) -> Cause | None:
 
 
 def _exits(evidence: Evidence) -> Where | None:
-    """Return the place where a method calls exit, or None."""
+    """Return the place where a method calls exit or raises SystemExit, or None."""
     for module in evidence.code.modules:
         for own in (node for node in module.nodes if isinstance(node, ast.ClassDef)):
             for node in ast.walk(own):
-                if isinstance(node, ast.Call) and dotted(node.func) in ("exit", "quit", "sys.exit", "os._exit"):
-                    return Where(module.file, node.lineno)
+                called = node.func if isinstance(node, ast.Call) else getattr(node, "exc", None)
+                if isinstance(called, ast.expr) and dotted(called) in EXITS:
+                    return Where(module.file, called.lineno)
     return None
 
 

@@ -11,6 +11,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.waiting import waits_in_callback
 from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_silent import why_nothing
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
@@ -74,7 +75,9 @@ def announces(evidence: Evidence, params: Announces) -> Finding:
         if crash is not None:
             return crash_finding(evidence, crash, end_observed(evidence), expected)
         cause = Cause("timer-period", "Publish each time the timer fires.", evidence.place("create_timer"))
-        if not with_targets:
+        if evidence.recording.end.by == "itself" and begin_s == times_s[-2]:
+            observed, cause = f"{observed} {end_observed(evidence)}", why_ended(evidence)
+        elif not with_targets:
             cause = Cause("silent-when-empty", EMPTY, where)
         finding = failed(observed, expected, waits_in_callback(evidence) or cause, near_edge=most.near(longest_s))
         return unless_starved(finding, evidence.recording, off=longest_s - 1.4 * params.period_s, per_s=1.0)
@@ -113,9 +116,7 @@ def _wrong_names(evidence: Evidence, message: Announcement, heard: list[Announce
         text = 'The text consists of the names, separated by single spaces: " ".join(names).'
         return failed(f'{at} is "{shorten(message.text)}".', expected, Cause("target-format", text, where))
     if strange:
-        text = "Remove a name when its turtle is caught, and add a name when the response from /spawn arrives."
-        observed = f"{at} names {a_list([shorten(name) for name in strange])}, but no such turtle exists."
-        return failed(observed, expected, Cause("still-announced", text, where))
+        return _not_there(evidence, message, strange, expected)
     missing = sorted(throughout - called - set(message.names))
     if missing:
         observed = f"{at} does not name {a_list([shorten(name) for name in missing])}."
@@ -128,6 +129,24 @@ def _wrong_names(evidence: Evidence, message: Announcement, heard: list[Announce
             )
         return failed(observed, expected, stuck or Cause("target-unannounced", text, where))
     return None
+
+
+def _not_there(evidence: Evidence, message: Announcement, strange: list[str], expected: str) -> Finding:
+    """Return the finding about a message that names turtles before they exist, or after they were removed."""
+    at = f"The message at {message.t_s:.1f} s"
+    begin_s = {track.turtle: track.rows[0][0] for track in evidence.recording.tracks}.get(strange[0])
+    where = evidence.place("publish")
+    if begin_s is None:
+        observed = f"{at} names {a_list([shorten(name) for name in strange])}, but no such turtle exists."
+        text = "Remove a name when its turtle is caught, and add a name when the response from /spawn arrives."
+    elif begin_s > message.t_s:
+        observed = f"{at} names {shorten(strange[0])}, which existed only from {begin_s:.1f} s on."
+        text = "A turtle exists when the response from /spawn arrives. Add its name then, and not with the request."
+        where = evidence.place("append", "publish")
+    else:
+        observed = f"{at} names {shorten(strange[0])}, which no longer exists."
+        text = "Remove a name from the list when its turtle is caught."
+    return failed(observed, expected, Cause("still-announced", text, where))
 
 
 def _is_of_parts(name: str, known: set[str]) -> bool:

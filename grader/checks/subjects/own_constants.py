@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 NOT_WRITTEN = "Write the number into the node. `colcon test` runs your tests on this node."
 
+NOT_USED = "Use the constant where the node needs this number. Otherwise, the constant changes nothing."
+
 
 @dataclass(frozen=True, kw_only=True)
 class OwnConstants:
@@ -37,7 +39,7 @@ class OwnConstants:
 
 
 def own_constants(evidence: Evidence, params: OwnConstants) -> Finding:
-    """Each constant has the student's number.
+    """Each constant has the student's number, and the node uses the constant.
 
     A constant that the module computes or reads is not judged. If the module has no constant with the name, the number
     must occur in the source.
@@ -57,15 +59,18 @@ def own_constants(evidence: Evidence, params: OwnConstants) -> Finding:
     modules = (module, *(each for each in imported if each.file != file))
     for name, value in params.constants:
         given = _last_assignment(modules, name)
-        if given is None and not _has_number(modules, value):
-            observed = f"{shorten(file, 60)} has no constant {name}, and does not contain the number {value}."
-            return failed(observed, expected, Cause("own-number-missing", NOT_WRITTEN, Where(file)))
-        if given is not None:
-            place, expression = given
-            is_now = number(expression, place.names)
-            if is_now is not None and not math.isclose(is_now, value):
-                where = Where(place.file, expression.lineno)
-                return failed(f"{name} is {is_now}.", expected, Cause("own-number-missing", NOT_WRITTEN, where))
+        if given is None:
+            if not _has_number(modules, value):
+                observed = f"{shorten(file, 60)} has no constant {name}, and does not contain the number {value}."
+                return failed(observed, expected, Cause("own-number-missing", NOT_WRITTEN, Where(file)))
+            continue
+        place, expression = given
+        is_now = number(expression, place.names)
+        where = Where(place.file, expression.lineno)
+        if is_now is not None and not math.isclose(is_now, value):
+            return failed(f"{name} is {is_now}.", expected, Cause("own-number-missing", NOT_WRITTEN, where))
+        if is_now is not None and not any(_uses(each, name) for each in modules):
+            return failed(f"No code uses {name}.", expected, Cause("own-number-missing", NOT_USED, where))
     return passed(expected)
 
 
@@ -90,6 +95,18 @@ def _assignments(module: Module) -> Iterator[tuple[ast.expr, ast.expr]]:
                 yield from zip(targets, values, strict=False)
 
 
+def _uses(module: Module, name: str) -> bool:
+    """Return whether the module reads a variable or an attribute with this name, or mentions the name in a string."""
+    for node in module.nodes:
+        match node:
+            case (
+                ast.Name(id=read, ctx=ast.Load()) | ast.Attribute(attr=read, ctx=ast.Load()) | ast.Constant(value=read)
+            ):
+                if read == name:
+                    return True
+    return False
+
+
 def _has_number(modules: tuple[Module, ...], value: float) -> bool:
     constants = (node.value for module in modules for node in module.nodes if isinstance(node, ast.Constant))
     return any(isinstance(each, int | float) and math.isclose(each, value) for each in constants)
@@ -102,7 +119,8 @@ CONSTANTS = Kind(
     OwnConstants,
     own_constants,
     about=(
-        "The constants of a module have the given values, which can be the student's own numbers. The kind reads the "
-        "file, and does not run it: a value that the module computes from something else is accepted."
+        "The constants of a module have the given values, which can be the student's own numbers, and some code uses "
+        "them. The kind reads the file, and does not run it: a value that the module computes from something else is "
+        "accepted."
     ),
 )

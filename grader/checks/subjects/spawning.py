@@ -9,6 +9,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.waiting import waits_in_callback
 from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_killed import why_killed
 from grader.checks.causes.why_rate import callbacks_of
 from grader.checks.causes.why_silent import methods_of
@@ -177,6 +178,10 @@ def _not_killed(
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_observed(evidence), expected)
+    end = evidence.recording.end
+    if end.by == "itself" and end.t_s <= caught_s + LATE_S:
+        observed = f"{name} was caught, but it still exists. {end_observed(evidence)}"
+        return failed(observed, expected, why_ended(evidence))
     where = _callback(evidence) or evidence.place("create_service")
     if track.gone_s is not None:
         observed = f"{name} was removed only {track.gone_s - caught_s:.1f} s after it was caught."

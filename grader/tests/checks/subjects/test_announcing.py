@@ -11,11 +11,15 @@ from grader.checks.subjects.announcing import ANNOUNCES
 from grader.tests.checks.made import found
 from grader.tests.checks.spawner import CAUGHT_S, PLACES, catch, given, kill, names_at, said
 from grader.tests.checks.told import told
+from grader.trial.recording import ProcessEnd
 
 if TYPE_CHECKING:
     from grader.checks.outcome import Finding
     from grader.evidence.evidence import Evidence
     from grader.trial.recording import Message
+
+
+ENDED = ProcessEnd(by="itself", exit_code=0, t_s=5.6, stop_s=None)
 
 
 def of_announces(given: Evidence) -> Finding:
@@ -45,7 +49,27 @@ def test_wrong_announcements_are_named(text: str, expected: str) -> None:
 
 def test_a_turtle_that_was_caught_is_no_longer_announced() -> None:
     every = tuple(said(1.0 + 0.5 * number, " ".join(PLACES)) for number in range(18))
-    assert diagnosis(of_announces(given(messages=every))) == "still-announced"
+    finding = of_announces(given(messages=every))
+    assert finding.diagnosis == "still-announced"
+    assert "names target2, which no longer exists." in told(finding)
+    assert "which no longer exists" not in told(of_announces(given()))
+
+
+def test_a_turtle_that_does_not_exist_yet_is_not_announced() -> None:
+    messages = tuple(said(0.25 + 0.5 * number, names_at(0.25 + 0.5 * number)) for number in range(20))
+    finding = of_announces(given(messages=messages))
+    assert finding.diagnosis == "still-announced"
+    assert finding.observed == "The message at 0.2 s names target1, which existed only from 0.5 s on."
+    assert "A turtle exists when the response from /spawn arrives." in told(finding)
+    assert "which existed only from" not in told(of_announces(given()))
+
+
+def test_a_node_that_has_ended_is_not_blamed_for_its_timer() -> None:
+    messages = tuple(said(1.0 + 0.5 * number, names_at(1.0 + 0.5 * number)) for number in range(10))
+    ended = of_announces(given(messages=messages, end=ENDED))
+    assert ended.diagnosis == "ended-early"
+    assert ended.observed.endswith("The node exited on its own after 5.6 s.")
+    assert of_announces(given(messages=messages)).diagnosis == "timer-period"
 
 
 def test_a_turtle_that_the_node_has_asked_to_remove_need_not_be_announced() -> None:

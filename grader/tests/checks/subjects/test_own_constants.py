@@ -22,9 +22,20 @@ assert STEP.numbers is not None
 NUMBERS = draw_numbers(STEP.numbers, "reader")
 SPEED, TURN, TIMEOUT = (float(NUMBERS.values[name]) for name in ("speed_m_s", "turn_rad_s", "timeout_s"))
 FILE = "my_robot_controller/wall_guard.py"
-RIGHT = f"SPEED = {SPEED}  # m/s\nTURN = {TURN}\nTIMEOUT = {TIMEOUT}\n"
-STARTING_POINT = "SPEED = 1.0  # m/s\nTURN = 1.5\nTIMEOUT = 1.0\n"
+USES = "command.linear.x = SPEED\ncommand.angular.z = TURN\nlimit = Duration(seconds=TIMEOUT)\n"
+UNUSED = f"SPEED = {SPEED}  # m/s\nTURN = {TURN}\nTIMEOUT = {TIMEOUT}\n"
+RIGHT = UNUSED + USES
+STARTING_POINT = "SPEED = 1.0  # m/s\nTURN = 1.5\nTIMEOUT = 1.0\n" + USES
 LITERALS = f"command.linear.x = {SPEED}\ncommand.angular.z = {TURN}\nlimit = Duration(seconds={TIMEOUT})\n"
+IN_CLASS = f"""\
+class WallGuard:
+    SPEED = {SPEED}
+    TURN = {TURN}
+    TIMEOUT = {TIMEOUT}
+
+    def drive(self):
+        self.send(self.SPEED, self.TURN, getattr(self, "TIMEOUT"))
+"""
 CHECK = next(check for check in STEP.checks if check.kind == "own_constants")
 
 
@@ -39,9 +50,9 @@ def judged(source: str | None, **more: str) -> Finding:
     "source",
     [
         RIGHT,
-        f"SPEED, TURN, TIMEOUT = {SPEED}, {TURN}, {TIMEOUT}\n",
-        f"SPEED: float = {SPEED}\nTURN: float = 2 * {TURN} / 2\nTIMEOUT: float = {TIMEOUT}\n",
-        f"class WallGuard:\n    SPEED = {SPEED}\n    TURN = {TURN}\n    TIMEOUT = {TIMEOUT}\n",
+        f"SPEED, TURN, TIMEOUT = {SPEED}, {TURN}, {TIMEOUT}\n" + USES,
+        f"SPEED: float = {SPEED}\nTURN: float = 2 * {TURN} / 2\nTIMEOUT: float = {TIMEOUT}\n" + USES,
+        IN_CLASS,
         STARTING_POINT + RIGHT,
         LITERALS,
         f"from my_robot_controller.numbers import *\n# {SPEED}\n" + LITERALS,
@@ -60,6 +71,13 @@ def test_the_numbers_may_be_in_a_module_that_the_node_imports() -> None:
     assert (wrong.diagnosis, str(wrong.where)) == ("own-number-missing", "my_robot_controller/numbers.py:1")
 
 
+def test_a_constant_that_no_code_uses_is_not_enough() -> None:
+    finding = judged(UNUSED + USES.replace("= TURN", "= 1.5"))
+    assert (finding.observed, finding.diagnosis) == ("No code uses TURN.", "own-number-missing")
+    assert str(finding.where) == f"{FILE}:2"
+    assert judged(UNUSED + "print(SPEED, TURN)\nTIMEOUT\n").status is Status.PASSED
+
+
 def test_a_number_in_a_module_that_the_node_does_not_import_is_not_enough() -> None:
     assert judged("print()\n", numbers=RIGHT).diagnosis == "own-number-missing"
 
@@ -68,7 +86,7 @@ def test_a_number_in_a_module_that_the_node_does_not_import_is_not_enough() -> N
     ("source", "observed", "line"),
     [
         (STARTING_POINT, "SPEED is 1.0.", 1),
-        (RIGHT + "SPEED = 1.0\n", "SPEED is 1.0.", 4),
+        (RIGHT + "SPEED = 1.0\n", "SPEED is 1.0.", 7),
         (RIGHT.replace(f"TURN = {TURN}", "TURN = 1.5"), "TURN is 1.5.", 2),
         (RIGHT.replace(f"TIMEOUT = {TIMEOUT}", "TIMEOUT = 1.0"), "TIMEOUT is 1.0.", 3),
         (LITERALS.replace(str(TURN), "1.5"), f"{FILE} has no constant TURN, and does not contain the number", None),

@@ -12,6 +12,7 @@ from grader.checks.subjects.spawning import PLACES_DIFFER, REMOVES, SPAWNS
 from grader.tests.checks.made import found
 from grader.tests.checks.spawner import CAUGHT_S, PLACES, catch, given, kill, said, spawn
 from grader.tests.checks.told import told
+from grader.trial.recording import ProcessEnd
 
 if TYPE_CHECKING:
     from grader.checks.outcome import Finding
@@ -57,6 +58,13 @@ def test_wrong_numbers_names_and_places_are_named(calls: list[Call], expected: s
 )
 def test_who_was_caught_must_be_removed_and_nobody_else(calls: list[Call], gone: dict[str, float]) -> None:
     assert diagnosis(of_removes(given(calls=calls, gone=gone))) == "not-killed"
+
+
+def test_a_node_that_has_ended_removes_nobody() -> None:
+    ended = ProcessEnd(by="itself", exit_code=0, t_s=CAUGHT_S + 0.1, stop_s=None)
+    finding = of_removes(given(calls=[catch()], gone={}, end=ended))
+    assert finding.diagnosis == "ended-early"
+    assert finding.observed.endswith("The node exited on its own after 5.1 s.")
 
 
 def test_who_was_not_caught_must_stay() -> None:
