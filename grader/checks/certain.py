@@ -55,7 +55,7 @@ FROM_CONTENT: frozenset[Diagnosis] = frozenset(
         "x-y-swapped",
     }
 )
-"""What messages, calls, goals and log lines contain, whenever they came."""
+"""The contents of messages, calls, goals and log lines, regardless of when these arrived."""
 FROM_ORDER: frozenset[Diagnosis] = frozenset(
     {
         "wrong-direction",
@@ -71,7 +71,7 @@ FROM_ORDER: frozenset[Diagnosis] = frozenset(
         "exit-code",
     }
 )
-"""What the recording or a program's output shows, but what a busy machine can cause, too."""
+"""Facts that the recording or a program's output shows, but that a busy machine can also cause."""
 CONCLUSIONS: frozenset[Diagnosis] = frozenset(
     {
         "no-init",

@@ -1,6 +1,6 @@
 """System calls of Linux, also for a Python that does not have them.
 
-Python has only those calls that the headers of the machine on which it was built declare. The Python of conda, for
+A Python has only the calls that the headers on the machine where it was built declared. The Python of conda, for
 example, is built for old systems and has no `os.pidfd_open`, even if it runs on a new kernel.
 
 Like the scripts that run in a cell, this module needs only the standard library.

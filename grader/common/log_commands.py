@@ -19,7 +19,7 @@ LONGEST = len("##teamcity[")
 
 
 def without_commands(text: str, before: str = "") -> str:
-    """Return the text without commands, if it is written after `before`, the end of the same line so far.
+    """Return the text without commands. `before` is the end of the text that is already on the same line.
 
     Example:
         >>> without_commands("::error::x ##vso[task.x]")

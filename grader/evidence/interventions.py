@@ -75,7 +75,7 @@ def _jumped(recording: Recording, first: int) -> bool:
 
 @dataclass(frozen=True)
 class _Path:
-    """The part of a trajectory that some frames belong to.
+    """The part of a trajectory that consists of some successive frames.
 
     `x`, `y` (m) and `theta` (rad) begin before the first of these frames. `turned_otherwise` says in which frames the
     turtle did not turn at its turning speed.

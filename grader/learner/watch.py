@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from grader.submission.package import Submission
 
 DEBOUNCE_MS = 50
-"""The time within which events count as one (ms), because an editor that saves by renaming causes several events."""
+"""Events within this time (ms) count as one, because an editor that saves by renaming causes several events."""
 
 _STEP_MS = 25
 """The polling interval for new events (ms). With an interval of 10 ms, an idle watch would use 0.7 % of a core."""

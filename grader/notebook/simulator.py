@@ -185,7 +185,7 @@ def _command(executable: str) -> tuple[list[str], Path]:
 
 
 def environment() -> dict[str, str]:
-    """Return the kernel's environment, with ROS 2 added if it is not the kernel of the course."""
+    """Return the kernel's environment, with ROS 2 added if this is not the course's kernel."""
     from grader.ros.installation import find_ros, users_environment
     from grader.ros.underlay import with_turtlesim
 

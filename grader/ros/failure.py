@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 OTHER = "/other"
-"""Stands for a running node where the running nodes do not matter."""
+"""The name of a visible node, so that `did_you_mean` does not say by default that no node is running."""
 
 
 class Ros2Error(GraderError):

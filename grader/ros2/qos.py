@@ -34,7 +34,7 @@ def add_qos(parser: argparse.ArgumentParser, default: str) -> None:
         "--qos-profile",
         choices=PROFILES,
         default=default,
-        help=f"preset profile, which other options change (default: {default})",
+        help=f"preset profile; other options override its values (default: {default})",
     )
     parser.add_argument("--qos-depth", metavar="N", type=int, help="size of the queue (default: as in the profile)")
     for policy, choices in POLICIES.items():

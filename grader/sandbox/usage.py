@@ -162,8 +162,8 @@ def _network(pid: int) -> str:
 def _waiting_bytes(pid: int) -> int:
     """Return the size of the data that waits in the UDP and TCP sockets of the process's network (bytes).
 
-    The kernel has one limit on this memory for all networks of the machine. If it is reached, messages of other trials
-    are lost.
+    The kernel has one limit on this memory for all networks of the machine. If this limit is reached, messages of other
+    trials are lost.
     """
     total = 0
     for name, counts in _SOCKETS.items():

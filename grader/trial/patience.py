@@ -9,8 +9,8 @@ if TYPE_CHECKING:
     from grader.trial.rest import Threads
 
 HANDSHAKE_LIMIT_S = 20.0
-"""The maximum time that a node may sleep before it waits for its clock, and the maximum CPU time that it may use before
-(s)."""
+"""The maximum time (s) that a node may sleep, and the maximum CPU time (s) that it may use, before it waits for its
+clock."""
 HANDSHAKE_S = 100.0
 """The maximum wall time until a node waits for its clock (s). A node can reach this limit only on a crowded machine.
 The limit for the whole trial is slightly higher (trial.py)."""

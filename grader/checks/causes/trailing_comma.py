@@ -40,7 +40,7 @@ def trailing_comma(scene: CrashScene) -> Cause | None:
 
 
 def _assignments(scene: CrashScene) -> Iterator[tuple[str, ast.expr]]:
-    """Yield each name or attribute that the line can see, with a value that the module assigns to it."""
+    """Yield each name or attribute that is in scope on the line, with a value that the module assigns to it."""
     for node in scene.nodes:
         if not isinstance(node, ast.Assign | ast.AnnAssign) or node.value is None:
             continue

@@ -32,7 +32,7 @@ LOOP = "while"
 THREADS = frozenset({"MultiThreadedExecutor", "Thread", "ThreadPoolExecutor", "Timer", "start_new_thread"})
 """With one of these, another thread can receive the response while a callback waits."""
 STARTS = frozenset({"Thread", "Timer", "start_new_thread", "submit", "to_thread", "run_in_executor"})
-"""Functions that call the function that is passed to them in another thread."""
+"""Functions that run a function, passed as an argument, in another thread."""
 STRAIGHT = frozenset({"__init__", "main"})
 """Functions that run before rclpy.spin, even if their names are mentioned without a call."""
 OTHER_CALLS = frozenset({"subprocess", "self", "super", "cls"})

@@ -1,4 +1,4 @@
-"""Checks of answers about the student's own bag. Each answer is a number with its unit."""
+"""Checks of answers about the student's own bag. Each answer is a number, with its unit if it has one."""
 
 from __future__ import annotations
 

@@ -75,7 +75,7 @@ def own_constants(evidence: Evidence, params: OwnConstants) -> Finding:
 
 
 def _last_assignment(modules: tuple[Module, ...], name: str) -> tuple[Module, ast.expr] | None:
-    """Return the last value that the first module with such a constant assigns to it, with this module."""
+    """Return the first module that has a constant with this name, with the last value of the constant, or None."""
     for module in modules:
         given = [value for target, value in _assignments(module) if (dotted(target) or "").split(".")[-1] == name]
         if given:

@@ -60,7 +60,7 @@ def declares(evidence: Evidence, params: Declares) -> Finding:
     if found["type"] != DOUBLE:
         text = ""
         if found["type"] == INTEGER:
-            text = "A number without a decimal point is an integer, so the parameter is an integer. Write 2.0 for 2."
+            text = "A default value without a decimal point makes the parameter an integer. Write 2.0 instead of 2."
         observed = f"The parameter {name} is not a float."
         return failed(observed, expected, Cause("parameter-type", text, where))
     if not found["description"].strip():
@@ -180,7 +180,7 @@ def _refused(evidence: Evidence, observed: str, expected: str, reason: str) -> F
         )
         return failed(observed, expected, Cause("result-not-returned", text, where))
     if reason.startswith(OTHER_TYPE):
-        text = "The type of the default value is the type of the parameter. Write 2.0 for 2."
+        text = "The type of the default value is the type of the parameter. Write 2.0 instead of 2."
         return failed(observed, expected, Cause("parameter-type", text, evidence.place("declare_parameter")))
     if reason.startswith(READ_ONLY):
         return failed(observed, expected, Cause("parameter-range", "", evidence.place("declare_parameter")))

@@ -101,7 +101,11 @@ BLOCKED = "Something blocks the node's callbacks, or the node's parameter servic
         ("The node did not answer when the trial asked for radius.", SILENT, described(type=0)),
         ("The node did not answer when the trial asked for radius.", None, described(type=0)),
         ("The parameter radius is not a float.", described(type=2), described(description="")),
-        ("A number without a decimal point is an integer", described(type=2), described(type=4)),
+        (
+            "A default value without a decimal point makes the parameter an integer",
+            described(type=2),
+            described(type=4),
+        ),
         ("The parameter radius has no description.", described(description=" "), described(floating_point_range=[])),
         ("A ParameterDescriptor has the fields description and", described(description=""), described(type=2)),
         ("The parameter radius has no range.", described(floating_point_range=[]), described(description="")),
@@ -148,7 +152,7 @@ UNSET = was_set(2.0, successful=True)
             refused("Callback says no"),
         ),
         (
-            "The type of the default value is the type of the parameter. Write 2.0 for 2.",
+            "The type of the default value is the type of the parameter. Write 2.0 instead of 2.",
             refused("Wrong parameter type, expected 'Type.INTEGER' got 'Type.DOUBLE'"),
             refused("no turtle of this type"),
         ),
