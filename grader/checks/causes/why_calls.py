@@ -199,7 +199,7 @@ def _init_misspelt(scene: CrashScene) -> Cause | None:
         found = [name for name in names if name.strip("_") in ("init", "int", "inti") or name == "__intit__"]
         if "__init__" not in names and found:
             text = (
-                f"The class has a method {found[0]}, but to create the object, Python runs only __init__: "
+                f"The class has a method {found[0]}, but Python calls only __init__ when it creates an object: "
                 "init with two underscores on each side."
             )
             place = scene.at(names[found[0]])

@@ -47,8 +47,8 @@ class Catches:
     service: str = string(
         "the full name of a service",
         default="",
-        about="The service with a field `name` that must be called before a turtle is removed, if another node of the "
-        "trial offers it.",
+        about="The service that must be called with the name of a turtle before this turtle is removed. Without this "
+        "key, no call is required.",
     )
 
 
@@ -253,7 +253,7 @@ NEAREST_FIRST = Kind(
 WITHIN_REACH = Kind(
     "within_reach",
     "trial",
-    "The node catches only near targets",
+    "The node catches a target only from nearby",
     WithinReach,
     within_reach,
     about="When turtle1 is near enough to a target, and only then, the node calls the service that removes the target.",

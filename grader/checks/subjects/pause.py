@@ -126,7 +126,7 @@ PAUSE = Kind(
     "The turtle stands still and continues",
     Pause,
     pause,
-    about="The turtle stands still from one time to another, for example from the trial's first call to its second "
-    "call, and then drives on.",
+    about="The turtle stands still between two times, for example from the trial's first call to the second call, and "
+    "then continues.",
     drives=True,
 )

@@ -184,7 +184,7 @@ def _not_killed(
         return failed(observed, expected, why_ended(evidence))
     where = _callback(evidence) or evidence.place("create_service")
     if track.gone_s is not None:
-        observed = f"{name} was removed only {track.gone_s - caught_s:.1f} s after it was caught."
+        observed = f"{name} was removed too late: {track.gone_s - caught_s:.1f} s after it was caught."
         return failed(observed, expected, waits_in_callback(evidence) or Cause("not-killed", "", where))
     others = [str(kill.request["name"]) for kill in kills if kill.request["name"] != name]
     if others:

@@ -17,7 +17,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the names of the actions, sorted."""
+    """Print the sorted names of the actions, or only their number."""
     found = look(args).actions
     if args.count_actions:
         print(len(found))

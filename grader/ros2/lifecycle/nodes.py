@@ -19,7 +19,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the names of the nodes, sorted."""
+    """Print the sorted names of the nodes, or only their number."""
     found = lifecycle_nodes(args, hidden=args.all)
     if args.count_nodes:
         print(len(found))

@@ -25,7 +25,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the names of the nodes, sorted."""
+    """Print the sorted names of the nodes, or only their number."""
     found = look(args).node_names(all_of_them=args.all)
     if args.count_nodes:
         print(len(found))

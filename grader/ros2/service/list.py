@@ -21,7 +21,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the names of the services, sorted."""
+    """Print the sorted names of the services, or only their number."""
     found = shown(look(args).services, all_of_them=args.include_hidden_services)
     if args.count_services:
         print(len(found))

@@ -26,7 +26,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the names of the topics, sorted."""
+    """Print the sorted names of the topics, or only their number."""
     graph = look(args)
     found = shown(graph.topics, all_of_them=args.include_hidden_topics)
     if args.count_topics:

@@ -157,7 +157,7 @@ Gone = dict[str, float]
         ),
         ("target2 was caught, but it still exists.", ([catch()], {}), ([catch(), kill()], LATE)),
         ("The callback of the service must send a request to /kill.", ([catch()], {}), ([catch(), kill("")], {})),
-        ("target2 was removed only 2.0 s after it was caught.", ([catch(), kill()], LATE), ([catch()], {})),
+        ("target2 was removed too late: 2.0 s after it was caught.", ([catch(), kill()], LATE), ([catch()], {})),
         (
             "target2 was caught, and the node asked /kill to remove a turtle without a name.",
             ([catch(), kill("")], {}),
