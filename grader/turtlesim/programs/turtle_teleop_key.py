@@ -85,7 +85,7 @@ class Teleop(Node):
         super().destroy_node()
 
     def _see_that(self, somebody: Callable[[], bool], name: str) -> bool:
-        """Wait until `somebody` returns true, up to two seconds after the start, or else print a message and return False."""
+        """Wait up to two seconds until `somebody` returns true. Otherwise, print a message and return False."""
         while not somebody() and time.monotonic() < self._begun + _DISCOVERY_S:
             time.sleep(0.01)
         there = somebody()
