@@ -86,7 +86,7 @@ def _contains(outer: Call, inner: Call) -> bool:
 
 
 def _axes(node: ast.expr) -> set[str]:
-    """Return the coordinates, "x" and "y", that the names in an expression such as `place.x - x0` or `dx` mean."""
+    """Return the coordinates, "x" and "y", to which the names in an expression such as `place.x - x0` or `dx` refer."""
     names = [each.id for each in ast.walk(node) if isinstance(each, ast.Name)]
     names += [each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute)]
     return {axis for axis in ("x", "y") if {axis, f"d{axis}", f"delta_{axis}", f"{axis}_diff"} & set(names)}

@@ -118,7 +118,7 @@ class Player:
         return any_of_them
 
     def _wait(self, key: Callable[[float], str], played: int, stamp: int) -> int:
-        """Wait while the time of the recording advances from `played` to `stamp` (ns). Return `stamp`."""
+        """Wait while the time of the recording advances from `played` to `stamp` (ns). Return the stamp."""
         if self._burst > 0:
             self._burst -= 1
             return stamp
