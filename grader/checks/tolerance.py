@@ -10,7 +10,7 @@ NEAR = 0.2
 
 @dataclass(frozen=True)
 class Band:
-    """The values from `low` to `high`. The tolerances `low_width` and `high_width` define these edges.
+    """The values from `low` to `high`. `low_width` and `high_width` are the widths of the tolerance at these edges.
 
     An edge that is None does not exist. NaN is never inside a band: every comparison with NaN is False, so the methods
     check that a value is inside, and not that it is outside.

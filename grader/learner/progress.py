@@ -56,7 +56,7 @@ class Progress:
         return self.steps.get(name, StepProgress())
 
     def with_step(self, name: str, step: StepProgress) -> Progress:
-        """Return a copy of the progress in which the progress in the step `name` is `step`."""
+        """Return a copy of the progress, with `step` as the progress in the step `name`."""
         return replace(self, steps={**self.steps, name: step})
 
     def at(self, name: str) -> Progress:

@@ -87,7 +87,7 @@ class Stalls:
         return (begun_s, now_s) if max(owed) > STALL_S else None
 
     def worked_for_node_s(self, begin_s: float, end_s: float) -> float:
-        """Return the CPU time (s) between two times that the simulator used because of the node, not for itself."""
+        """Return the CPU time (s) that the simulator used for the node, and not for itself, between two times."""
         return sum(spent_s for at_s, spent_s in self._for_node if begin_s < at_s <= end_s)
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     Floats = npt.NDArray[np.float64]
 
 AFTER_STALL_S = 0.05
-"""The time after a stall for which messages still arrive late (s)."""
+"""After a stall, messages still arrive late for this long (s)."""
 
 ClockName = Literal["simulated", "wall"]
 

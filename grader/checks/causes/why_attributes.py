@@ -130,7 +130,7 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
 
 
 def _of_class_elsewhere(scene: CrashScene, owner: str, name: str) -> Cause:
-    """Return the cause of a missing attribute of a class of ROS 2. The fields of a message need an object."""
+    """Return the cause of a missing attribute of a class of ROS 2. A field belongs to a message, not to its class."""
     if owner in ros_names.FIELDS:
         return class_for_object(scene, owner, name)
     text = f"The class {shorten(owner)} has no constant or method with that name."

@@ -33,7 +33,7 @@ AT_ONCE_S = 0.1
 EMPTY = "At this time, no target was left. Even then, the node must publish a message, with an empty string."
 NOT_IN_NAMES = re.compile(r"\W")
 OFTEN = 3
-"""The maximum number of messages, as a multiple of the timer's messages. A node may also publish after each change."""
+"""The maximum number of messages per timer call. A node may also publish after each change."""
 
 
 @dataclass(frozen=True, kw_only=True)
