@@ -57,7 +57,7 @@ def test_a_picture_is_a_figure_with_its_text() -> None:
 
 
 def test_the_line_with_the_neighbours_is_left_out() -> None:
-    made = rendered("# T\n\nText.\n\n---\n\nBefore: [a](../a/lesson.md)\n")
+    made = rendered("# T\n\nText.\n\n---\n\nPrevious: [a](../a/lesson.md)\n")
     assert made.html == "<p>Text.</p>\n"
 
 

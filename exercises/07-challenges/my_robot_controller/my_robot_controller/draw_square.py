@@ -27,7 +27,7 @@ class DrawSquareNode(Node):
         if self.publisher.get_subscription_count() == 0:
             return  # no subscriber yet: the command would be lost
         msg = Twist()
-        # TODO c: set the speeds of the state, count the call, and change the state when it is over.
+        # TODO c: set the speeds of the state, count the call, and change the state after its last call.
         self.publisher.publish(msg)
 
 

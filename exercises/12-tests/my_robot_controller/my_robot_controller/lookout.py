@@ -31,10 +31,10 @@ class LookoutNode(Node):
         if not self.begun and self.client.server_is_ready():
             self.begun = True
             self.turn()
-        # TODO 7: while there is a goal, log what the last feedback said, as in "1.25 rad to go".
+        # TODO 7: while there is a goal, log the number from the last feedback, as in "1.25 rad to go".
 
     def turn(self):
-        # TODO 4: send a goal with the present heading, without waiting. Pass two methods: one for the feedback,
+        # TODO 4: send a goal with the heading in self.heading, without waiting. Pass two methods: one for the feedback,
         # and one for the response to the goal.
         pass
 

@@ -21,8 +21,8 @@ class TunableCircleNode(Node):
         self.timer = self.create_timer(0.1, self.send_velocity_command)
 
     def check(self, parameters):
-        # TODO 4: refuse values with which the turtle would turn faster than FASTEST_TURN, and say why. The others are
-        # fine.
+        # TODO 4: reject values that would make the turtle turn faster than FASTEST_TURN, and give the reason. Accept
+        # all other values.
         return SetParametersResult(successful=True)
 
     def send_velocity_command(self):

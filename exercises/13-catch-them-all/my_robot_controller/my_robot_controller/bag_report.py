@@ -22,7 +22,7 @@ def main():
         sys.exit("Give the folder of a bag: ros2 run my_robot_controller bag_report circle_bag")
     times, x, y = read_poses(sys.argv[1])
     # TODO 5: end with a sentence if there are no poses: sys.exit("...").
-    # TODO 6: compute the rate, fit the circle, and print the line of the lesson.
+    # TODO 6: compute the rate, fit the circle, and print the line that the lesson shows.
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ class CatcherNode(Node):
         self.pose = None  # of turtle1
         self.listeners = {}  # name of a target -> the subscription to its pose
         self.places = {}  # name of a target -> its last pose
-        self.asked = None  # the target that the node asked for, until the response is there
+        self.asked = None  # the target in the last request to /catch, until the response arrives
 
     def pose_received(self, pose):
         self.pose = pose
@@ -36,7 +36,7 @@ class CatcherNode(Node):
         pass
 
     def listen(self, name):
-        # TODO 11: subscribe to the pose of this target. The callback stores it in self.places, under the name.
+        # TODO 11: subscribe to the pose of this target. The callback stores it in self.places, with the name as the key.
         pass
 
     def forget(self, name):

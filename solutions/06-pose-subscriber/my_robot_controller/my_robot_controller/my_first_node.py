@@ -1,4 +1,4 @@
-"""The node of step 01: it counts, one log line per second."""
+"""The node of step 01: it logs a counter, one line per second."""
 
 import rclpy
 from rclpy.executors import ExternalShutdownException

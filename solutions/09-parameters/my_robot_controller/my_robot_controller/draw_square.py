@@ -37,7 +37,7 @@ class DrawSquareNode(Node):
             self.change_state()
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO c: set the speeds of the state, count the call, and change the state when it is over.
+        # # TODO c: set the speeds of the state, count the call, and change the state after its last call.
         # END STARTER
         self.publisher.publish(msg)
         # BEGIN SOLUTION

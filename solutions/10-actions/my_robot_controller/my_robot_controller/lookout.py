@@ -42,7 +42,7 @@ class LookoutNode(Node):
             self.get_logger().info(f"{self.remaining:.2f} rad to go")
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 7: while there is a goal, log what the last feedback said, as in "1.25 rad to go".
+        # # TODO 7: while there is a goal, log the number from the last feedback, as in "1.25 rad to go".
         # END STARTER
 
     def turn(self):
@@ -53,7 +53,7 @@ class LookoutNode(Node):
         future.add_done_callback(self.goal_accepted)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 4: send a goal with the present heading, without waiting. Pass two methods: one for the feedback,
+        # # TODO 4: send a goal with the heading in self.heading, without waiting. Pass two methods: one for the feedback,
         # # and one for the response to the goal.
         # pass
         # END STARTER

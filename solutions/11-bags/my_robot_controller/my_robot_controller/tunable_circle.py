@@ -51,8 +51,8 @@ class TunableCircleNode(Node):
         return SetParametersResult(successful=True)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 4: refuse values with which the turtle would turn faster than FASTEST_TURN, and say why. The others are
-        # # fine.
+        # # TODO 4: reject values that would make the turtle turn faster than FASTEST_TURN, and give the reason. Accept
+        # # all other values.
         # return SetParametersResult(successful=True)
         # END STARTER
 

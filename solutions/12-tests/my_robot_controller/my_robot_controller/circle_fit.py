@@ -24,6 +24,6 @@ def fit_circle(x, y):
     return a, b, np.sqrt(c + a**2 + b**2)
     # END SOLUTION
     # BEGIN STARTER
-    # # TODO 2: reject points that form no circle (ValueError), then solve the linear equations of the lesson.
+    # # TODO 2: reject points that form no circle (ValueError), then solve the linear equations from the lesson.
     # return 0.0, 0.0, 0.0
     # END STARTER

@@ -42,7 +42,7 @@ def main():
     # END SOLUTION
     # BEGIN STARTER
     # # TODO 5: end with a sentence if there are no poses: sys.exit("...").
-    # # TODO 6: compute the rate, fit the circle, and print the line of the lesson.
+    # # TODO 6: compute the rate, fit the circle, and print the line that the lesson shows.
     # END STARTER
 
 

@@ -31,7 +31,7 @@ class CatcherNode(Node):
         self.pose = None  # of turtle1
         self.listeners = {}  # name of a target -> the subscription to its pose
         self.places = {}  # name of a target -> its last pose
-        self.asked = None  # the target that the node asked for, until the response is there
+        self.asked = None  # the target in the last request to /catch, until the response arrives
 
     def pose_received(self, pose):
         self.pose = pose
@@ -59,7 +59,7 @@ class CatcherNode(Node):
         self.listeners[name] = self.create_subscription(Pose, f"/{name}/pose", target_moved, 10)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 11: subscribe to the pose of this target. The callback stores it in self.places, under the name.
+        # # TODO 11: subscribe to the pose of this target. The callback stores it in self.places, with the name as the key.
         # pass
         # END STARTER
 

@@ -31,7 +31,7 @@ class SpawnerNode(Node):
         # # TODO 7: offer the service /catch, with the type Kill.
         # END STARTER
         self.timer = self.create_timer(0.5, self.tick)
-        self.requested = 0  # how many turtles were asked for
+        self.requested = 0  # how many turtles the node has requested
         self.left = []  # the names of the targets that are left
 
     def tick(self):
