@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 PAGE = "index.html"
 """The name of a lesson's page, inside the folder of its step."""
 _LESSON_LINK = re.compile(r"^(\.\./[\w-]+/)lesson\.md(#.*)?$")
-_NEIGHBOURS = re.compile(r"(Before|Next): ")
+_NEIGHBOURS = re.compile(r"(Previous|Next): ")
 
 
 @dataclass(frozen=True)

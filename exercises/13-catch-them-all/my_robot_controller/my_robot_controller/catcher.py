@@ -36,7 +36,7 @@ class CatcherNode(Node):
         pass
 
     def listen(self, name):
-        # TODO 11: subscribe to the pose of this target. The callback stores it in self.places, with the name as the key.
+        # TODO 11: subscribe to the pose of this target. The callback stores it in self.places, under its name.
         pass
 
     def forget(self, name):

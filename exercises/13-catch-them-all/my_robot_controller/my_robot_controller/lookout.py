@@ -34,7 +34,7 @@ class LookoutNode(Node):
         # TODO 7: while there is a goal, log the number from the last feedback, as in "1.25 rad to go".
 
     def turn(self):
-        # TODO 4: send a goal with the heading in self.heading, without waiting. Pass two methods: one for the feedback,
+        # TODO 4: send a goal with the heading self.heading, without waiting. Pass two methods: one for the feedback,
         # and one for the response to the goal.
         pass
 

@@ -53,7 +53,7 @@ class LookoutNode(Node):
         future.add_done_callback(self.goal_accepted)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 4: send a goal with the heading in self.heading, without waiting. Pass two methods: one for the feedback,
+        # # TODO 4: send a goal with the heading self.heading, without waiting. Pass two methods: one for the feedback,
         # # and one for the response to the goal.
         # pass
         # END STARTER

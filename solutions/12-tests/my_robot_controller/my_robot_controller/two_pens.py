@@ -95,7 +95,7 @@ class TwoPensNode(Node):
         # END SOLUTION
         # BEGIN STARTER
 
-    # # TODO 7: write a method for each response: what comes next? The requests need your numbers from my_numbers_08.toml.
+    # # TODO 7: write a method for each response: what comes next? Your numbers are in my_numbers_08.toml.
     # END STARTER
 
 
