@@ -69,8 +69,8 @@ def with_a_solution(step: str) -> list[str]:
 def test_a_notebook_is_short_and_names_the_lesson(step: str) -> None:
     prose = " ".join("".join(cell["source"]) for cell in cells_of(step) if cell["cell_type"] == "markdown")
     assert 60 <= len(prose.split()) <= 450
-    assert "`%lesson` in a separate cell shows the lesson." in prose
-    assert f"In the course it is the file `course/{step}/lesson.md`" in prose
+    assert "type `%lesson` in a new cell." in prose
+    assert f"In the course, the lesson is the file `course/{step}/lesson.md`" in prose
     # A notebook may be opened from any folder, so a link to a file could lead nowhere.
     assert re.findall(r"\]\((?!https://)", prose) == []
 
