@@ -143,16 +143,17 @@ def lone_cell(
     user: int | None,
     filter_fd: int | None = None,
 ) -> list[str]:
-    """Return the command that runs `argv` in a cell with a separate network.
+    """Return the command that runs `argv` in a cell with a separate network, inside a room without other processes.
 
-    `user` has the same meaning as in `room`.
+    `user` has the same meaning as in `room`. Student code can change the memory of the first process of its cell, so
+    that this process does not exit together with its parent. The first process of the room is out of reach.
 
         with call_filter() as filter_fd, cell_user() as user:
             command = lone_cell(["colcon", "build"], view, env=env, limits=Limits(), user=user, filter_fd=filter_fd)
             subprocess.run(command, check=True, pass_fds=[filter_fd])
     """
     inner = cell(argv, view, env=env, limits=limits, filter_fd=filter_fd)
-    return inner if user is None else room(inner, view, env=env, user=user)
+    return room(inner, view, env=env, user=user)
 
 
 def usable() -> bool:

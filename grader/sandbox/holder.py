@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import json
 import os
+import select
 import signal
 import subprocess
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.common.linux_calls import pidfd_open
+from grader.common.linux_calls import pidfd_open, pidfd_send_signal
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+
+
+_ENDS_S = 5.0
 
 
 class HolderError(Exception):
@@ -26,6 +30,7 @@ class Holder:
     def __init__(self, command: Callable[[int], Sequence[str]], pass_fds: Sequence[int] = ()) -> None:
         """Start bubblewrap. `command(info_fd)` returns the command line, whose program is entering.HOLDER."""
         self._info, info = os.pipe()
+        self._first: int | None = None
         try:
             pipe = subprocess.PIPE
             self._process = subprocess.Popen(
@@ -63,6 +68,7 @@ class Holder:
                 self._process.stdin.write(b"?")
                 if self._process.stdout.read(1):  # HOLDER runs, so that all namespaces and mounts exist
                     first = int(json.loads(about.read())["child-pid"])
+                    self._first = pidfd_open(first)
                     children = Path(f"/proc/{first}/task/{first}/children").read_text("ascii")
                     return pidfd_open(int(children.split()[0]))
             except (OSError, ValueError, IndexError) as error:
@@ -77,11 +83,22 @@ class Holder:
         if self._process.returncode is None:
             with suppress(ProcessLookupError):
                 os.killpg(self._process.pid, signal.SIGKILL)
+        # The first process of a cell belongs to the user of the cell. Student code can change its memory, so that it
+        # does not exit together with its parent. All other processes of the cell end with it: pid_namespaces(7).
+        if self._first is not None:
+            with suppress(ProcessLookupError):
+                pidfd_send_signal(self._first, signal.SIGKILL)
 
     def close(self) -> None:
-        """Kill all processes of the room or cell, and wait until bubblewrap has exited."""
+        """Kill all processes of the room or cell, and wait until they have exited."""
         self.kill()
         for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):
             assert pipe is not None
             pipe.close()
         self._process.wait()
+        if self._first is not None:
+            ended = select.poll()
+            ended.register(self._first, select.POLLIN)
+            ended.poll(_ENDS_S * 1000.0)
+            os.close(self._first)
+            self._first = None

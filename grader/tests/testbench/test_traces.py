@@ -75,6 +75,27 @@ for name in filter(str.isdigit, os.listdir("/proc")):
 while time.process_time() < 0.8:
     pass
 """
+# The process changes the first process of its cell, which then does not end with its parent: see hostile/707. It waits
+# at a futex in memory that LTTng shares with all processes of the room.
+SURVIVORS = """
+import ctypes, os, time
+libc = ctypes.CDLL(None)
+pages = [line.split("-")[0] for line in open("/proc/self/maps") if " r--s " in line and "lttng" in line]
+word = ctypes.c_void_p(int(pages[0], 16) + 64) if pages else None
+found = word is not None and libc.syscall(202, word, 1, 100, None, None, 0) > 0
+place = int(open("/proc/1/syscall").read().split()[-1], 16)
+with open("/proc/1/mem", "r+b", buffering=0) as memory:
+    memory.seek(place)
+    memory.write(bytes.fromhex("b89d000000bf0100000031f631d20f05b8220000000f05ebf7"))
+if os.fork() == 0:
+    if os.fork() == 0:
+        if word is not None and os.fork() == 0:
+            libc.syscall(202, word, 0, 0, None, None, 0)
+        os._exit(0)
+    os._exit(0)
+os.wait()
+time.sleep(0.2)
+"""
 # An earlier run's report contains this text. The text must not be a constant of this module.
 MEMORY = """
 import gc, sys
@@ -92,6 +113,7 @@ TRACES = {
     "process ids": PROCESS_IDS,
     "counters of the network": COUNTERS,
     "the CPU time of other processes": CPU_TIME,
+    "processes that outlive their cell": SURVIVORS,
     "the memory of the session": MEMORY,
 }
 
