@@ -24,7 +24,7 @@ BEGINS = "Traceback (most recent call last):"
 
 @dataclass(frozen=True)
 class Size:
-    """The maximum bytes in a page for the beginning, the end and the errors of a log, respectively."""
+    """The maximum sizes (bytes) of the beginning, the end and the errors of a log in a page."""
 
     head: int
     tail: int
