@@ -18,7 +18,7 @@ import struct
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.common.linux_calls import pidfd_open
+from grader.common.linux_calls import close_from, pidfd_open
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -91,7 +91,7 @@ def keep(descriptors: Iterable[int]) -> None:
     kept = [os.dup(descriptor) for descriptor in descriptors]
     for number, descriptor in enumerate(kept):
         os.dup2(descriptor, number)
-    os.closerange(len(kept), os.sysconf("SC_OPEN_MAX"))
+    close_from(len(kept))
 
 
 def confine(limits: Iterable[tuple[int, int]], *, user: int | None, call_filter: bytes = b"") -> None:

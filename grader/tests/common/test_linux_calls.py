@@ -9,6 +9,7 @@ import os
 import select
 import signal
 import subprocess
+import sys
 from typing import TYPE_CHECKING
 
 import pytest
@@ -62,6 +63,23 @@ def test_a_process_is_watched_and_killed_through_its_descriptor() -> None:
 @pytest.mark.usefixtures("_old")
 def test_the_command_for_locks_is_that_of_the_kernel() -> None:
     assert linux_calls.F_OFD_SETLK == 37
+
+
+@pytest.mark.parametrize("kernel", ["has close_range", "before Linux 5.9"])
+def test_all_descriptors_from_a_number_on_are_closed_whatever_the_limit(kernel: str) -> None:
+    code = (
+        "import os, resource, sys\n"
+        "from grader.common import linux_calls\n"
+        "if sys.argv[1] != 'has close_range':\n"
+        "    def refused(*_): raise OSError\n"
+        "    linux_calls._call = refused\n"
+        "high = os.dup2(os.open('/dev/null', os.O_RDONLY), 900)\n"
+        "resource.setrlimit(resource.RLIMIT_NOFILE, (100, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))\n"
+        "linux_calls.close_from(3)\n"
+        "print([name for name in range(1000) if os.path.exists(f'/proc/self/fd/{name}')])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code, kernel], capture_output=True, text=True, check=True)
+    assert done.stdout == "[0, 1, 2]\n"
 
 
 def names_used(path: Path) -> Iterator[str]:
