@@ -12,6 +12,7 @@ import fcntl
 import os
 import signal
 from contextlib import suppress
+from pathlib import Path
 
 F_OFD_SETLK: int = getattr(fcntl, "F_OFD_SETLK", 37)
 """The command of fcntl(2) that locks a part of a file for an open file description. (Value: asm-generic/fcntl.h.)"""
@@ -51,10 +52,10 @@ def close_from(lowest: int) -> None:
     try:
         _call(_CLOSE_RANGE, lowest, 2**32 - 1, 0)
     except OSError:  # Linux before 5.9
-        for name in os.listdir("/proc/self/fd"):
+        for number in [int(path.name) for path in Path("/proc/self/fd").iterdir()]:
             with suppress(OSError):  # the descriptor of the folder itself
-                if int(name) >= lowest:
-                    os.close(int(name))
+                if number >= lowest:
+                    os.close(number)
 
 
 def _call(number: int, *arguments: int | None) -> int:

@@ -28,6 +28,21 @@ MISSING = {
 }
 """Names that Python lacks if it was built with the headers of Linux 3.10 and glibc 2.17."""
 
+CLOSES = """
+import os, resource, sys
+from grader.common import linux_calls
+
+def refused(*_):
+    raise OSError
+
+if sys.argv[1] != "has close_range":
+    linux_calls._call = refused
+os.dup2(os.open("/dev/null", os.O_RDONLY), 900)
+resource.setrlimit(resource.RLIMIT_NOFILE, (100, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))
+linux_calls.close_from(3)
+print([number for number in range(1000) if os.path.exists(f"/proc/self/fd/{number}")])
+"""
+
 
 @pytest.fixture(params=["the names of Python", "without these names"])
 def _old(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
@@ -67,18 +82,7 @@ def test_the_command_for_locks_is_that_of_the_kernel() -> None:
 
 @pytest.mark.parametrize("kernel", ["has close_range", "before Linux 5.9"])
 def test_all_descriptors_from_a_number_on_are_closed_whatever_the_limit(kernel: str) -> None:
-    code = (
-        "import os, resource, sys\n"
-        "from grader.common import linux_calls\n"
-        "if sys.argv[1] != 'has close_range':\n"
-        "    def refused(*_): raise OSError\n"
-        "    linux_calls._call = refused\n"
-        "high = os.dup2(os.open('/dev/null', os.O_RDONLY), 900)\n"
-        "resource.setrlimit(resource.RLIMIT_NOFILE, (100, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))\n"
-        "linux_calls.close_from(3)\n"
-        "print([name for name in range(1000) if os.path.exists(f'/proc/self/fd/{name}')])\n"
-    )
-    done = subprocess.run([sys.executable, "-c", code, kernel], capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, "-c", CLOSES, kernel], capture_output=True, text=True, check=True)
     assert done.stdout == "[0, 1, 2]\n"
 
 
