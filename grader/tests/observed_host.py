@@ -72,6 +72,8 @@ class Host:
             shutil.copytree(interfaces, scratch / "cache/grader" / interfaces.name, symlinks=True)
         source = (ROOT / "grader/sandbox/usage.py").read_text("utf-8")
         (scratch / "shims/usage.py").write_text(source + "\n\ndef exceeded(*_):\n    return None\n")
+        # The interpreter belongs to the user who grades, as one that the user has installed.
+        shutil.copy2(Path(sys.executable).resolve(), scratch / "interpreter")
         _program(scratch / "shims/bwrap", "exit 1")
         _program(scratch / "shims/prlimit", 'while [ "$1" != "--" ]; do shift; done; shift; exec "$@"')
 
@@ -133,6 +135,7 @@ class Host:
             command += ["--bind", str(scratch / outside), inside]
         for path in map(str, _ours()):
             command += ["--ro-bind", path, path]
+        command += ["--bind", str(scratch / "interpreter"), str(Path(sys.executable).resolve())]
         if not defended:
             real["usage.py"] = str(ROOT / "grader/sandbox/usage.py")
             command += [word for name, at in real.items() for word in ("--ro-bind", str(scratch / "shims" / name), at)]

@@ -49,6 +49,7 @@ OTHERS = {
     ("launcher", "run"): "a student's node that is not Python, in its cell",
     ("lock", "_compile"): "uv, in the course's folder",
     ("measure", "cost"): "the command that a benchmark measures",
+    ("fork_client", "_begin"): "the loader of Python, with a command of interpreter() in the same function",
     ("fork_server", "_fork_supervised"): "a fork that enters a room or a cell",
     ("fork_server", "_next_node"): "a fork that supervises a node",
     ("fork_server", "_next_request"): "a fork that supervises a conductor or the nodes of a trial",

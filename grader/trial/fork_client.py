@@ -11,6 +11,7 @@ from threading import Lock
 from typing import TYPE_CHECKING, Any, Literal
 
 from grader.common.interpreter import interpreter
+from grader.common.loader import loaded
 from grader.ros import installation
 from grader.sandbox import bubblewrap
 from grader.trial.fork import Fork
@@ -61,9 +62,10 @@ class ForkServer:
             env = installation.environment(self._ros, home=bubblewrap.HOME, domain=None)
             env |= CONDUCTORS if self._kind == "conductor" else {}
             start = interpreter(*module, python=str(self._ros.python), env=env, searches=True)
-            # Without a session of its own, a node could write into the input of the user's terminal.
+            # Without a session of its own, a node could write into the input of the user's terminal. Without the
+            # loader, it could change an interpreter that belongs to the user, since no read-only mount hides it.
             self._process = subprocess.Popen(
-                start.argv,
+                loaded(start.argv),
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,

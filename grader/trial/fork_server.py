@@ -61,6 +61,7 @@ def main() -> None:
     The arguments are "conductor" or "node", and the descriptor of the socket.
     """
     kind, requests = sys.argv[1], socket.socket(fileno=int(sys.argv[2]))
+    Path("/proc/self/comm").write_text("python3", "ascii")  # otherwise, it is the name of the loader
     problem, postponed = "", []
     try:
         postponed = launcher.import_ahead() if kind == "node" else _import_conductor()

@@ -82,6 +82,14 @@ def test_a_node_cannot_do_more_than_a_program_that_bubblewrap_starts() -> None:
     assert forked == json.loads(done.stdout)
 
 
+def test_a_node_cannot_reach_the_file_of_the_interpreter_outside_of_its_cell() -> None:
+    script = "import os\nprint(*os.stat('/proc/self/exe')[1:3], open('/proc/self/comm').read())\n"
+    inode, device, name = run(f"#!/usr/bin/env python3\n{script}").stdout.text.split()
+    own = Path(sys.executable).stat()
+    assert (int(inode), int(device)) != (own.st_ino, own.st_dev)
+    assert name == "python3"
+
+
 def test_a_traceback_shows_the_program_alone() -> None:
     stderr = run("#!/usr/bin/env python3\ndef main():\n    exec('1 / 0')\n\nmain()\n").stderr.text
     assert [line.split(",")[0].strip() for line in stderr.splitlines() if "File" in line] == [
