@@ -14,14 +14,16 @@ import errno
 import os
 import resource
 import signal
+import socket
 import struct
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING
 
 from grader.common.linux_calls import close_from, pidfd_open
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
 HOLDER = ("cat",)
 """The program that keeps a room or cell open, until its standard input is closed."""
@@ -41,6 +43,8 @@ _NAMESPACES = {
 _CAPABILITIES_VERSION_3 = 0x20080522
 _LAST_CAPABILITY = 63
 _C = ctypes.CDLL(None, use_errno=True)
+_MOST_IN_TRANSIT = 65_536
+_passing = Lock()
 
 
 def why_impossible() -> str | None:
@@ -84,6 +88,27 @@ def pid_of(pidfd: int) -> int:
     if pid <= 0:
         raise ProcessLookupError(pid)
     return pid
+
+
+def pass_descriptors(to: socket.socket, data: bytes, descriptors: Sequence[int]) -> None:
+    """Send data with descriptors. Any thread may call this function.
+
+    The kernel refuses if the sockets of the user contain more descriptors than the sender may open (ETOOMANYREFS of
+    unix(7)). The sockets of a cell may contain somewhat more than NODE_LIMITS.open_files, so the limit of the sender is
+    raised in the meantime.
+
+    Raises:
+        OSError: the kernel refused, or the socket is closed at the other end.
+    """
+    with _passing:
+        soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+        most = _MOST_IN_TRANSIT if hard == resource.RLIM_INFINITY else min(hard, _MOST_IN_TRANSIT)
+        raised = soft if soft == resource.RLIM_INFINITY else max(soft, most)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (raised, hard))
+        try:
+            socket.send_fds(to, [data], descriptors)
+        finally:
+            resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
 
 
 def keep(descriptors: Iterable[int]) -> None:

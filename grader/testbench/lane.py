@@ -142,7 +142,7 @@ class Lane:
         brain = Brain(behaviour, self._package.node)
         with Conversation(node, brain, test_s, self._duration_s, self._guard.worked_s) as conversation:
             with suppress(OSError):  # the session has exited, and the conversation ends at once
-                socket.send_fds(self._requests, [b"."], conversation.childs)
+                entering.pass_descriptors(self._requests, b".", conversation.childs)
             conversation.passed()
             ended = conversation.result()
             if not (conversation.has_begun or self._has_begun or self._killed):

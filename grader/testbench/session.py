@@ -135,7 +135,7 @@ def _supervise(order: dict[str, Any], source: bytes, asks: int, answers: int, re
     if child == 0:
         _run_tests(order, source, workspace, asks, answers)
     result = socket.socket(fileno=results)
-    socket.send_fds(result, [STARTED], [pidfd_open(child)])
+    entering.pass_descriptors(result, STARTED, [pidfd_open(child)])
     code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
     report = _report(workspace / "report.json")
     seconds = time.monotonic() - begun

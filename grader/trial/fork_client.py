@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from grader.common.interpreter import interpreter
 from grader.common.loader import loaded
 from grader.ros import installation
-from grader.sandbox import bubblewrap
+from grader.sandbox import bubblewrap, entering
 from grader.trial.fork import Fork
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class ForkServer:
                 if self._process is None or self._process.poll() is not None:
                     self._begin()
                 assert self._requests is not None
-                socket.send_fds(self._requests, [json.dumps(order).encode()], passed)
+                entering.pass_descriptors(self._requests, json.dumps(order).encode(), passed)
         return Fork(ours)
 
     def close(self) -> None:

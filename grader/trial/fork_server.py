@@ -122,7 +122,7 @@ def _enter_room(order: dict[str, Any], problem: str, room: int, *passed: int) ->
 
 def _enter_cell(order: dict[str, Any], problem: str, conductors: int, result: int) -> None:
     """Become a process in the cell of a node."""
-    socket.send_fds(socket.socket(fileno=result), [STARTED], [pidfd_open(os.getpid())])
+    entering.pass_descriptors(socket.socket(fileno=result), STARTED, [pidfd_open(os.getpid())])
     descriptors = _next_node(socket.socket(fileno=conductors), order["nodes"])
     cell, *streams, its_result = descriptors
     _report_to(streams[2], problem)
@@ -180,7 +180,7 @@ def _fork_supervised(result: int, childs: Sequence[int]) -> None:
     process = pidfd_open(child)
     results = socket.socket(fileno=result)
     try:
-        socket.send_fds(results, [STARTED], [process])
+        entering.pass_descriptors(results, STARTED, [process])
         ends = select.poll()
         ends.register(process, select.POLLIN)
         ends.register(results, 0)  # only the end of the connection

@@ -9,7 +9,7 @@ from abc import ABC, abstractmethod
 from contextlib import suppress
 from typing import IO, TYPE_CHECKING
 
-from grader.sandbox import bubblewrap
+from grader.sandbox import bubblewrap, entering
 from grader.sandbox.entering import HOLDER
 from grader.sandbox.holder import Holder, HolderError
 from grader.sandbox.system_calls import call_filter
@@ -145,7 +145,7 @@ class LauncherInCell(Launcher):
         self.stdout, self.stderr = os.fdopen(stdout, "rb", buffering=0), os.fdopen(stderr, "rb", buffering=0)
         result, its_result = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         passed = [process, its_stdin, its_stdout, its_stderr, its_result.detach()]
-        socket.send_fds(nodes, [b"."], passed)
+        entering.pass_descriptors(nodes, b".", passed)
         for descriptor in passed:
             os.close(descriptor)
         self._fork = Fork(result)

@@ -208,7 +208,7 @@ class Trial:
         nodes = 0 if self._plan.alone else 1 + len(self._plan.beside)
         try:
             return ConductorInRoom(self._ros, nodes, self._errors)
-        except HolderError as error:
+        except (HolderError, OSError) as error:
             raise _fault(str(error)) from error
 
     def _limit(self) -> None:
