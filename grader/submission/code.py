@@ -63,6 +63,10 @@ class Module:
         return () if self.tree is None else tuple(ast.walk(self.tree))
 
 
+ALIKE = {"create_lifecycle_publisher": "create_publisher"}
+"""Methods of a lifecycle node with the arguments of a method that each node has."""
+
+
 @dataclass(frozen=True)
 class Call:
     """A function call, and the module that contains it."""
@@ -104,14 +108,18 @@ class Code:
             for node in module.nodes:
                 if isinstance(node, ast.Call):
                     name = (dotted(node.func) or "").rpartition(".")[2] or getattr(node.func, "attr", "")
-                    found.setdefault(name, []).append(Call(node, module))
+                    for each in {name, ALIKE.get(name, name)}:
+                        found.setdefault(each, []).append(Call(node, module))
         place = {module.file: index for index, module in enumerate(self.modules)}
         for calls in found.values():
             calls.sort(key=lambda call: (place[call.module.file], call.node.lineno, call.node.col_offset))
         return found
 
     def calls(self, name: str) -> list[Call]:
-        """Return the calls to functions and methods whose dotted name ends with this name, in source order."""
+        """Return the calls to functions and methods whose dotted name ends with this name, in source order.
+
+        Calls to functions that are alike (ALIKE) are included.
+        """
         return self._calls.get(name, [])
 
     def assigned(self, *path: str) -> Where | None:
