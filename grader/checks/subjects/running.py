@@ -9,9 +9,10 @@ from grader.checks.causes.crash import crash_of
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended, why_no_node
 from grader.checks.kind import Kind, NoParams
-from grader.checks.outcome import Finding, failed, passed
+from grader.checks.outcome import Finding, Status, failed, passed
 from grader.common.words import a_list, nearest, shorten
 from grader.evidence import activity
+from grader.submission.constants import evaluate
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -49,6 +50,11 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
     """A node of the submission has the name that the exercise requires."""
     wanted = f"/{evidence.trial.node}"
     names = activity.nodes(evidence.recording)
+    if not names and activity.spun(evidence.recording):
+        # In wall time, a node can crash before other nodes discover it.
+        names = _names_in_source(evidence)
+        if not names:
+            return Finding(Status.SKIPPED, "Not judged, because the node crashed before it appeared in the ROS graph.")
     if wanted in names:
         return passed(f"The node is named {evidence.trial.node}.")
     if not names:
@@ -65,6 +71,13 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
         return failed(observed, expected, Cause("node-namespace", "The node is in a namespace.", where))
     cause = "The node name is the string that the class passes to super().__init__."
     return failed(observed, expected, Cause("node-name", cause, where))
+
+
+def _names_in_source(evidence: Evidence) -> tuple[str, ...]:
+    """Return the full names of the nodes that the source creates, as far as they are constants."""
+    calls = [call for function in ("__init__", "create_node", "Node") for call in evidence.code.calls(function)]
+    values = [evaluate(call.argument(0, "node_name"), call.module.names) for call in calls]
+    return tuple(f"/{value}" for value in values if isinstance(value, str))
 
 
 STARTS = Kind(

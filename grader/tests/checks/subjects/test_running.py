@@ -261,3 +261,23 @@ def test_a_sentence_about_the_start_is_true(words: str, true: Recording, near: R
 @pytest.mark.parametrize(("trial", "found"), [(SILENT, True), (SHAPES["other name"](), False)])
 def test_a_node_that_did_not_appear_has_no_name(trial: Recording, *, found: bool) -> None:
     assert ("No node appeared in the ROS graph." in told(finding("node-name", evidence(trial)))) == found
+
+
+@pytest.mark.parametrize(
+    ("source", "status", "observed"),
+    [
+        ('super().__init__("draw_circle")', Status.PASSED, "The node is named draw_circle."),
+        ('super().__init__("circle")', Status.FAILED, "The node is named /circle."),
+        ("super().__init__(read_name())", Status.SKIPPED, "the node crashed before it appeared in the ROS graph"),
+    ],
+)
+def test_the_source_names_a_node_that_crashed_before_other_nodes_discovered_it(
+    source: str, status: Status, observed: str
+) -> None:
+    text = f'{START}\n  File "/ros/rclpy/executors.py", line 838, in _execute_timer\n    x\nValueError: x\n'
+    trial = recording([], end=crashed(0.1), graphs=(), stderr=Output(text))
+    found = finding("node-name", evidence(trial, node(('super().__init__("draw_circle")', source))))
+    assert found.status is status
+    assert observed in told(found)
+    unseen = finding("node-name", evidence(replace(trial, stderr=Output("")), node()))
+    assert (unseen.status, "crashed before it appeared" in told(unseen)) == (Status.FAILED, False)
