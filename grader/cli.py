@@ -13,13 +13,12 @@ from grader.authoring import cli as authoring
 from grader.book import cli as book
 from grader.classroom import cli as classroom
 from grader.common.command_help import App
+from grader.common.exiting import run_and_exit
 from grader.common.interpreter import clean_own
 from grader.common.log_commands import protect_output
 from grader.common.needed_command import needed_command
+from grader.common.own_process import prepare
 from grader.common.standard_streams import make_usable
-from grader.common.system_errors import refusal
-from grader.common.terminal_text import RED, say
-from grader.errors import GraderError
 from grader.exercise.completion import steps as known_steps
 from grader.gradebook import cli as gradebook
 from grader.learner import cli as learner
@@ -193,9 +192,10 @@ book.add_to(app)
 
 
 def main() -> None:
-    """Run the command. An error is printed as a sentence. Decision 9 in docs/design.md lists the exit codes."""
+    """Run the command, and exit."""
     clean_own()
     make_usable()
+    prepare()
     protect_output()
     words = sys.argv[1:]
     if "_GRADER_COMPLETE" in os.environ:  # the shell requests completions (grader.ros.shell)
@@ -204,48 +204,16 @@ def main() -> None:
         completion_init()
         words = []
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # limits numpy's threads, as in grader.ros.installation
-    try:
-        needed_command(app, words)()
-    except GraderError as error:
-        say(f"grader: {error}", style=RED)
-        sys.exit(error.exit_code)
-    except KeyboardInterrupt:
-        sys.exit(130)
-    except BrokenPipeError:
-        # The process at the other end of the pipe has exited, as in `grader check | head`.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-        sys.exit(1)
-    except Exception as error:
-        if os.environ.get("GRADER_DEBUG"):
-            raise
-        refused = refusal(error)
-        if isinstance(error, ImportError):
-            from grader.setup import bootstrap
-
-            refused = bootstrap.outdated(error)
-        if refused:
-            say(f"grader: {refused}")
-            _drop_unwritten()
-            sys.exit(3)
-        reported = (
-            f"grader: internal error in the grader, not a problem with your work: {type(error).__name__}: {error}"
-        )
-        say(
-            f"{reported}\nPut GRADER_DEBUG=1 before the command to see where the error happened. "
-            "Please report the error."
-        )
-        sys.exit(3)
+    run_and_exit(needed_command(app, words), _explain)
 
 
-def _drop_unwritten() -> None:
-    """Discard unwritten output.
+def _explain(error: Exception) -> str | None:
+    """Return a sentence if a module cannot be imported because the course has changed since its set-up."""
+    if not isinstance(error, ImportError):
+        return None
+    from grader.setup import bootstrap
 
-    If the output were kept, Python would try to write it at exit, fail, and exit with code 120.
-    """
-    try:
-        sys.stdout.flush()
-    except OSError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    return bootstrap.outdated(error)
 
 
 def _judged(recording: Path, read_exercise: Callable[[Path], Exercise]) -> tuple[Archived, tuple[Outcome, ...]]:

@@ -4,6 +4,26 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+def home(env: Mapping[str, str] = os.environ) -> Path:
+    """Return the user's home. HOME may be unset, empty or relative, as in a cron job or a container.
+
+    In this case, the home is that of the user database, or "/" if the database does not contain the user.
+    """
+    named = env.get("HOME", "")
+    if named.startswith("/"):
+        return Path(named)
+    import pwd
+
+    try:
+        return Path(pwd.getpwuid(os.getuid()).pw_dir)
+    except KeyError:
+        return Path("/")
 
 
 def cache() -> Path:
@@ -22,6 +42,6 @@ def _folder(variable: str, default: str) -> Path:
     As the specification requires, relative paths are ignored.
     """
     named = os.environ.get(variable, "")
-    folder = Path(named) if named.startswith("/") else Path.home() / default
+    folder = Path(named) if named.startswith("/") else home() / default
     # CMake removes "..", and then the folder in which it installs would have another name than we expect.
     return (folder.resolve() if ".." in folder.parts else folder) / "grader"

@@ -21,6 +21,7 @@ from rclpy.signals import SignalHandlerOptions
 from grader.common.system_errors import refusal
 from grader.errors import MachineError
 from grader.graph.announcements import participant_ports, passed_on
+from grader.ros.domain import wrong_domain
 from grader.ros.failure import Ros2Error
 from grader.ros.installation import FASTDDS_PROFILE
 
@@ -46,8 +47,6 @@ _RANGE, _PROFILE = "ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTRTPS_DEFAULT_PROFILES_F
 _POLL_S = 0.01
 _WAKE_S = 0.1
 """The maximum time (s) that one call into rclpy may wait: Python handles Ctrl-C only after the call has returned."""
-HIGHEST_DOMAIN = 232
-"""The highest domain id that has ports (DDSI-RTPS, 9.6.1)."""
 PREFIX = "_ros2cli"
 _UNKNOWN = "_NODE_NAME_UNKNOWN_"
 
@@ -129,11 +128,10 @@ def _leave_generator_out() -> None:
 
 def _domain() -> int:
     """Return the domain id. Raise Ros2Error if the id is invalid, because Fast DDS would terminate the process."""
-    text = os.environ.get("ROS_DOMAIN_ID", "") or "0"
-    if not text.isdecimal() or int(text) > HIGHEST_DOMAIN:
-        message = f"ROS_DOMAIN_ID is '{text}'; a whole number from 0 to {HIGHEST_DOMAIN} was expected"
+    message = wrong_domain(os.environ)
+    if message:
         raise Ros2Error(message)
-    return int(text)
+    return int(os.environ.get("ROS_DOMAIN_ID", "") or "0")
 
 
 class Settling:

@@ -18,8 +18,10 @@ from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Literal
 
+from grader.common import xdg
 from grader.common.private_folder import private_folder
-from grader.errors import MachineError
+from grader.errors import MachineError, UsageError
+from grader.ros.domain import wrong_domain
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -39,7 +41,7 @@ _UNWATCHED = (
 """Variables that are set only in a trial. Nodes that users start themselves use the users' settings."""
 _THEIRS = frozenset(
     {
-        *("HOME", "LANG", "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "RMW_IMPLEMENTATION"),
+        *("LANG", "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "RMW_IMPLEMENTATION"),
         *("FASTDDS_BUILTIN_TRANSPORTS", "FASTRTPS_DEFAULT_PROFILES_FILE"),
     }
 )
@@ -176,8 +178,13 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
     domain, so that classmates on one machine do not drive each other's turtles. If the ROS 2 installation was sourced,
     however, the domain is 0, as usual in ROS 2, so that these nodes reach nodes in terminals where the user only
     sourced the installation.
+
+    Raises:
+        UsageError: ROS_DOMAIN_ID is not the id of a domain.
     """
-    home = Path(env.get("HOME", "/"))
+    if domain is None and wrong_domain(env):
+        raise UsageError(wrong_domain(env))
+    home = xdg.home(env)
     own = 0 if ros.kind == "sourced" else domain_of(os.getuid())
     needed = environment(ros, home=home, domain=own)
     if ros.kind == "sourced":
@@ -194,7 +201,8 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
         )
     joined = {name: _joined(name, needed, env) for name in SEARCHED if name in needed or name in env}
     joined["PATH"] = _users_path(ros, env)
-    kept = {key: value for key, value in env.items() if key in _THEIRS or key not in needed}
+    theirs = _THEIRS if ros.kind == "sourced" else _THEIRS - {"RMW_IMPLEMENTATION"}  # the wheels have only one
+    kept = {key: value for key, value in env.items() if key in theirs or key not in needed}
     chosen = {"ROS_DOMAIN_ID": str(domain)} if domain is not None else {}
     return {**needed, **kept, **joined, **chosen}
 

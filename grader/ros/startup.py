@@ -32,7 +32,11 @@ def see_to_environment(needed: Collection[str]) -> None:
 
     Raises:
         MachineError: ROS 2 was not found.
+        UsageError: ROS_DOMAIN_ID is not the id of a domain.
     """
+    if "RMW_IMPLEMENTATION" in os.environ and index.packages().get("rclpy") == Path(sys.prefix):
+        # The user may have set this for another ROS 2. Without it, the wheels use the middleware that they have.
+        del os.environ["RMW_IMPLEMENTATION"]
     if _STARTED_AGAIN in os.environ or all(map(index.has_package, needed)):
         os.environ.pop(_STARTED_AGAIN, None)
         return

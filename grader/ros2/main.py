@@ -12,6 +12,7 @@ import sys
 from contextlib import suppress
 from typing import TYPE_CHECKING, NoReturn
 
+from grader.common.own_process import prepare
 from grader.common.standard_streams import make_usable
 from grader.common.system_errors import refusal
 from grader.common.terminal_text import say
@@ -38,6 +39,7 @@ class _EndedError(KeyboardInterrupt):
 def main() -> NoReturn:
     """Run `ros2` and exit with its exit code."""
     make_usable()
+    prepare()
     code = run()
     with suppress(OSError):
         sys.stderr.flush()
@@ -94,7 +96,10 @@ def _run_verb(words: list[str]) -> int:
     if words[:1] != ["run"]:
         # No verb computes with numpy. A learner's own program, which `run` starts, may use all processors.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    args = make_parser(words).parse_args(words)
+    try:
+        args = make_parser(words).parse_args(words)
+    except SystemExit as done:  # argparse has printed the help or an error
+        return int(done.code or 0)
     if not args.use_python_default_buffering and isinstance(sys.stdout, io.TextIOWrapper):
         # As in the real ros2, output to a pipe is flushed after each line.
         sys.stdout.reconfigure(line_buffering=True)

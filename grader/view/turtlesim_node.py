@@ -9,6 +9,8 @@ import signal
 import sys
 from typing import TYPE_CHECKING
 
+from grader.common.own_process import prepare
+
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
@@ -26,6 +28,7 @@ def main() -> None:
     """Run turtlesim until Ctrl-C, and exit."""
     # Ctrl-C terminates the program without a traceback, even while ROS 2 is being imported.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    prepare()
     from grader.turtlesim import standalone
 
     sys.exit(standalone.main(open_view))

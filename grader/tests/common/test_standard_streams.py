@@ -29,6 +29,19 @@ def test_a_closed_stream_is_no_error(tmp_path: Path, command: str, closed: str) 
     assert (done.returncode, "rror" in done.stderr) == (0, False), done.stderr
 
 
+@pytest.mark.parametrize("command", [*COMMANDS, "grader hint 01", "ros2 --help"])
+def test_a_reader_that_has_exited_is_no_error(tmp_path: Path, command: str) -> None:
+    done = run(f"{{ sleep 0.01; {command}; echo $? >&3; }} 3>&2 | true", tmp_path)
+    assert done.stderr.strip() == ("0" if command.startswith("ros2") else "1")
+
+
+@pytest.mark.parametrize("command", [*COMMANDS, "grader hint 01", "ros2 --help"])
+def test_output_that_cannot_be_written_is_one_sentence(tmp_path: Path, command: str) -> None:
+    done = run(f"{command} > /dev/full", tmp_path)
+    assert "The disk is full" in done.stderr
+    assert (done.returncode, done.stderr.count("\n")) == (3, 1)
+
+
 def test_no_file_takes_the_place_of_a_closed_standard_output(tmp_path: Path) -> None:
     code = (
         "import os, subprocess, sys; from grader.common.standard_streams import make_usable; make_usable(); "

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+import pwd
 import shutil
 import subprocess
 import sys
@@ -65,6 +66,25 @@ def test_a_sourced_ros_2_stays_where_a_terminal_has_it_in_which_nothing_else_was
 )
 def test_who_hears_a_node_is_reported(env: dict[str, str], reported: str) -> None:
     assert reported in installation.who_hears(env)
+
+
+@pytest.mark.parametrize("domain", ["abc", "500", "-1", "233", "1.5", "²"])
+def test_a_domain_that_does_not_exist_is_named_before_a_node_fails(domain: str) -> None:
+    with pytest.raises(UsageError, match="from 0 to 232 was expected. .* type: unset ROS_DOMAIN_ID"):
+        users({"ROS_DOMAIN_ID": domain})
+    assert users({"ROS_DOMAIN_ID": domain}, domain=9)["ROS_DOMAIN_ID"] == "9"
+
+
+def test_only_a_sourced_ros_2_can_have_another_middleware() -> None:
+    theirs = {"RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"}
+    assert users(theirs, ros=WHEELS)["RMW_IMPLEMENTATION"] == "rmw_fastrtps_cpp"
+    assert users(theirs, ros=SOURCED)["RMW_IMPLEMENTATION"] == "rmw_cyclonedds_cpp"
+
+
+@pytest.mark.parametrize("env", [{}, {"HOME": ""}, {"HOME": "here"}])
+def test_a_user_without_a_home_in_the_environment_gets_the_one_of_the_system(env: dict[str, str]) -> None:
+    own = pwd.getpwuid(os.getuid()).pw_dir
+    assert installation.users_environment(HERE, env)["HOME"] == own
 
 
 def test_how_messages_travel_stays_the_users() -> None:

@@ -209,7 +209,10 @@ def test_a_domain_that_does_not_exist(still: World) -> None:
     done = still.run("ros2 topic list", ROS_DOMAIN_ID="500")
     assert done.code == 1
     assert "Traceback" not in done.stderr
-    assert done.stderr == "ROS_DOMAIN_ID is '500'; a whole number from 0 to 232 was expected\n"
+    assert done.stderr == (
+        "ROS_DOMAIN_ID is '500'; a whole number from 0 to 232 was expected. "
+        "To use the usual domain, type: unset ROS_DOMAIN_ID\n"
+    )
 
 
 def test_whoever_reads_us_may_go(still: World) -> None:

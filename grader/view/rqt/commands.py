@@ -8,6 +8,7 @@ import signal
 import sys
 from typing import TYPE_CHECKING
 
+from grader.common.own_process import prepare
 from grader.errors import GraderError
 from grader.ros.startup import hand_over, see_to_environment
 
@@ -62,6 +63,7 @@ def _main(package: str, parser: argparse.ArgumentParser, parts: Sequence[Part]) 
 
     `package` is the ROS package of the real command. Decision 9 in docs/design.md defines the exit codes.
     """
+    prepare()
     try:
         if "_ARGCOMPLETE" in os.environ:
             from argcomplete import autocomplete
