@@ -70,7 +70,7 @@ def test_who_hears_a_node_is_reported(env: dict[str, str], reported: str) -> Non
 
 @pytest.mark.parametrize("domain", ["abc", "500", "-1", "233", "1.5", "²"])
 def test_a_domain_that_does_not_exist_is_named_before_a_node_fails(domain: str) -> None:
-    with pytest.raises(UsageError, match="from 0 to 232 was expected. .* type: unset ROS_DOMAIN_ID"):
+    with pytest.raises(UsageError, match=r"from 0 to 232 was expected. .* unset ROS_DOMAIN_ID"):
         users({"ROS_DOMAIN_ID": domain})
     assert users({"ROS_DOMAIN_ID": domain}, domain=9)["ROS_DOMAIN_ID"] == "9"
 
