@@ -14,7 +14,7 @@ from grader.exercise.model import catalogue, course_folder
 _FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore", ".gitattributes", "COLCON_IGNORE")
 _NOT_FOR_STUDENTS = ("tests", "benchmarks", "__pycache__", "*.pyc")
 _IN_A_WHEEL = ("course", "exercises", "solutions", "repository")
-"""Folders that a wheel contains inside the package, and a checkout next to the package (see hatch_build.py)."""
+"""Folders that are inside the package in a wheel, and next to the package in a checkout (see hatch_build.py)."""
 
 
 def hand_out(to: Path) -> None:

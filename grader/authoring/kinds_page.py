@@ -99,7 +99,7 @@ def _examples() -> dict[str, tuple[str, CheckSpec]]:
 
 
 def _section(kind: Kind[Any], step: str, spec: CheckSpec) -> str:
-    advice = " This is advice: it is worth 0 points and never fails a run." if kind.advice else ""
+    advice = " This is advice: it is worth 0 points, and a run can pass without it." if kind.advice else ""
     lines = [f"### {kind.name}", "", f"{kind.about}{advice}", "", f"Default title: *{kind.title}*", ""]
     if kind.parameters():
         lines += ["| parameter | unit | default | allowed | meaning |", "| --- | --- | --- | --- | --- |"]

@@ -36,7 +36,8 @@ else:
 
 
 RECORDED = (".mcap", "/metadata.yaml")
-"""The endings of the paths of a bag's files. These files are not released, because each student records a new bag."""
+"""The endings of the paths of files that belong to a bag. These files are not released, because each student records a
+new bag."""
 
 
 @dataclass(frozen=True)
@@ -177,7 +178,7 @@ def main(arguments: list[str] | None = None) -> int:
         prog="python -m grader.authoring.release", description="Create exercises/ from solutions/."
     )
     parser.add_argument("--check", action="store_true", help="change nothing, and fail if exercises/ is out of date")
-    parser.add_argument("--root", type=Path, help="the folder that contains both (default: the course)")
+    parser.add_argument("--root", type=Path, help="the folder with solutions/ and exercises/ (default: the course)")
     options = parser.parse_args(arguments)
     root = options.root or course_folder().parent
     solutions, exercises = root / "solutions", root / "exercises"

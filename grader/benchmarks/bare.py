@@ -21,7 +21,7 @@ _COLCON = "import sys; from colcon_core.command import main; sys.exit(main())"
 
 
 def new_package(submission: Path, folder: Path) -> Path:
-    """Write a copy of the submission to a new folder. No earlier build can be reused for it. Return the folder."""
+    """Write a copy of the submission for which no earlier build can be reused. Return the folder of the copy."""
     opened = open_submission(submission)
     manifest = opened.files[_MANIFEST] + f"<!-- {uuid.uuid4()} -->\n".encode()
     write_copy(replace(opened, files={**opened.files, _MANIFEST: manifest}), folder)

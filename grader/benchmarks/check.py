@@ -2,9 +2,9 @@
 
     python -m grader.benchmarks.check [--times N] [--submission FOLDER]
 
-Everything is measured in one run on the same machine. The measurements alternate, so that other load affects all of
-them. The first check of a package builds the package. The next check reuses the build, as it does after a change to a
-module.
+Everything is measured in one run on the same machine. The measurements alternate, so that other programs slow down all
+of them alike. The first check of a package builds the package. The next check reuses the build, as it does after a
+change to a module.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def _print(costs: dict[str, list[Cost]], stages: dict[str, list[float]]) -> None
     trial = statistics.median(stages.pop("trial"))
     for stage, seconds in stages.items():
         print(f"{stage:20}{statistics.median(seconds):8.2f}{statistics.median(seconds) / whole:8.0%}")
-    print(f"{'(trial in all)':20}{trial:8.2f}{trial / whole:8.0%}")
+    print(f"{'(whole trial)':20}{trial:8.2f}{trial / whole:8.0%}")
     print(f"{'in all':20}{whole:8.2f}")
 
 

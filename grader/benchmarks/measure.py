@@ -60,7 +60,7 @@ def cost(argv: Sequence[str], *, env: Mapping[str, str] | None = None, cwd: Path
         group.wait()
         counted_s = group.cpu_s()
     if child.returncode != 0:
-        message = f"{' '.join(argv)} ended with {child.returncode}:\n{output}"
+        message = f"{' '.join(argv)} exited with code {child.returncode}:\n{output}"
         raise RuntimeError(message)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     waited_s = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime

@@ -38,7 +38,7 @@ AIM_IDLE = 0.01
 """The aim for the share of one core that an idle page uses."""
 _REST_S = 2.0
 _IDLE_S = 0.1
-"""The maximum CPU time that idle processes use in the time _REST_S (s)."""
+"""The processes are idle if they use at most this CPU time (s) within _REST_S."""
 _PATIENCE_S = 300
 _SAVES = (("2.0", "3.0", "50 of 100 points"), ("2.0", "2.0", "100 of 100 points"))
 

@@ -2,9 +2,9 @@
 
     python -m grader.benchmarks.ros2 [--times N]
 
-Everything is measured in one run. The measurements alternate, so that other load affects all of them. The first command
-starts the ROS 2 daemon, and all later commands use this daemon. The benchmark also prints how often the lists of topics
-were complete.
+Everything is measured in one run. The measurements alternate, so that other programs slow down all of them alike. The
+first command starts the ROS 2 daemon, and all later commands use this daemon. The benchmark also prints how often the
+lists of topics were complete.
 """
 
 from __future__ import annotations

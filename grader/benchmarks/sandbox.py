@@ -2,8 +2,8 @@
 
     python -m grader.benchmarks.sandbox [--times N] [--submission FOLDER]
 
-Everything is measured in one run on the same machine. The measurements alternate, so that other load affects all of
-them.
+Everything is measured in one run on the same machine. The measurements alternate, so that other programs slow down all
+of them alike.
 """
 
 from __future__ import annotations

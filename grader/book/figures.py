@@ -1,4 +1,4 @@
-"""The places of the interactive figures in the lessons. figures.js draws them."""
+"""The places in the lessons where figures.js draws interactive figures."""
 
 from __future__ import annotations
 

@@ -102,7 +102,7 @@ class DaskEngine:
             self._client.close(timeout=5)
 
     def has_room(self) -> bool:
-        """Return whether a thread of a worker is idle."""
+        """Return whether a task can be started: a thread is idle, and the maximum number of tasks is not reached."""
         return (self._most is None or len(self._running) < self._most) and self._free() is not None
 
     def start(self, task: Task) -> None:

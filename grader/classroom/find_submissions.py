@@ -47,7 +47,7 @@ class Found:
     student: str
     exercise: str
     path: Path
-    """An absolute path without links. If a path contains a link, a student has replaced a folder by this link, so the
+    """An absolute path without links. If a path contains a link, a student has replaced a folder with this link, so the
     path is not read."""
     refused: str = ""
     """The reason why the submission cannot be graded, if the reason is already known."""
@@ -82,7 +82,7 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
 def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
     """Yield each submission with its exercise.
 
-    If a submission names no exercise, yield it once for each exercise that other submissions name.
+    If the exercise of a submission is unknown, yield the submission once for each exercise of the other submissions.
 
     Raises:
         UsageError: the exercise cannot be determined.
@@ -95,8 +95,8 @@ def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
         if not known:
             message = (
                 f"Which exercise is {shown(str(each.path))} for? Name the exercise with --exercise, one of: "
-                f"{', '.join(catalogue())}. (In nbgrader's submitted/STUDENT/EXERCISE, the last folder names the "
-                "exercise.)"
+                f"{', '.join(catalogue())}. (In nbgrader's submitted/STUDENT/EXERCISE, the last folder has the name of "
+                "the exercise.)"
             )
             raise UsageError(message)
         for exercise in known:
@@ -123,7 +123,7 @@ def _one_of(alike: Sequence[Found]) -> Found:
 
 
 def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:
-    """Return the names of entries that are not submissions, except for hidden files."""
+    """Return the names of the entries in these folders that are not submissions, except for hidden files."""
     folders = [path for path in given if os.path.isdir(path) and not _is_one_alone(path)]
     return tuple(
         shown(entry.name)
@@ -137,7 +137,7 @@ def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:
 
 
 def _entries(folder: Path) -> list[Path]:
-    """Return the entries of the folder in order. Raises UsageError if the folder cannot be opened."""
+    """Return the entries in the folder, sorted by name. Raises UsageError if the folder cannot be opened."""
     try:
         return sorted(folder.iterdir(), key=lambda each: sort_key(each.name))
     except OSError as error:
@@ -148,7 +148,7 @@ def _entries(folder: Path) -> list[Path]:
 def _same(one: Path, other: Path) -> bool:
     """Return whether the two paths lead to the same file or folder. A loop of symbolic links is not an error.
 
-    A link to the other path is not the same: a student may have made the link in order to be left out.
+    If `one` is a link to `other`, they are different: a student may have created the link to avoid being graded.
     """
     if os.path.islink(one):
         return _without_links_above(one) == _without_links_above(other)

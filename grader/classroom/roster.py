@@ -55,7 +55,7 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
         elif empty:
             fault = f"the {empty[0]} is missing."
         elif lines_of.setdefault(name, line) != line:
-            fault = f'the {needed[0]} "{shorten(name)}" is already in line {lines_of[name]}.'
+            fault = f'the {needed[0]} "{shorten(name)}" is already on line {lines_of[name]}.'
         else:
             continue
         message = f"{file}, line {line}: {fault}"

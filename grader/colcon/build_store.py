@@ -1,7 +1,7 @@
 """A store on disk for the builds of a learner's package, so that the next `grader check` need not run colcon again.
 
-The store keeps the last builds in the user's cache folder. A file in the store that cannot be read, or is damaged, is
-ignored. The store is never used for marks.
+The store keeps the most recent builds in the user's cache folder. A file in the store that cannot be read, or is
+damaged, is ignored. The store is never used for marks.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class BuildStore:
         return built
 
     def put(self, key: str, built: runner.Built) -> None:
-        """Store a build. Without space or permission on the disk, nothing is stored."""
+        """Store a build. If the disk is full or not writable, nothing is stored."""
         packed = _packed(built)
         if len(packed) > MOST_BYTES:
             return
@@ -98,7 +98,7 @@ def _tools() -> tuple[str, ...]:
 
 
 def _packed(built: runner.Built) -> bytes:
-    """Return a hash of the rest, then the result of the build as one line of JSON, then the tree."""
+    """Return the content of a file in the store: a hash of the rest, the build as one line of JSON, and the tree."""
     content = json.dumps(asdict(built.build)).encode() + b"\n" + built.tree
     return hashlib.sha256(content).hexdigest().encode() + b"\n" + content
 

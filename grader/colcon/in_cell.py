@@ -52,7 +52,7 @@ class Run:
     code: str
     argv: list[str]
     ignored: list[str]
-    """The prefixes of the warnings that -W ignores."""
+    """The beginnings of the warning messages that `-W ignore:...` suppresses."""
     cwd: str
     env: dict[str, str]
 
@@ -211,8 +211,8 @@ class EntryPoints:
     """`importlib.metadata.entry_points` with a cache.
 
     The original function reads the metadata of every package on each call, up to fifteen times per run of setup.py.
-    EntryPoints reads the metadata of the machine once. It reads other folders on sys.path, such as the folder of the
-    submission, on each call.
+    EntryPoints reads the metadata of the packages that are installed on the machine only once. It reads other folders
+    on sys.path, such as the folder of the submission, on each call.
     """
 
     def __init__(self) -> None:

@@ -5,7 +5,8 @@ the current folder too. A `numpy.py` or a package `grader` in the folder where a
 that user's rights. Therefore, this module builds every command line for an interpreter, and a test fails if another
 module builds such a command line.
 
-Like machine.py, this module runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
+Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
+of Python 3.6.
 """
 
 import os
@@ -19,7 +20,8 @@ SEARCHED = (
 )
 """Variables that contain a path or a list of paths from which programs, libraries or modules are loaded."""
 _CODE = "import sys; sys.path[:] = filter(None, sys.path)\n"
-"""Python 3.11 has the option -P for this, but IPython then hides a notebook's folder from the notebook's cells."""
+"""Code that removes the current folder from sys.path. The option -P of Python 3.11 does the same, but with -P, IPython
+does not let the cells of a notebook import modules from the notebook's folder."""
 _RUN = "import runpy; runpy.run_module(sys.argv[0], run_name='__main__', alter_sys=True)\n"
 _MODULE = _CODE + "del sys.argv[0]; " + _RUN
 _MODULE_BELOW = "import sys; sys.path.insert(0, sys.argv[1]); del sys.argv[:2]; " + _RUN

@@ -1,7 +1,7 @@
-"""System calls of Linux, also for a Python that does not have them.
+"""Linux system calls, even if the `os` module of this Python does not have them.
 
-A Python has only the calls that the headers on the machine where it was built declared. The Python of conda, for
-example, is built for old systems and has no `os.pidfd_open`, even if it runs on a new kernel.
+Python has only the system calls that were declared in the C headers of the machine on which Python was built. For
+example, the Python of conda is built for old systems, so it has no `os.pidfd_open`, even on a new kernel.
 
 Like the scripts that run in a cell, this module needs only the standard library.
 """
@@ -44,10 +44,10 @@ def pidfd_send_signal(pidfd: int, number: int) -> None:
 
 
 def close_from(lowest: int) -> None:
-    """Close all descriptors of this process from `lowest` on.
+    """Close all file descriptors of this process that are not less than `lowest`.
 
-    `os.closerange` closes one number after the other in a Python that does not know close_range(2). That takes minutes
-    if the limit on open files is very high, as in some containers.
+    If Python was built without close_range(2), `os.closerange` calls close(2) for every number up to the limit on open
+    files. This takes minutes if the limit is very high, as in some containers.
     """
     try:
         _call(_CLOSE_RANGE, lowest, 2**32 - 1, 0)

@@ -1,8 +1,9 @@
-"""Start a program so that /proc/PID/exe is not the file of the program.
+"""Start a program in such a way that /proc/PID/exe does not lead to the file of the program.
 
-/proc/PID/exe leads to the file that a process executes, past all read-only mounts of a sandbox. If this file belonged
-to the user of the sandbox, as a Python does that a user has installed, code in the sandbox could change it. If the
-dynamic loader of the system executes the program, the file is the loader, which belongs to root.
+/proc/PID/exe leads to the file that a process executes. The read-only mounts of a sandbox do not protect a file that is
+opened in this way. If the file belonged to the user of the sandbox, code in the sandbox could change it. For example, a
+user owns a Python that the user has installed. If the system's dynamic loader runs the program, /proc/PID/exe leads
+instead to the loader, which belongs to root.
 """
 
 from __future__ import annotations
@@ -14,23 +15,24 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _HEADER = struct.Struct("<4sBB26xQ14xHH")
-"""Of an ELF file (elf(5)): the magic number, the class, the byte order; the place, size and number of its segments."""
+"""Values in the header of an ELF file (elf(5)): magic number, class, byte order; offset, size and number of the entries
+in the program header table."""
 _SEGMENT = struct.Struct("<I4xQ16xQ16x")
-"""The kind, place and length of a segment."""
+"""Values in an entry of the program header table: the type, offset and length of a segment."""
 _ELF, _64_BITS, _LITTLE_ENDIAN, _INTERPRETER = b"\x7fELF", 2, 1, 3
 
 
 def loaded(argv: Sequence[str]) -> list[str]:
     """Return the command that runs the program `argv[0]`, an absolute path, with its dynamic loader.
 
-    Return `argv` itself if the program has no loader, as a script or a static program.
+    Return `argv` unchanged if the program needs no loader: a script or a statically linked program.
     """
     loader = _loader(argv[0])
     return [*([loader] if loader else []), *argv]
 
 
 def _loader(program: str) -> str:
-    """Return the path of the dynamic loader that an ELF file of 64 bits names, or an empty string."""
+    """Return the path of the dynamic loader of a 64-bit ELF file, or an empty string for any other file."""
     with open(program, "rb") as file:  # noqa: PTH123 - a resolved path would hide a virtual environment
         header = file.read(_HEADER.size)
         if len(header) < _HEADER.size:

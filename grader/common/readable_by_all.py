@@ -1,6 +1,7 @@
-"""Files that every user may read. As root, the grader runs student code in a cell as another user.
+"""Files that every user may read. If root runs the grader, student code runs in a cell as another user.
 
-Like machine.py, this module runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
+Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
+of Python 3.6.
 """
 
 from pathlib import Path

@@ -11,11 +11,11 @@ _MODES = ("r", "w", "w")
 
 
 def make_usable() -> None:
-    """Open closed standard streams, and accept every character on a terminal or in a file that has no code for it.
+    """Reopen closed standard streams, and allow characters that the encoding of standard output does not have.
 
-    Python has no sys.stdout after `grader env >&-`. The next file that was opened would become the standard output of
-    all child processes. Where the encoding is not UTF-8, such as with PYTHONIOENCODING=ascii, `?` replaces what the
-    encoding lacks.
+    With `grader env >&-`, sys.stdout is None, and the next file that is opened would become the standard output of all
+    child processes. If the encoding is not UTF-8, for example with PYTHONIOENCODING=ascii, `?` is printed in place of
+    each character that the encoding does not have.
     """
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:
@@ -30,7 +30,7 @@ def make_usable() -> None:
 
 
 def has_signs(encoding: str) -> bool:
-    """Return whether the encoding has signs such as ✓ and →."""
+    """Return whether the encoding has characters such as ✓ and →."""
     return encoding.lower().startswith("utf")
 
 

@@ -1,6 +1,7 @@
-"""One sentence for each system error, saying what to do: no disk space, no memory, no more files or processes.
+"""One sentence for each system error, saying what to do: full disk, no memory, too many open files or processes.
 
-Like machine.py, this module runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
+Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
+of Python 3.6.
 """
 
 import errno
@@ -51,7 +52,7 @@ def _refusal_behind(error: BaseException) -> Optional[str]:
 
 
 def refusal_in(said: str) -> Optional[str]:
-    """Return a sentence for users if the message `said` mentions a lack of disk space, memory, files or processes."""
+    """Return the sentence for users if the message `said` contains the text of a known system error, else None."""
     found = next((number for number in sorted(_SCARCE) if os.strerror(number) in said), None)
     return sentence(found) if found else None
 
@@ -65,18 +66,19 @@ def _is_of_shutil(error: BaseException) -> bool:
 def path_and_reason(error: OSError) -> Tuple[str, str]:
     """Return the path of an error of the file system ("" if there is none), and the reason.
 
-    shutil.copytree collects the errors of all files, and has no reason of its own. The first error counts.
+    shutil.copytree raises a single error that contains a list with the errors of all files. The first error in this
+    list is used.
     """
     if _is_of_shutil(error) and error.args and error.args[0]:
         _, path, said = error.args[0][0]
         found = re.match(r"\[Errno (\d+)\]", said)
         return str(path), os.strerror(int(found.group(1))) if found else said
     path = os.fsdecode(error.filename) if isinstance(error.filename, (str, bytes)) else ""
-    return path, error.strerror or str(error) or "it gave no reason"
+    return path, error.strerror or str(error) or "no reason given"
 
 
 def of_the_machine(error: OSError) -> bool:
-    """Return whether the error means that the machine has no disk space, memory, files or processes left."""
+    """Return whether the error means that the machine has no disk space or memory, or too many files or processes."""
     return error.errno in _SCARCE
 
 
@@ -99,5 +101,5 @@ def sentence(number: int, where: str = "", room: str = ROOM) -> str:
         return "This machine has no memory left: close other programs, or grade fewer submissions at once (--jobs)."
     if number == errno.EAGAIN:
         return "This machine cannot start more processes for you: close other programs, or raise `ulimit -u`."
-    what = os.strerror(number) if number else "it gave no reason"
+    what = os.strerror(number) if number else "no reason given"
     return f"The system did not allow something that the grader needs{at} ({what}): {_NOT_ALLOWED}."

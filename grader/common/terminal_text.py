@@ -1,6 +1,7 @@
 """Messages on a terminal: lines that are broken between words, and colours.
 
-The set-up runs this module before anything is installed, so it uses the syntax of Python 3.6.
+The set-up runs this module under any Python from 3.6 on, before anything is installed, so it uses only the syntax of
+Python 3.6.
 """
 
 import os
@@ -13,7 +14,8 @@ _COMMAND = re.compile(r"`[^`]*`|\b(?:source|cd)(?= ['/~.<])[^,;]*|\bsudo [a-z][^
 _OPTION = re.compile(r"(--[\w-]+) (?=[^-\s])")
 BOLD, RED = "1", "31"
 _SPACE = "\0"
-"""Stands for a space at which a line is not broken: inside a command, and between an option and its value."""
+"""A placeholder for a space at which a line must not be broken: inside a command, and between an option and its
+value."""
 
 
 def say(text: str, stream: Optional[TextIO] = None, style: str = "") -> None:

@@ -121,7 +121,8 @@ class BoundedCollect(ExchangeCollect):  # type: ignore[misc, unused-ignore]
             return {"username": "", "filename": "", "timestamp": _NEVER}
         owner = inbound.owner(Path(path)) if self.check_owner else record["username"]
         if owner != record["username"]:
-            self.log.warning("%s names %s, but belongs to %s", tree.shown(path), record["username"], owner)
+            text = "The name of %s contains the student %s, but the folder belongs to %s"
+            self.log.warning(text, tree.shown(path), record["username"], owner)
         return record
 
     def copy_files(self) -> None:

@@ -26,7 +26,7 @@ ATTRIBUTES = {**bleach.sanitizer.ALLOWED_ATTRIBUTES, "span": ["class"], "div": [
 
 
 class _NoPictures(dict[str, dict[str, str]]):
-    """Empty pictures in place of the pictures attached to a cell. nbconvert refuses a page without such a picture."""
+    """Empty pictures in place of a cell's attachments. nbconvert raises an error if an attached picture is missing."""
 
     def __contains__(self, name: object) -> bool:
         return True
@@ -45,7 +45,7 @@ def safe_html(markdown: str) -> str:
 def safe_metadata(output: Any, key: str, mimetype: str | None = None) -> float | None:  # noqa: ANN401 - nbformat's output
     """Return the width or height of a picture if it is a number, and None for all other values.
 
-    nbconvert's templates insert these values without quotes, so that a text could add attributes to the element.
+    nbconvert's templates insert these values without quotes, so a string could add attributes to the element.
     """
     try:
         value = get_metadata(output, key, mimetype)  # type: ignore[no-untyped-call]

@@ -81,7 +81,7 @@ def sync(
     say: Callable[[str], None],
     tell: Callable[[str], None],
 ) -> Synced:
-    """Grade collected submissions without a valid result, and write all scores to the gradebook.
+    """Grade the collected submissions that have no valid result yet, and write all scores to the gradebook.
 
     Raises:
         UsageError: nothing was collected, a step is not in the gradebook, or another sync is running.

@@ -86,7 +86,7 @@ def hint(
     ] = None,
     workspace: Workspace = None,
 ) -> None:
-    """Show the next hint for a step. The first hints are short, and the last hints almost give the answer."""
+    """Show the next hint for a step. The first hints are short, and the last hints almost give the answer away."""
     from grader.learner import hints
 
     _print(hints.hint(step, workspace, part))

@@ -33,7 +33,7 @@ OTHER_NUMBERS = "The solution has the numbers of an example student. Keep your o
 
 
 def print_solution(step: str, folder: Path | None, console: Console) -> None:
-    """Print where the learner's files differ from the solution, and answer the questions under "To think about".
+    """Print the differences from the solution, and the answers to the questions under "To think about".
 
     Raises:
         UsageError: the step has not passed yet.

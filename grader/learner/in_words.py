@@ -19,7 +19,7 @@ def difference(theirs: str, ours: str, path: str) -> str:
     other = [name for name in solution if name in mine and name not in same]
     sentences = [
         _sentence("The code is the same in", same),
-        _sentence("It is written differently in", other),
+        _sentence("The code is different in", other),
         _sentence("Only you have", [name for name in mine if name not in solution]),
         _sentence("Only the solution has", [name for name in solution if name not in mine]),
     ]

@@ -90,7 +90,7 @@ def state_file() -> Path:
 
 
 def load(workspace: Path) -> Progress:
-    """Return the progress in a workspace. At first, the progress is empty.
+    """Return the progress in a workspace. The progress is empty if no step has been started.
 
     Raises:
         MachineError: the file is damaged or cannot be read.

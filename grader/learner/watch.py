@@ -56,7 +56,7 @@ class _Sources(DefaultFilter):
 
 
 def _identity(folder: Path) -> tuple[int, int] | None:
-    """Return the device and the inode of the folder at this path, or None if there is none."""
+    """Return the device and the inode of the folder at this path, or None if there is no such folder."""
     try:
         status = folder.stat()
     except OSError:
@@ -85,7 +85,7 @@ class Events:
         Thread(target=self._watch, args=(folder, self._stop), daemon=True).start()
 
     def __iter__(self) -> Iterator[Happened]:
-        """Yield each event as it happens. Several waiting saves are yielded as one."""
+        """Yield each event as it happens. Several pending saves are yielded as one."""
         while (happened := self._queue.get()).kind != "end":
             if happened.kind == "saved":
                 self._saved.clear()
@@ -154,7 +154,7 @@ class Watched:
         self._wanted: tuple[Plan, Ros] | None = None
         self._unproved: Graded | None = None
         self._judged = ""
-        """The digest of the last submission, or the reason why none could be read."""
+        """The digest of the last submission, or the reason why the submission could not be read."""
 
     def changed(self) -> bool:
         """Return whether the folder has changed since the last verdict."""
@@ -220,9 +220,9 @@ class Watched:
     def prove(self, tell: Callable[[str], None], give_up: Callable[[], bool]) -> Graded | None:
         """Prove the causes of the last report by testing fixes in a copy (see `grader.grading.explain`).
 
-        Before each test, `give_up` is called to find out whether other work must be done first. If other work must be
-        done first, the next call of `prove` starts from the beginning. Return the report with the results of the tests,
-        or None if the tests have changed nothing.
+        Before each test, `give_up` is called to find out whether other work must be done first. If so, the tests stop,
+        and the next call of `prove` starts from the beginning. Return the report with the results of the tests, or None
+        if the tests were stopped or no fix was tested.
         """
         if self._unproved is None or give_up():
             return None

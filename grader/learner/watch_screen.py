@@ -117,7 +117,7 @@ class _Screen:
         self.watched.prepare()
 
     def _prove(self, events: Events) -> None:
-        """While no event waits, test fixes for the causes in the last report, and show the results."""
+        """While no events are pending, test fixes for the causes in the last report, and show the results."""
         if not self.watched.unproved:
             return
         with self._working() as tell:

@@ -1,4 +1,4 @@
-"""The files that a notebook's cells write next to the notebook, and the text that counts if they differ.
+"""The files that a notebook's cells write next to the notebook, and the text that counts if cell and file differ.
 
 A student hands in the package (or the answers) next to the notebook. A magic writes a cell to one of its files:
 

@@ -94,7 +94,7 @@ class Simulator:
             run_below(argv, cwd=folder, env=self._env, seconds=seconds)
 
     def start(self, executable: str) -> None:
-        """Start a node, and return while the node is running. The node is stopped at the end of the `with` statement.
+        """Start a node without waiting for its exit. The node is stopped at the end of the `with` statement.
 
         Raises:
             UsageError: the file of the node does not exist.

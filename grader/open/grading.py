@@ -93,7 +93,7 @@ def lacking(exercise: Exercise, files: Mapping[str, bytes]) -> list[dict[str, ob
 
 
 def _prove(desk: Desk, events: Events, watched: Watched) -> None:
-    """While no event waits, test fixes for the causes in the verdict, and show the results."""
+    """While no events are pending, test fixes for the causes in the verdict, and show the results."""
     proved = watched.prove(desk.tell, events.waiting)
     if proved is not None:
         desk.judged(proved.report)

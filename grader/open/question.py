@@ -39,7 +39,7 @@ _OPTIONS = frozenset(
 _WORD = re.compile(r"[A-Za-z0-9_/~.][A-Za-z0-9_/~.\-]*")
 _MOST_WORDS = 8
 LONGEST = 20_000
-"""The maximum length of an answer in characters."""
+"""The maximum length of the output of a command (characters)."""
 HZ_S = 5.0
 """The time for which `ros2 topic hz` measures (s)."""
 PATIENCE_S = 15.0

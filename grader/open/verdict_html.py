@@ -61,6 +61,6 @@ def _html(evidence: Evidence, report: Report, folder: Path) -> str:
 def _is_worth_showing(view: Evidence) -> bool:
     """Return whether the turtle had to drive or has moved.
 
-    A picture of a turtle that rightly stands still would only confuse the learner.
+    A picture of a turtle that correctly stands still would only confuse the learner.
     """
     return must_drive(view) or (view.run.recording is not None and not scene_of(view).notice)

@@ -2,7 +2,8 @@
 
     python3 -m grader.setup.bootstrap (learner | cluster | notebooks | docs | tests) [--python PYTHON]
 
-Like machine.py, this module runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
+Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
+of Python 3.6.
 """
 
 import argparse

@@ -231,28 +231,28 @@ def look_at_sandbox() -> Line:
     """
     why = bubblewrap.why_unavailable()
     if why is None:
-        return Line("sandbox", "bubblewrap makes sandboxes")
+        return Line("sandbox", "bubblewrap can create sandboxes")
     return Line("sandbox", f"none: {machine.NO_SANDBOX}", "advice", why)
 
 
 def look_at_limits() -> Line:
-    """Return a line about how the memory and the processes of a sandbox cell are counted."""
+    """Return a line that says how the memory and the processes of a sandbox cell are limited."""
     with control_group(NODE_LIMITS) as group:
         if group:
-            return Line("limits", "the kernel counts the memory and the processes of a sandbox")
+            return Line("limits", "the kernel limits the memory and the processes of a sandbox")
     return Line(
         "limits",
-        "the grader counts a sandbox's memory ten times per second, since it is not allowed to use control groups",
+        "the grader measures a sandbox's memory ten times per second, since it is not allowed to use control groups",
     )
 
 
 def look_at_reading() -> Line:
-    """Return a line about the files that are open to the process that reads submissions."""
+    """Return a line that says which files the process that reads submissions can open."""
     if reader.is_confined():
-        return Line("reading", "the process that reads submissions can open no other files")
+        return Line("reading", "the process that reads a submission can open only the submission and program files")
     return Line(
         "reading",
-        "the process that reads submissions can open all files of this user",
+        "the process that reads a submission can open all files of this user",
         "advice",
         "use a kernel with Landlock (Linux 5.13 or later), or allow user namespaces, to grade other people's work",
     )

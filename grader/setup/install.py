@@ -38,7 +38,8 @@ _OLDEST_NUMPY = (1, 25)
 _NUMPY = Path(__file__).with_name("numpy.txt")
 """The last version of numpy 1, in pip's format. Extensions that were built for an older numpy 1 cannot use numpy 2."""
 _BOOTSTRAPPER, _BOOTSTRAPPED = "ros_wheels_bootstrapper", "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
-"""The module that each interpreter with the ROS wheels imports, and the variable that is set once it has run."""
+"""The module that each interpreter with the ROS wheels imports, and the variable that is set once the module has
+run."""
 _UNKNOWN = (
     "The packages could not be installed; the installer's messages are above. HTTPS_PROXY sets a proxy, and pip's "
     f"configuration sets a mirror; {setup_errors.AGAIN}."
@@ -114,7 +115,7 @@ def start_fast(folder: Path) -> None:
 
 
 def ascii_only(lines: str) -> str:
-    """Return the lines of a .pth file in ASCII, without a change of their meaning.
+    """Return the lines of a .pth file in ASCII, without changing their meaning.
 
     With LC_ALL=C, or with a locale that the machine does not have, Python 3.10 to 3.12 reads .pth files as ASCII. If
     the path of the course has other characters, no interpreter of .venv would start.

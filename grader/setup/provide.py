@@ -1,6 +1,7 @@
 """Install programs that the system lacks, as root or with sudo, or return why this is not possible.
 
-Like machine.py, this module runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
+Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
+of Python 3.6.
 """
 
 import os

@@ -1,6 +1,7 @@
 """Messages that explain why a set-up stopped and what to do, from an error or an installer's output.
 
-Like machine.py, this module runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
+Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
+of Python 3.6.
 """
 
 import errno

@@ -219,7 +219,7 @@ def _packed(*, fine: bool, value: object) -> bytes:
 
 
 def _received(pipe: int) -> bytes | None:
-    """Return everything that the child process sends, or None if the answer takes too long or is too large."""
+    """Return everything that the child process sends, or None if this takes too long or the data is too large."""
     poll = select.poll()
     poll.register(pipe, select.POLLIN)
     until = time.monotonic() + TIMEOUT_S

@@ -1,7 +1,7 @@
 """Read a folder from an untrusted source.
 
 Links are never followed. Every folder is opened relative to the descriptor of its parent folder, with O_NOFOLLOW. Even
-if a folder is replaced by a link while the folder is being read, the link is not followed.
+if a folder is replaced with a link while the folder is being read, the link is not followed.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def sort_key(path: str) -> bytes:
 
 @dataclass(frozen=True)
 class Entry:
-    """An entry of a folder, from lstat. `target` is the target of a link."""
+    """An entry in a folder, with the values that `os.lstat` returned. `target` is the target of a link."""
 
     name: str
     mode: int
@@ -120,7 +120,8 @@ def open_file(path: Path, *, at: Path | None = None) -> IO[bytes]:
 def require_path(descriptor: int, path: Path) -> None:
     """Raise OSError if an opened file or folder is not at this absolute path.
 
-    A student can replace a folder by a link after the path was chosen. Without this check, the link would be followed.
+    A student can replace a folder with a link after the path was chosen. Without this check, the link would be
+    followed.
     """
     if Path("/proc/self/fd", str(descriptor)).readlink() != path:
         raise OSError(errno.ELOOP, os.strerror(errno.ELOOP))
@@ -136,7 +137,7 @@ def open_below(folder: int, path: str) -> Iterator[int]:
 
 
 def entries(folder: int) -> list[Entry] | None:
-    """Return the entries of a folder in the order of `sort_key`, or None if there are more than MAX_ENTRIES."""
+    """Return the entries in a folder in the order of `sort_key`, or None if there are more than MAX_ENTRIES."""
     found: list[Entry] = []
     with os.scandir(folder) as scan:
         for entry in scan:

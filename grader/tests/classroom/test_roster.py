@@ -49,7 +49,7 @@ def test_line_numbers_are_those_of_the_file_and_missing_columns_are_empty(file: 
         (b"id,name\n\n", "it has only one line"),
         (b"id,name\nada,Lovelace, Ada\n", "line 2: 3 values for 2 columns"),
         (b"id,name\n\n,Ada\n", "line 3: the id is missing"),
-        (b"id\nada\n\nbob\nada\n", 'line 5: the id "ada" is already in line 2'),
+        (b"id\nada\n\nbob\nada\n", 'line 5: the id "ada" is already on line 2'),
         (b"id,name\nada,M\xfcller\n", "line 2: this is not UTF-8"),
         ("id,name\nada,Ada\n".encode("utf-16"), "line 1: this is not UTF-8"),
         (b'id,name\nada,Ada\nbob,"Bob\neve,Eve\n', "this is not CSV: unexpected end of data"),

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
             "(Operation not permitted): see the output of",
         ),
         (OSError(errno.EROFS, "x", 7), "The disk cannot be written to: "),
-        (OSError(), "it gave no reason"),
+        (OSError(), "(no reason given)"),
         (FileNotFoundError(errno.ENOENT, "No usable temporary directory found in ['/tmp']"), "with TMPDIR"),
     ],
 )

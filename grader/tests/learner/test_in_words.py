@@ -28,7 +28,7 @@ REST = "The code is the same in __init__ and the lines outside functions."
         (OURS.replace("Ours", "Mine"), "The code is the same. Only comments, docstrings or spaces differ."),
         (
             OURS.replace("return self.speed", "return 2 * self.speed"),
-            f"{REST} It is written differently in step.",
+            f"{REST} The code is different in step.",
         ),
         (
             OURS.replace("def step", "def go"),
