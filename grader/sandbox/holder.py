@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 
+_PLAIN = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin"}
+"""The environment of bubblewrap. A process in the room or cell may be able to read it in /proc/1/environ, even if the
+programs that bubblewrap starts have another one."""
 _ENDS_S = 5.0
 
 
@@ -39,6 +42,7 @@ class Holder:
                 stdout=pipe,
                 stderr=pipe,
                 bufsize=0,
+                env=_PLAIN,
                 pass_fds=(info, *pass_fds),
                 start_new_session=True,
             )
