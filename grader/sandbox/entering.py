@@ -61,11 +61,15 @@ def why_impossible() -> str | None:
     return f"the grader cannot enter a sandbox on this kernel, Linux {os.uname().release}. It needs Linux 5.8 or later"
 
 
-def enter(holder: int) -> None:
+def enter(holder: int, *, cell: bool) -> None:
     """Move this process into all namespaces of the process with this descriptor (pidfd_open(2)).
 
     The pid namespace only applies to processes that are forked afterwards. The process must have only one thread. If it
-    belongs to root, it also leaves all supplementary groups.
+    belongs to root, it also leaves all supplementary groups. Afterwards, other processes of the user cannot inspect it.
+
+    Only a conductor knows the holder of a cell, and a conductor can be under the control of a node. Therefore, `cell`
+    requires that the process has namespaces of its own, as no process of a room has. But the namespaces may still be a
+    trap: a program in these mounts must not be trusted, not even by the import of a module or by a traceback.
 
     Raises:
         OSError: the kernel refused, or the process has exited.
@@ -74,11 +78,13 @@ def enter(holder: int) -> None:
         os.setgroups([])
     flags = 0
     for name, flag in _NAMESPACES.items():
-        if Path(f"/proc/{pid_of(holder)}/ns/{name}").readlink() != Path(f"/proc/self/ns/{name}").readlink():
+        required = cell and name != "cgroup"
+        if required or Path(f"/proc/{pid_of(holder)}/ns/{name}").readlink() != Path(f"/proc/self/ns/{name}").readlink():
             flags |= flag
     if _C.setns(holder, flags) != 0:
         number = ctypes.get_errno()
         raise OSError(number, f"the kernel did not let this process enter the sandbox: {os.strerror(number)}")
+    allow_inspection(allow=False)  # with other capabilities, the kernel uses the value in /proc/sys/fs/suid_dumpable
 
 
 def pid_of(pidfd: int) -> int:

@@ -161,7 +161,7 @@ def _new_cell(order: dict[str, Any]) -> Holder:
     option = command.index("--info-fd")
     cell = Holder(lambda info_fd: [*command[: option + 1], str(info_fd), *command[option + 2 :]], passed)
     holder = cell.await_ready()
-    entering.enter(holder)
+    entering.enter(holder, cell=True)
     os.close(holder)
     return cell
 

@@ -161,7 +161,7 @@ class ConductorInRoom(ConductorProcess):
                 self._forks = [fork_client.conductors(ros).request(conductor, descriptors)]
                 stack.callback(self._forks[0].close)
                 if nodes:
-                    self._forks += [fork_client.nodes(ros).request(_about_nodes(groups, nodes), [answers.fileno()])]
+                    self._forks += [fork_client.nodes(ros).request(about_nodes(groups, nodes), [answers.fileno()])]
                     stack.callback(self._forks[1].close)
             self._stack = stack.pop_all()
 
@@ -191,7 +191,8 @@ class ConductorInRoom(ConductorProcess):
         self._room.kill()
 
 
-def _about_nodes(groups: list[str], nodes: int) -> dict[str, Any]:
+def about_nodes(groups: list[str], nodes: int) -> dict[str, Any]:
+    """Return the request for the fork server of the nodes (grader.trial.fork_server)."""
     return {
         "groups": groups,
         "nodes": nodes,

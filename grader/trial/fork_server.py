@@ -31,7 +31,7 @@ import signal
 import socket
 import sys
 import traceback
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,7 +41,7 @@ from grader.trial import launcher
 from grader.trial.fork import STARTED, STATUS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
 NODES_SOCKET = 3
 """The descriptor of the socket on which a conductor asks for nodes."""
@@ -69,14 +69,30 @@ def main() -> None:
         problem = traceback.format_exc()
     entering.allow_inspection(allow=False)
     order, passed = _next_request(requests)
+    with _exit_on_errors():
+        (_enter_cell if kind == "node" else _enter_room)(order, problem, *passed)
     if kind == "node":
-        _enter_cell(order, problem, *passed)
+        order.clear()
         launcher.run(postponed)
     else:
-        _enter_room(order, problem, *passed)
         from grader.trial import conductor
 
         conductor.main(socket.socket(fileno=NODES_SOCKET))
+
+
+@contextmanager
+def _exit_on_errors() -> Iterator[None]:
+    """End this process if there is an error.
+
+    There is no traceback, because Python would read source files, and perhaps import modules, from the disk that this
+    process sees. This may be a disk that student code has made (entering.enter), and the process may be that of root.
+    """
+    try:
+        yield
+    except BaseException as error:
+        with suppress(OSError):
+            os.write(2, f"{type(error).__name__}: {error}\n".encode())
+        os._exit(1)
 
 
 def _import_conductor() -> list[launcher.Postponed]:
@@ -95,7 +111,7 @@ def _next_request(requests: socket.socket) -> tuple[dict[str, Any], list[int]]:
         request, passed, *_ = socket.recv_fds(requests, MOST_REQUEST, 6)
         if not request:
             os._exit(0)
-        if os.fork() == 0:
+        if _forked():
             break
         for descriptor in passed:
             os.close(descriptor)
@@ -109,11 +125,22 @@ def _next_request(requests: socket.socket) -> tuple[dict[str, Any], list[int]]:
     return order, passed
 
 
+def _forked() -> bool:
+    """Fork. Return whether this is the child process.
+
+    Without a child process, the receiver of the result is told that there is none, and other trials continue.
+    """
+    try:
+        return os.fork() == 0
+    except OSError:  # too many processes
+        return False
+
+
 def _enter_room(order: dict[str, Any], problem: str, room: int, *passed: int) -> None:
     """Become a process in the room."""
     *streams, result = passed
     _report_to(streams[2], problem)
-    entering.enter(room)
+    entering.enter(room, cell=False)
     _fork_supervised(result, [room, *streams])
     entering.keep(streams)
     entering.confine(order["limits"], user=order["user"])
@@ -127,7 +154,7 @@ def _enter_cell(order: dict[str, Any], problem: str, conductors: int, result: in
     cell, *streams, its_result = descriptors
     _report_to(streams[2], problem)
     by_root = os.geteuid() == 0
-    entering.enter(cell)
+    entering.enter(cell, cell=True)
     _fork_supervised(its_result, [cell, *streams])
     entering.keep(streams)
     call_filter = base64.b64decode(order["filter"])
@@ -141,7 +168,7 @@ def _enter_cell(order: dict[str, Any], problem: str, conductors: int, result: in
 
 
 def _report_to(stderr: int, problem: str) -> None:
-    """Write tracebacks of this process to this descriptor. Exit if there was a problem at the start of the server."""
+    """Write errors of this process to this descriptor. Exit if there was a problem at the start of the server."""
     os.dup2(stderr, 2)
     if problem:
         os.write(2, problem.encode())
@@ -171,14 +198,16 @@ def _fork_supervised(result: int, childs: Sequence[int]) -> None:
 
     The parent process closes the descriptors `childs`, and kills the child process if nobody waits for the result.
     """
+    results = socket.socket(fileno=result)
     child = os.fork()
     if child == 0:
-        os.close(result)
+        results.close()
+        os.setsid()  # otherwise, signals to the own process group would reach the server and other trials
         return
+    entering.end_with_parent()  # entering a cell may have cancelled the earlier request
     for descriptor in childs:
         os.close(descriptor)
     process = pidfd_open(child)
-    results = socket.socket(fileno=result)
     try:
         entering.pass_descriptors(results, STARTED, [process])
         ends = select.poll()

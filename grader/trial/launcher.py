@@ -193,7 +193,8 @@ def run(waiting: list[Postponed]) -> None:
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.default_int_handler)
     # The node gets its own process group, so that Ctrl-C reaches it and its children as in a terminal.
-    os.setpgid(0, 0)
+    if os.getpgid(0) != os.getpid():
+        os.setpgid(0, 0)
     source = script.read_bytes()
     if not (source.startswith(b"#!") and b"python" in source.split(b"\n", 1)[0]):
         # The node is not a Python script, so the arguments can only be passed on the command line.

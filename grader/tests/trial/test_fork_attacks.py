@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import socket
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -9,9 +11,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+import grader
+from grader.common.interpreter import interpreter
 from grader.ros import installation, underlay
 from grader.sandbox import bubblewrap
+from grader.sandbox.user import cell_user
 from grader.tests.observed_host import Host, readable_by_others
+from grader.trial import fork_client
+from grader.trial.conductor_process import about_nodes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -88,3 +95,130 @@ print(*results, *honest, sep="", end="")
 def test_a_node_that_fills_the_sockets_of_its_user_with_descriptors_does_not_stop_other_trials(folder: Path) -> None:
     limits = "import resource; resource.setrlimit(resource.RLIMIT_NOFILE, (1024, resource.getrlimit(7)[1]))"
     assert beside(IN_TRANSIT, folder, limits) == "True 109\nhonest\nhonest\n"
+
+
+FORKS = """
+import os, resource
+from pathlib import Path
+from grader.trial import fork_client
+
+def children(pid):
+    return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+ros = with_turtlesim(find_ros())
+plan = Plan("wall", Pose(5.5, 5.5, 0.0), None, 1.0)
+"""
+NOT_INSPECTED = f"""{TRIALS}{FORKS}
+with Trial(plan, ros, in_cell=True) as trial:
+    trial.await_ready()
+    servers = [server._process.pid for server in (fork_client.conductors(ros), fork_client.nodes(ros))]
+    _, conductor, forks_nodes = trial._conductor.pids()
+    supervisors = [next(pid for pid in children(servers[0]) if conductor in children(pid)), *children(forks_nodes)]
+    readable = [Path(f"/proc/{{pid}}/environ").stat().st_uid == os.getuid() for pid in
+        (*servers, forks_nodes, *supervisors, conductor)]
+print(readable, end="")
+"""
+
+
+@as_user
+def test_other_processes_of_the_user_cannot_inspect_a_server_or_a_supervisor(folder: Path) -> None:
+    """Linux gives the files of such a process in /proc to root. The conductor itself has nothing to hide."""
+    host = Host(folder, underlay.ensure(installation.find_ros()), as_user=True)
+    (host.work / "program.py").write_text(NOT_INSPECTED, "utf-8")
+    done = host.run([sys.executable, "/tmp/work/program.py"])
+    assert done.stdout == "[False, False, False, False, False, True]", done.stderr
+
+
+TOO_MANY = f"""{TRIALS}{FORKS}
+from grader.errors import MachineError
+with Trial(plan, ros, in_cell=True) as first:
+    first.await_ready()
+    server = fork_client.nodes(ros)._process.pid
+    before = resource.prlimit(server, resource.RLIMIT_NPROC, (1, resource.getrlimit(resource.RLIMIT_NPROC)[1]))
+    try:
+        run("print('refused')", 0.1)
+    except MachineError:
+        print("refused")
+    resource.prlimit(server, resource.RLIMIT_NPROC, before)
+    print(run("print('honest')", 0.1), children(first._conductor.pids()[2]) != [], end="")
+"""
+
+
+@as_user
+def test_a_server_that_cannot_fork_fails_one_trial_and_ends_no_other(folder: Path) -> None:
+    host = Host(folder, underlay.ensure(installation.find_ros()), as_user=True)
+    (host.work / "program.py").write_text(TOO_MANY, "utf-8")
+    done = host.run([sys.executable, "/tmp/work/program.py"])
+    assert done.stdout == "refused\nhonest\n True", done.stderr
+
+
+CONDUCTOR = """
+import ctypes, os, signal, socket, sys, time
+from pathlib import Path
+
+libc = ctypes.CDLL(None, use_errno=True)
+asks, what, sources = socket.socket(fileno=int(sys.argv[1])), sys.argv[2], Path(sys.argv[3])
+
+def mount(folder):
+    assert libc.mount(b"tmpfs", str(folder).encode(), b"tmpfs", 0, None) == 0
+
+def trap():
+    # A user, mounts, processes, a network, a host name and System V objects of its own.
+    user, group = os.getuid(), os.getgid()
+    assert libc.unshare(0x10000000 | 0x00020000 | 0x20000000 | 0x40000000 | 0x04000000 | 0x08000000) == 0
+    Path("/proc/self/setgroups").write_text("deny")
+    Path("/proc/self/uid_map").write_text(f"1000 {user} 1")
+    Path("/proc/self/gid_map").write_text(f"1000 {group} 1")
+    encodings = Path(__import__("encodings").__file__).parent
+    mount(encodings)
+    (encodings / "trap.py").write_text("open('/tmp/trapped', 'w').close()")
+    mount(sources)
+    (sources / "fork_server.py").write_text("# -*- coding: trap -*-\\n" * 400)
+    if os.fork() == 0:
+        os.write(ready, b"!")
+        signal.pause()
+    os.wait()
+
+target = os.getpid()
+if what == "trap":
+    waits, ready = os.pipe()
+    child = os.fork()
+    if child == 0:
+        trap()
+    os.read(waits, 1)
+    target = int(Path(f"/proc/{child}/task/{child}/children").read_text())
+stdin, _, output, stdout = *os.pipe(), *os.pipe()
+ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+result = stdout if what == "trap" else theirs.fileno()
+socket.send_fds(asks, [b"."], [os.pidfd_open(target), stdin, stdout, stdout, result])
+theirs.close()
+os.close(stdout)
+answer = b""
+while chunk := os.read(output, 1000):
+    answer += chunk
+print(answer, Path("/tmp/trapped").exists())
+"""
+
+
+@pytest.mark.parametrize("what", ["trap", "room"])
+def test_a_conductor_under_the_control_of_a_node_gains_nothing_from_the_server_of_the_nodes(what: str) -> None:
+    """It sends the server a process in namespaces that it has made, or a process of the room, which is not in a cell.
+
+    In the trap, a traceback would import a module of the conductor: Python reads the lines of source files, and the
+    first line can name any encoding.
+    """
+    ros = underlay.with_turtlesim(installation.find_ros())
+    asks, answers = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    package = Path(grader.__file__).parent
+    view = bubblewrap.View(bubblewrap.ros_view(ros, package).read_only)
+    arguments = (str(asks.fileno()), what, str(package / "trial"))
+    code = interpreter("-c", CONDUCTOR, *arguments, python=str(ros.python), env={})
+    with asks, cell_user() as user:
+        with answers:
+            forks = fork_client.nodes(ros).request(about_nodes([], 1), [answers.fileno()])
+        command = bubblewrap.room(code.argv, view, env={"_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}, user=user)
+        done = subprocess.run(command, pass_fds=[asks.fileno()], capture_output=True, text=True, check=True, timeout=60)
+    forks.close()
+    refused = {"trap": "b'OSError: [Errno 88] ", "room": "b'OSError: [Errno 22] "}[what]
+    assert done.stdout.startswith(refused), done.stdout
+    assert done.stdout.endswith(" False\n"), done.stdout

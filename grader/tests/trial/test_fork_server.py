@@ -21,6 +21,7 @@ from grader.ros.underlay import with_turtlesim
 from grader.sandbox import bubblewrap
 from grader.sandbox.limits import NODE_LIMITS
 from grader.sandbox.system_calls import call_filter
+from grader.sandbox.usage import family
 from grader.sandbox.user import cell_user
 from grader.tests.waiting import HANG_S, until_gone
 from grader.trial import fork_client
@@ -30,7 +31,9 @@ from grader.trial.trial import Plan, Trial
 pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
 WALL = Plan("wall", Pose(5.5, 5.5, 0.0), None, 0.1)
 SELF = """#!/usr/bin/env python3
-import json, os, resource, signal, sys
+import ctypes, json, os, resource, signal, sys
+death = ctypes.c_int()
+ctypes.CDLL(None).prctl(2, ctypes.byref(death), 0, 0, 0)
 COUNTED = ("Pid", "PPid", "Tgid", "Ngid", "NStgid", "NSpid", "NSpgid", "NSsid", "FDSize", "Cpus", "Mems", "Threads")
 COUNTED += ("Vm", "Rss", "Huge", "voluntary", "nonvoluntary", "Name", "State", "Speculation", "SigQ", "SigCgt", "x86")
 status = [line.split(":\\t", 1) for line in open("/proc/self/status").read().splitlines() if ":\\t" in line]
@@ -42,6 +45,8 @@ except OSError as error:
 print(json.dumps({
     "status": {name: value for name, value in status if not name.startswith(COUNTED)},
     "limits": [resource.getrlimit(kind) for kind in range(16)],
+    "groups": open("/proc/self/cgroup").read(),
+    "signal when the parent ends": death.value,
     "killed first": open("/proc/self/oom_score_adj").read(),
     "descriptors": [name for name in os.listdir("/proc/self/fd") if os.path.exists("/proc/self/fd/" + name)],
     "processes": [open(f"/proc/{pid}/comm").read() for pid in os.listdir("/proc") if pid in ("1",)],
@@ -102,6 +107,10 @@ def test_a_traceback_shows_the_program_alone() -> None:
 def test_nodes_do_not_share_random_numbers_and_inherit_no_module_of_the_grader() -> None:
     script = """#!/usr/bin/env python3
 import random, sys
+frame = sys._getframe()
+while frame is not None:
+    assert not any("c" + "group/" in str(value) for value in frame.f_locals.values()), frame.f_locals
+    frame = frame.f_back
 print(random.random(), [name for name in sys.modules if name.startswith("grader")], sys.argv, sys.orig_argv[1:])
 """
     first, second = (run(script).stdout.text.split(" ", 1) for _ in range(2))
@@ -131,6 +140,50 @@ def test_a_node_does_not_have_the_memory_layout_of_the_conductor() -> None:
     assert layouts[0] == layouts[1], "the conductors are not forks of one process"
     assert layouts[2] == layouts[3], "the nodes are not forks of one process"
     assert not layouts[0] & layouts[2]
+
+
+def test_signals_to_their_process_group_reach_no_other_trial() -> None:
+    with Trial(WALL, with_turtlesim(find_ros()), in_cell=True) as trial:
+        trial.await_ready()
+        _, conductor, forks_nodes = trial._conductor.pids()
+        supervisor = children(forks_nodes)[0]
+        for pid in (conductor, *children(supervisor)):
+            assert os.getpgid(pid) == os.getsid(pid) == pid
+
+
+def test_a_node_ends_with_the_processes_that_fork_and_supervise_it() -> None:
+    with Trial(WALL, with_turtlesim(find_ros()), in_cell=True) as trial:
+        trial.await_ready()
+        forks_nodes = trial._conductor.pids()[2]
+        supervisor = children(forks_nodes)[0]
+        node = children(supervisor)[0]
+        os.kill(forks_nodes, signal.SIGKILL)
+        until_gone(supervisor)
+        until_gone(node)
+
+
+def test_the_environment_of_the_grader_is_not_in_a_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("GRADER_TOKEN", "secret")
+    with Trial(WALL, with_turtlesim(find_ros()), in_cell=True) as trial:
+        trial.await_ready()
+        for pid in family(trial._conductor.pids()[0]):
+            assert b"GRADER_TOKEN" not in Path(f"/proc/{pid}/environ").read_bytes()
+
+
+def test_all_processes_of_a_trial_are_in_its_control_group() -> None:
+    with Trial(WALL, with_turtlesim(find_ros()), in_cell=True) as trial:
+        trial.await_ready()
+        folders = trial._conductor._group.folders  # type: ignore[attr-defined]
+        if not folders:
+            pytest.skip("there are no control groups here")
+        for folder in folders:
+            inside = (folder / "cgroup.procs").read_text().split()
+            assert [pid for pid in family(*trial._conductor.pids()) if str(pid) not in inside] == []
+
+
+def children(pid: int) -> list[int]:
+    """Return the child processes of a process with one thread."""
+    return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
 
 
 def test_a_server_that_was_killed_is_started_again() -> None:
