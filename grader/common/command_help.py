@@ -1,6 +1,7 @@
-"""The help of the command `grader`: on narrow terminals, one column without boxes instead of typer's tables.
+"""The help of the command `grader`, and what it says about words that it does not know.
 
-In a table with four columns, a terminal of 40 columns leaves 8 columns for the text.
+On narrow terminals, the help has one column without boxes instead of typer's tables. In a table with four columns, a
+terminal of 40 columns leaves 8 columns for the text.
 """
 
 from __future__ import annotations
@@ -12,7 +13,10 @@ from typing import TYPE_CHECKING, Any
 import typer
 from typer.core import TyperArgument, TyperCommand, TyperGroup
 
+from grader.common.other_words import command_for, with_exercise
 from grader.common.terminal_text import example
+from grader.common.words import printable
+from grader.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -24,6 +28,16 @@ WIDE = 80
 class Command(TyperCommand):
     """A command whose help fits every terminal."""
 
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:  # noqa: ANN401 - typer brings its own click
+        """Parse the arguments. A step beside a package belongs behind the option --exercise."""
+        words = list(args)
+        if len(words) == 2 and any("--exercise" in param.opts for param in self.params):
+            meant = with_exercise(ctx.command_path, words)
+            if meant:
+                message = f"`{ctx.command_path}` takes one package. Name its step with an option: {meant}"
+                raise UsageError(message)
+        return super().parse_args(ctx, args)
+
     def format_help(self, ctx: Any, formatter: Any) -> None:  # noqa: ANN401 - typer brings its own click
         """Print the help of the command."""
         _format_help(self, super().format_help, ctx, formatter)
@@ -31,6 +45,14 @@ class Command(TyperCommand):
 
 class Group(TyperGroup):
     """A group of commands whose help fits every terminal."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:  # noqa: ANN401 - as above
+        """Find the command. A word that is not a command, but means one, names the command."""
+        meant = command_for(args[0]) if ctx.parent is None and args[0] not in self.commands else ""
+        if meant:
+            message = f"There is no command {printable(args[0])}. Type: {meant}"
+            raise UsageError(message)
+        return super().resolve_command(ctx, args)
 
     def format_help(self, ctx: Any, formatter: Any) -> None:  # noqa: ANN401 - as above
         """Print the help of the group."""
