@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.exercises import exercise_of_folder, find_exercise
 from grader.errors import UsageError
-from grader.exercise.model import catalogue
+from grader.exercise.model import catalogue, course_folder
 from grader.learner import progress, steps, workspace
 from grader.submission.package import open_submission
 
@@ -25,6 +25,9 @@ def meant(path: Path | None, exercise: str | None, folder: Path | None = None) -
         UsageError: the arguments do not determine the exercise, or the step was never started.
     """
     known, place = guessed(path, exercise, folder)
+    if known is None and not place.exists():
+        message = f"There is no folder {place}. Give the folder of your package, or a step such as 03."
+        raise UsageError(message)
     if known is None:
         message = (
             f"Which exercise is {place.resolve().name} for? Name the exercise with --exercise, one of: "
@@ -38,7 +41,8 @@ def meant(path: Path | None, exercise: str | None, folder: Path | None = None) -
 def guessed(path: Path | None, exercise: str | None, folder: Path | None = None) -> tuple[Exercise | None, Path]:
     """Return the exercise (None if the arguments do not determine it) and the folder with the learner's work.
 
-    `path` is the path that was typed: a package, a step ("03", "3"), the workspace (for its current step), or None.
+    `path` is the path that was typed: a package, a step ("03", "3") or the folder of its lesson, the workspace (for
+    its current step), or None.
     `exercise` is the value of --exercise. `folder` is the workspace, or None for the learner's default workspace.
 
         guessed(Path("03"), None)  # step 03 and the package in the workspace
@@ -49,6 +53,9 @@ def guessed(path: Path | None, exercise: str | None, folder: Path | None = None)
     root = progress.workspace_of(folder)
     if path is not None and not path.exists() and _is_step(str(path)):
         return _step(str(path), root)
+    lesson = path.resolve() if path is not None else None
+    if lesson is not None and lesson.parent == course_folder() and lesson.name in catalogue():
+        return _step(lesson.name, root)
     current = steps.current(folder)
     of_workspace = path is None or path.resolve() in (root, root / "src")
     if of_workspace and current is not None and exercise in (None, current[0].id):

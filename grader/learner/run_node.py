@@ -13,10 +13,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.checks.exercises import load_exercise
 from grader.common.interpreter import interpreter
 from grader.common.terminal_text import say
 from grader.common.words import nearest
 from grader.errors import MachineError, UsageError
+from grader.exercise.model import catalogue
 from grader.learner.exercise_argument import meant
 
 if TYPE_CHECKING:
@@ -45,6 +47,8 @@ def program_of(step: str | None, executable: str | None, workspace: Path | None)
     Raises:
         UsageError: the step has no node, was not started, or does not run this executable.
     """
+    if step and executable is None and not Path(step).exists():
+        _refuse_program_as_step(step)
     exercise, place = meant(Path(step) if step else None, None, workspace)
     names = executables(exercise)
     if not names:
@@ -58,6 +62,16 @@ def program_of(step: str | None, executable: str | None, workspace: Path | None)
         raise UsageError(message)
     folder = place if (place / "package.xml").is_file() else place / exercise.package
     return Program(folder.resolve(), exercise.package, name)
+
+
+def _refuse_program_as_step(name: str) -> None:
+    """Raise UsageError if the name is not that of a step, but that of a step's program."""
+    if name.isdigit() or any(each.startswith(name) for each in catalogue()):
+        return
+    owner = next((each for each, file in catalogue().items() if name in executables(load_exercise(file))), None)
+    if owner:
+        message = f"{name} is a program, not a step. Type: grader run {owner[:2]} {name}"
+        raise UsageError(message)
 
 
 def executables(exercise: Exercise) -> list[str]:

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 from grader.checks.exercises import find_exercise
 from grader.cli import app
 from grader.errors import UsageError
-from grader.exercise.model import catalogue
+from grader.exercise.model import catalogue, course_folder
 from grader.learner import steps
 from grader.learner.exercise_argument import guessed, meant
 
@@ -34,6 +34,17 @@ def test_a_number_or_a_name_means_a_step(workspace: Path, typed: str) -> None:
 def test_no_path_the_workspace_or_its_package_mean_the_current_step(workspace: Path, typed: str | None) -> None:
     path = Path(typed.format(workspace)) if typed else None
     assert meant(path, None)[0].id == "03-circle-publisher"
+
+
+def test_the_folder_of_a_lesson_means_its_step(workspace: Path) -> None:
+    known, place = guessed(course_folder() / "03-circle-publisher", None)
+    assert known is not None
+    assert (known.id, place) == ("03-circle-publisher", workspace / "src/my_robot_controller")
+
+
+def test_a_folder_that_does_not_exist_is_named() -> None:
+    with pytest.raises(UsageError, match="There is no folder nowhere"):
+        meant(Path("nowhere"), None)
 
 
 def test_an_existing_folder_with_the_name_of_a_step_is_a_folder() -> None:

@@ -8,6 +8,8 @@ from pathlib import Path
 import pexpect
 import pytest
 
+from grader.errors import UsageError
+from grader.learner.run_node import program_of
 from grader.tests.domains import own_domain
 from grader.tests.learner.story import Learner
 
@@ -69,6 +71,11 @@ def test_it_names_what_it_can_run(learner: Learner) -> None:
     assert "Did you mean draw_circle? Its programs are: draw_circle." in told
     learner.reads("start", "02")
     assert "02-discover-topics has no node to run." in learner.reads("run")
+
+
+def test_a_program_in_the_place_of_a_step_names_the_step() -> None:
+    with pytest.raises(UsageError, match=r"draw_circle is a program, not a step\. Type: grader run 03 draw_circle"):
+        program_of("draw_circle", None, None)
 
 
 def test_nothing_is_left_in_the_workspace(learner: Learner) -> None:
