@@ -6,8 +6,8 @@ import os
 import resource
 
 from grader.trial.node_process import PIPE, enlarge
+from grader.trial.open_files import LEAST as LEAST_FILES
 
-LEAST_FILES = 256
 LEAST_PROCESSES = 1024
 
 

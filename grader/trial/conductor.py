@@ -6,7 +6,8 @@ JSON lines with the grader's own process over its standard streams. The first li
 conductor answers {"ready": true} when the simulator and the launcher are ready. The second line of input says what to
 start, and the install tree follows this line. The last line of output is {"recording": {...}}, {"doubt": "...",
 "by_chance": false} if a trial with the other clock must decide, {"overwhelmed": "..."} if the node made the simulator
-fail, or {"fault": "..."} if the machine is at fault.
+fail, {"refused": "..."} if the machine refused something while the node was running, or {"fault": "..."} if the
+simulator failed for another reason.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ from grader.trial.launcher import postponed
 from grader.trial.launchers import LauncherInCell, LauncherProcess, LaunchError
 from grader.trial.node_group import NodeGroup
 from grader.trial.node_process import NodeProcess
+from grader.trial.open_files import lack, raise_limit
 from grader.trial.recording import Beside, Pose
 from grader.trial.recording_json import new_to_json, to_json
 from grader.trial.rest import DoubtError
@@ -69,6 +71,10 @@ class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grad
     """The simulator failed because of messages or requests from the node."""
 
 
+class RefusedError(Exception):
+    """The machine refused the simulator something, which is never the node's fault. The message is a sentence."""
+
+
 def main(nodes: socket.socket | None = None) -> None:
     """Conduct the trial that is described on standard input. `nodes` is the socket on which to ask for nodes.
 
@@ -79,6 +85,7 @@ def main(nodes: socket.socket | None = None) -> None:
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
     try:
+        raise_limit()
         _conduct(order, answers, nodes)
     except DoubtError as doubt:
         _say(answers, {"doubt": str(doubt), "by_chance": doubt.by_chance})
@@ -86,6 +93,8 @@ def main(nodes: socket.socket | None = None) -> None:
         _say(answers, {"fault": f"The node's process could not be started: {error}"})
     except Overwhelmed as error:
         _say(answers, {"overwhelmed": str(error)})
+    except RefusedError as error:
+        _say(answers, {"refused": str(error)})
     except Exception as error:
         _say(answers, {"fault": refusal(error) or f"{type(error).__name__}: {error}"})
 
@@ -163,13 +172,16 @@ def _conduct(order: dict[str, Any], answers: IO[str], nodes: socket.socket | Non
 def _run(trial: SimulatedTrial | WallTrial, duration_s: float) -> float:
     """Run the scenario, and return the time of SIGINT (s).
 
-    After the start of the scenario, the node is considered the cause of every failure.
+    After the start of the scenario, the node is considered the cause of every failure, except for those of the machine.
     """
     try:
         return trial.run(duration_s)
     except (DoubtError, KeyboardInterrupt):
         raise
     except BaseException as error:
+        refused = lack(error)
+        if refused:
+            raise RefusedError(refused) from error
         message = f"{type(error).__name__}: {error}"
         raise Overwhelmed(message[:500]) from error
 

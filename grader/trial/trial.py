@@ -232,6 +232,8 @@ class Trial:
             raise WallTimeNeeded(answer["doubt"], by_chance=answer["by_chance"])
         if key in answer:
             return answer[key]
+        if "refused" in answer:
+            raise _fault(answer["refused"])
         if self._node_runs:
             # The simulator worked until the node started, so the node is the cause.
             if "overwhelmed" in answer:
@@ -257,7 +259,7 @@ class Trial:
 
 
 def _fault(output: str) -> MachineError:
-    """Return the error for a simulator that failed before the node was started."""
+    """Return the error for a simulator that failed because of the machine."""
     # A complete sentence is one of the grader's messages, and says what to do.
     refused = output if output.endswith(".") else refusal_in(output)
     unknown = f"The simulator failed: {output or 'it printed nothing'}. `grader doctor` says what is missing."

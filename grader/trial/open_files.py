@@ -1,0 +1,28 @@
+"""The number of files that the conductor may open. It opens two files for each thread of a node."""
+
+from __future__ import annotations
+
+import errno
+import resource
+
+from grader.common.system_errors import sentence
+
+LEAST = 256
+"""With a lower limit, even a usual node lets the conductor reach the limit."""
+_USUAL = 1024
+
+
+def raise_limit() -> None:
+    """Raise a low limit of this process to the usual one of Linux, as far as the system allows it."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if soft != resource.RLIM_INFINITY and soft < LEAST:
+        highest = _USUAL if hard == resource.RLIM_INFINITY else min(hard, _USUAL)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (highest, hard))
+
+
+def lack(error: BaseException) -> str | None:
+    """Return a sentence if the error means that the machine allows too few open files, or None for other errors."""
+    if not isinstance(error, OSError) or error.errno not in (errno.EMFILE, errno.ENFILE):
+        return None
+    low = resource.getrlimit(resource.RLIMIT_NOFILE)[0] < LEAST
+    return sentence(error.errno) if low or error.errno == errno.ENFILE else None
