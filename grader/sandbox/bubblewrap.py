@@ -109,10 +109,13 @@ def cell(
     cwd: Path = WORKSPACE,
     info_fd: int | None = None,
     filter_fd: int | None = None,
+    first: bool = False,
 ) -> list[str]:
     """Return the command that runs `argv` in a cell.
 
-    With `network`, the cell shares the network of the room in which the caller runs.
+    With `network`, the cell shares the network of the room in which the caller runs. With `first`, the program is the
+    first process of the cell. Otherwise, this is a process of bubblewrap that has the same standard streams, and that
+    other processes of the cell can control.
 
     `filter_fd` is the system call filter from system_calls.call_filter(). The process must inherit this descriptor. A
     root caller must put the cell into a room, in which the cell's user is an ordinary user, because the limit on
@@ -130,6 +133,7 @@ def cell(
     command += ["--size", str(limits.disk), "--tmpfs", "/dev/shm", "--remount-ro", "/dev", "--remount-ro", "/"]
     command += [] if info_fd is None else ["--info-fd", str(info_fd)]
     command += [] if filter_fd is None else ["--seccomp", str(filter_fd)]
+    command += ["--as-pid-1"] if first else []
     # Set the limits inside the cell, so that they count only processes of this cell.
     return [*command, *_environment(env), "--chdir", str(cwd), "--", *limited(argv, limits, in_cell=True)]
 
@@ -142,17 +146,18 @@ def lone_cell(
     limits: Limits,
     user: int | None,
     filter_fd: int | None = None,
+    first: bool = False,
 ) -> list[str]:
     """Return the command that runs `argv` in a cell with a separate network, inside a room without other processes.
 
-    `user` has the same meaning as in `room`. Student code can change the memory of the first process of its cell, so
+    `user` has the same meaning as in `room`, and `first` as in `cell`. Student code can change the memory of the first process of its cell, so
     that this process does not exit together with its parent. The first process of the room is out of reach.
 
         with call_filter() as filter_fd, cell_user() as user:
             command = lone_cell(["colcon", "build"], view, env=env, limits=Limits(), user=user, filter_fd=filter_fd)
             subprocess.run(command, check=True, pass_fds=[filter_fd])
     """
-    inner = cell(argv, view, env=env, limits=limits, filter_fd=filter_fd)
+    inner = cell(argv, view, env=env, limits=limits, filter_fd=filter_fd, first=first)
     return room(inner, view, env=env, user=user)
 
 

@@ -98,7 +98,9 @@ def _run(
         group = stack.enter_context(control_group(LIMITS))
         user = stack.enter_context(cell_user())
         view = bubblewrap.ros_view(ros)
-        command = group.joined(bubblewrap.lone_cell(argv, view, env=env, limits=LIMITS, user=user, filter_fd=filter_fd))
+        command = group.joined(
+            bubblewrap.lone_cell(argv, view, env=env, limits=LIMITS, user=user, filter_fd=filter_fd, first=True)
+        )
         inherited = () if filter_fd is None else (filter_fd,)
     return process.run(
         command,

@@ -3,7 +3,8 @@
 This file runs as a separate script. The script reads one line of JSON (`calls`, `script`, `function`, `python_path`,
 `env`, `install`, `files`) and then the install tree, a tar stream, from standard input. The script writes one line of
 JSON for each call. A call cannot write such lines: the process is not dumpable, so its child processes cannot open its
-standard output. Otherwise, one call could change the result of another call.
+standard output, and it is the first process of the cell, so that no other process has this standard output. Otherwise,
+one call could change the result of another call.
 """
 
 from __future__ import annotations
