@@ -150,8 +150,9 @@ def lone_cell(
 ) -> list[str]:
     """Return the command that runs `argv` in a cell with a separate network, inside a room without other processes.
 
-    `user` has the same meaning as in `room`, and `first` as in `cell`. Student code can change the memory of the first process of its cell, so
-    that this process does not exit together with its parent. The first process of the room is out of reach.
+    `user` has the same meaning as in `room`, and `first` as in `cell`. Student code can change the memory of a first
+    process that belongs to bubblewrap, so that this process does not exit together with its parent. The first process
+    of the room is out of reach.
 
         with call_filter() as filter_fd, cell_user() as user:
             command = lone_cell(["colcon", "build"], view, env=env, limits=Limits(), user=user, filter_fd=filter_fd)
