@@ -1,10 +1,10 @@
-"""Announce a new participant to the other participants on this machine when it can receive their answers.
+"""Announce a new participant to the other participants on this machine as soon as it can receive their responses.
 
 Fast DDS 2.14 sends the first announcement of a participant before the participant listens for answers. The other
-participants answer only the first announcement, and answer it immediately. If the answer of a participant is lost, the
-new participant discovers this participant only at its next announcement, after up to 3 s. Therefore, our participants
+participants respond immediately, and only to the first announcement. If the response of a participant is lost, the new
+participant discovers this participant only at its next announcement, after up to 3 s. Therefore, our participants
 announce themselves to a socket of their own process, and `passed_on` sends the announcement to the other participants
-when the new participant listens.
+once the new participant is listening.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _WAIT_S = 1.0
 def passed_on(domain: int) -> Iterator[None]:
     """Create the participant in this context.
 
-    When the context ends, the announcement is sent to all other participants.
+    On exit from the context, the announcement is sent to all other participants.
     """
     held = _held()
     list(_received(held))  # the announcements of earlier participants of this process

@@ -31,18 +31,18 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 QUIET_S = 0.1
-"""The graph has settled if nothing new arrives for this long (s). Time for which this process cannot run does not
+"""The graph has settled if nothing new arrives for this long (s). Time during which this process cannot run does not
 count."""
 DEADLINE_S = 4.0
-"""The maximum time (s) to wait for participants that have open ports but send nothing, such as a stopped process. If
-the answer of a node that does not use our profile is lost, the node announces itself again after 3 s
-(leaseAnnouncement), and then sends its endpoints."""
+"""The maximum time (s) to wait for participants that have open ports but send nothing, for example because their
+process is stopped. If the response of a node that does not use our profile is lost, the node announces itself again
+after 3 s (leaseAnnouncement), and then sends its endpoints."""
 NOTHING_THERE_S = 0.5
 """The time (s) to listen if the number of participants is unknown, as in the real `ros2`."""
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
 """The Fast DDS profile for the nodes that commands create on the loopback interface."""
 PATIENT_PROFILE = LOOPBACK_PROFILE.with_name("loopback_patient.xml")
-"""The Fast DDS profile for the same kind of node, if the node runs for hours."""
+"""The Fast DDS profile for such nodes if they run for hours."""
 _RANGE, _PROFILE = "ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTRTPS_DEFAULT_PROFILES_FILE"
 _POLL_S = 0.01
 _WAKE_S = 0.1
@@ -135,7 +135,7 @@ def _domain() -> int:
 
 
 class Settling:
-    """Waits until the graph that a node sees no longer changes, up to a deadline."""
+    """Waits until the graph as seen by a node no longer changes, up to a deadline."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -144,7 +144,7 @@ class Settling:
         self._graph: Counter[object] = Counter()
 
     def observe(self, due_s: float = math.inf) -> None:
-        """Read the graph, and record whether anything is new since it was last read.
+        """Read the graph, and record whether anything has appeared since the last reading.
 
         At most `due_s` (s) of the time since the last reading counts as quiet. On a busy machine, a short wait takes
         longer than requested, and other processes have to wait too.
@@ -218,8 +218,8 @@ def _graph(node: Node) -> Counter[object]:
 def _complete(node: Node, waited_s: float, named_s: float | None = None) -> bool:
     """Return whether all participants on this machine have been discovered, including the names of their nodes.
 
-    Participants on other machines cannot be counted. If the user set `named_s`, the function waits this long for
-    participants on other machines.
+    Participants on other machines cannot be counted. If the user has set a waiting time, `named_s`, the discovery of
+    other machines is complete only after this time.
     """
     expected = len(participant_ports(node.context.get_domain_id()))
     endpoints: list[Any] = []

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class End:
-    """A publisher or subscription, like `grader.trial.recording.Endpoint`, but without importing numpy."""
+    """A publisher or subscription, like `grader.trial.recording.Endpoint`, for processes that do not import numpy."""
 
     kind: str
     node: str

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 OTHER = "/other"
-"""The name of a visible node, so that `did_you_mean` does not say by default that no node is running."""
+"""A visible node's name, the default of `did_you_mean`, which then does not say that no node is running."""
 
 
 class Ros2Error(GraderError):

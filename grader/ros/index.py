@@ -19,7 +19,7 @@ KINDS = ("msg", "srv", "action")
 
 
 def prefixes() -> list[Path]:
-    """Return the existing folders on AMENT_PREFIX_PATH, in which overlays come first."""
+    """Return the folders on AMENT_PREFIX_PATH that exist, overlays first."""
     return [path for path in map(Path, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)) if path.is_dir()]
 
 
@@ -55,7 +55,7 @@ def prefix_of(package: str, unknown: str, likely: Iterable[str] = ()) -> Path:
 
     Raises:
         Ros2Error: the package is not installed. The message consists of `unknown` and the most similar name from
-        `likely` (if empty, from all packages).
+        `likely`, or from all packages if `likely` is empty.
     """
     found = packages()
     if package not in found:

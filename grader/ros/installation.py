@@ -265,7 +265,7 @@ def _sourced(env: Mapping[str, str]) -> Ros | None:
 def _this_python(started: Path) -> Path:
     """Return this interpreter as `python3`, although it may have been started as `python`.
 
-    The path is a part of the underlay's key, and the underlay must not be built once for each name.
+    The path is a part of the underlay's key, so without this function, the underlay would be built once for each name.
     """
     usual = started.with_name("python3")
     return usual if usual.exists() and usual.samefile(started) else started

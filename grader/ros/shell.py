@@ -26,7 +26,7 @@ def users_environment(
     """Return the user's environment with ROS 2 added. Build the turtlesim interfaces first if necessary.
 
     Raises:
-        UsageError: the domain does not exist.
+        UsageError: the domain id is too large or negative.
         MachineError: ROS 2 was not found, or turtlesim could not be built.
     """
     if domain is not None and not 0 <= domain <= HIGHEST_DOMAIN:
@@ -37,7 +37,7 @@ def users_environment(
 
 
 def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sourced: bool = False) -> str:
-    """Return code in the language of bash, zsh and sh that changes the environment `env` to `wanted`.
+    """Return shell code for bash, zsh and sh that changes the environment from `env` to `wanted`.
 
     The code also sets up completion for our commands.
 
@@ -68,7 +68,7 @@ def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sour
 def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -> None:
     """Replace this process with the user's shell.
 
-    When the shell has read its start-up files, it adds the ROS 2 of `wanted`.
+    After the shell has read its start-up files, it adds ROS 2 with the domain id in `wanted`.
     """
     shell = env.get("SHELL") or "/bin/bash"
     argv, variables = [shell, "-i"], {}

@@ -203,9 +203,10 @@ def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> 
 
 
 def _place_to_build(cache: Path) -> Path:
-    """Return the folder in which to build, whose path has only usual characters.
+    """Return a folder in which to build: `cache`, or the folder for temporary files if the path has unusual characters.
 
-    CMake cuts the paths of the interfaces at a character that is not ASCII, and not every command quotes apostrophes.
+    CMake truncates the paths of the interfaces at the first character that is not ASCII, and not every build command
+    quotes apostrophes.
     """
     return cache if re.fullmatch(r"[\w./ +-]+", str(cache), re.ASCII) else Path(tempfile.gettempdir())
 
@@ -248,7 +249,7 @@ def _run(command: list[str], env: dict[str, str], tell: Callable[[str], None]) -
         end = "\n".join(line for line in lines[-_LOG_LINES:] if line)
         message = (
             f"The turtlesim interfaces could not be built: `{command[0]}` ended with exit code {process.returncode}. "
-            f"Its last lines:\n{end}"
+            f"The last lines of its output:\n{end}"
         )
         raise MachineError(message)
 

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from types import FrameType
 
 ENDS_S = 10
-"""The maximum time that a command has to leave the graph after SIGTERM or SIGHUP (s). Then an alarm terminates it."""
+"""The maximum time that a command has to leave the graph after SIGTERM or SIGHUP (s). After this time, an alarm
+terminates the command."""
 
 
 class _EndedError(KeyboardInterrupt):

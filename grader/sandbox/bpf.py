@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 Line = tuple[int, int, int, int]
-"""A struct sock_filter: the operation, the numbers of lines to skip if the condition is true or false, and a value."""
+"""A struct sock_filter: the operation, how many instructions to skip if true and if false, and a value."""
 
 LOAD, AND, EQUAL, AT_LEAST, ANY_BIT, RETURN = 0x20, 0x54, 0x15, 0x35, 0x45, 0x06
 ALLOW, ERRNO = 0x7FFF0000, 0x00050000
@@ -24,14 +24,14 @@ def argument(index: int, *, high: bool = False) -> int:
 
 
 def begin() -> list[Line]:
-    """Return the first lines of a filter: refuse calls of other architectures, and load the system call number."""
+    """Return a filter's first instructions: refuse calls from other architectures, and load the system call number."""
     absent = ERRNO | errno.ENOSYS
     lines = [(LOAD, 0, 0, _ARCHITECTURE), (EQUAL, 1, 0, _X86_64), (RETURN, 0, 0, absent)]
     return [*lines, (LOAD, 0, 0, _NUMBER), (AT_LEAST, 0, 1, _X32), (RETURN, 0, 0, absent)]
 
 
 def refusing(numbers: Iterable[int], error: int) -> list[Line]:
-    """Return the filter lines that make these system calls fail with this error number."""
+    """Return the instructions that make these system calls fail with this error number."""
     return [line for number in numbers for line in ((EQUAL, 0, 1, number), (RETURN, 0, 0, ERRNO | error))]
 
 

@@ -118,8 +118,9 @@ def cell(
     other processes of the cell can control.
 
     `filter_fd` is the system call filter from system_calls.call_filter(). The process must inherit this descriptor. A
-    root caller must put the cell into a room, in which the cell's user is an ordinary user, because the limit on
-    processes does not apply to root. bubblewrap writes JSON with the pid of the cell's first process to `info_fd`.
+    caller that runs as root must put the cell into a room, in which the cell's user is an ordinary user, because the
+    limit on processes does not apply to root. bubblewrap writes JSON with the pid of the cell's first process to
+    `info_fd`.
     """
     command = [_bwrap(), "--unshare-user", "--disable-userns", "--unshare-pid", "--unshare-ipc", "--unshare-uts"]
     command += ["--unshare-cgroup-try", "--uid", "1000", "--gid", "1000", "--hostname", "robot"]
@@ -150,9 +151,9 @@ def lone_cell(
 ) -> list[str]:
     """Return the command that runs `argv` in a cell with a separate network, inside a room without other processes.
 
-    `user` has the same meaning as in `room`, and `first` as in `cell`. Student code can change the memory of a first
-    process that belongs to bubblewrap, so that this process does not exit together with its parent. The first process
-    of the room is out of reach.
+    `user` has the same meaning as in `room`, and `first` as in `cell`. Student code can change the memory of the first
+    process of its cell, so this process might not exit together with its parent. Student code cannot reach the first
+    process of the room.
 
         with call_filter() as filter_fd, cell_user() as user:
             command = lone_cell(["colcon", "build"], view, env=env, limits=Limits(), user=user, filter_fd=filter_fd)
@@ -201,9 +202,9 @@ def why_unavailable() -> str | None:
         return entering.why_impossible()
     lines = done.stderr.strip().splitlines()[-1:] or ["no message"]
     return (
-        f"bubblewrap cannot create its namespaces ({lines[0]}). On Ubuntu 24.04, AppArmor forbids them to "
-        "ordinary users; `sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0` allows them until the next "
-        "start. "
+        f"bubblewrap cannot create its namespaces ({lines[0]}). On Ubuntu 24.04, AppArmor does not let "
+        "ordinary users create them; `sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0` allows this until "
+        "the next reboot. "
         'docs/security.md, "Without a sandbox", has a permanent rule and the options for containers'
     )
 

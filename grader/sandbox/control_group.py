@@ -1,9 +1,9 @@
 """Control groups: the kernel limits the total resource use of a cell, if the grader is allowed to create groups.
 
 Root can create control groups nearly everywhere. An ordinary user can create control groups if systemd has delegated a
-part of the tree and the grader runs in that part. The limit of the group is higher by `ABOVE` than the limit in
-usage.py, so that usage.py stops a cell first and records the reason. The group stops processes that grow too fast for
-usage.py, and limits socket and pipe memory.
+part of the tree and the grader runs in that part. The limit of the group exceeds the limit in usage.py by `ABOVE`, so
+that usage.py stops a cell first and records the reason. The group stops processes that grow too fast for usage.py, and
+limits socket and pipe memory.
 
 Versions 1 and 2 of control groups are supported. In version 2, a group is a folder in one tree. In version 1, a group
 is a folder in each controller's tree (https://docs.kernel.org/admin-guide/cgroup-v2.html and cgroup-v1/).
@@ -40,12 +40,12 @@ _numbers = count()
 
 @dataclass(frozen=True)
 class ControlGroup:
-    """A control group: one folder (version 2), one per controller (version 1), or none if groups are not possible."""
+    """A control group: one folder (version 2), one per controller (version 1), or none if groups cannot be created."""
 
     folders: tuple[Path, ...] = ()
 
     def __bool__(self) -> bool:
-        """Whether control groups are possible."""
+        """Whether control groups can be created."""
         return bool(self.folders)
 
     def joined(self, argv: Sequence[str]) -> list[str]:
@@ -68,7 +68,7 @@ class ControlGroup:
 def control_group(limits: Limits) -> Iterator[ControlGroup]:
     """Yield a new group for a cell with these limits.
 
-    If groups are not possible, the group is empty.
+    If groups cannot be created, the group has no folder and limits nothing.
 
         with control_group(limits) as group:
             subprocess.run(group.joined(command), check=True)

@@ -48,7 +48,10 @@ _passing = Lock()
 
 
 def why_impossible() -> str | None:
-    """Return why no process can enter a room or cell on this kernel, or None. setns(2) with a pidfd needs Linux 5.8."""
+    """Return the reason why this kernel does not let processes enter a room or cell, or None if it does.
+
+    setns(2) with a pidfd needs Linux 5.8.
+    """
     try:
         own = pidfd_open(os.getpid())
     except OSError as error:
@@ -101,7 +104,7 @@ def pass_descriptors(to: socket.socket, data: bytes, descriptors: Sequence[int])
 
     The kernel refuses if the sockets of the user contain more descriptors than the sender may open (ETOOMANYREFS of
     unix(7)). The sockets of a cell may contain somewhat more than NODE_LIMITS.open_files, so the limit of the sender is
-    raised in the meantime.
+    raised while it sends.
 
     Raises:
         OSError: the kernel refused, or the socket is closed at the other end.
@@ -126,7 +129,7 @@ def keep(descriptors: Iterable[int]) -> None:
 
 
 def confine(limits: Iterable[tuple[int, int]], *, user: int | None, call_filter: bytes = b"") -> None:
-    """Give up what a process in a room or cell must not have: other users, capabilities, privileges and resources.
+    """Give up what a process in a room or cell must not have: other user ids, capabilities, privileges and resources.
 
     `limits` are pairs of a constant of the module `resource` and a value. `user` is the user id to switch to if root
     has entered, or None. `call_filter` comes from system_calls.program(). With an empty filter, all system calls remain
@@ -166,5 +169,5 @@ def allow_inspection(*, allow: bool) -> None:
 
 
 def sacrifice() -> None:
-    """Let the kernel kill this process first if the machine runs out of memory. Requires that inspection is allowed."""
+    """Let the kernel kill this process first if memory runs out. Call `allow_inspection(allow=True)` before."""
     Path("/proc/self/oom_score_adj").write_text("1000", "ascii")

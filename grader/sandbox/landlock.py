@@ -1,4 +1,4 @@
-"""Landlock: a process denies itself all files except those that it names (landlock(7), Linux 5.13 and later).
+"""Landlock: a process gives up access to all files except those in a list (landlock(7), Linux 5.13 and later).
 
 Later versions of Landlock can deny more kinds of access than the first version. The process that reads students' files
 has two defences: Landlock and the filter in reading_calls.py.
@@ -42,7 +42,7 @@ class _Below(ctypes.Structure):
 
 
 def allow_only_reading(paths: Iterable[Path]) -> bool:
-    """Permanently deny this thread everything that Landlock can deny, except for reading these files and folders.
+    """Permanently deny this thread every kind of access that Landlock controls, except reading these files and folders.
 
     Paths that do not exist are ignored. Return False if the kernel does not support Landlock.
     """

@@ -16,10 +16,10 @@ MIB = 1024 * 1024
 MOST_SIGNALS = 1000
 """The maximum number of pending signals and POSIX timers of a cell. The kernel counts them per user."""
 NO_CORE_DUMP = 1
-"""The limit on core dumps (bytes). With the limit 0, the kernel would still pass core dumps to another program:
+"""The limit on core dumps (bytes). With the limit 0, the kernel would still pass core dumps to another program; see
 core(5)."""
 MOST_OTHERS = 4096
-"""If submissions run without a cell, the user may have this number of other processes and threads."""
+"""Without cells, the limit on processes is higher by this number, for the user's other processes and threads."""
 
 
 @dataclass(frozen=True)

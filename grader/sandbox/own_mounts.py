@@ -1,4 +1,4 @@
-"""Own mounts: a process keeps only the files and folders that it names, in its own mount namespace.
+"""Own mounts: a process keeps only the files and folders in a list, in a separate mount namespace.
 
 This module is the second choice, for kernels without Landlock (landlock.py). The process needs the rights of root, or
 user namespaces for ordinary users, as bubblewrap does. The process must have only one thread.

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _CHUNK = 1024 * 1024
 MOST_TIME = 3
-"""The maximum duration of a watched child, as a multiple of its time limit."""
+"""The maximum duration of a watched child process, as a multiple of its time limit."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Finished:
 
 
 class _Tail:
-    """The first and the last half of an output, since the beginning and the end of a log are the most useful parts."""
+    """The beginning and the end of an output, half of the limit each, since they are the most useful parts of a log."""
 
     def __init__(self, most: int) -> None:
         self._half = most // 2

@@ -1,7 +1,8 @@
 """The seccomp filter of submission/reader.py, the process that reads students' files.
 
-The process reads, computes, and writes its answer to an open pipe. The process is not allowed to start a program or a
-process, open a connection, change a file or a limit, or send a signal, even if a parser has a security hole.
+The process reads, computes, and writes its result to a pipe that is already open. The process is not allowed to start a
+program or a process, open a connection, change a file or a limit, or send a signal, even if a parser has a security
+hole.
 """
 
 from __future__ import annotations
@@ -81,7 +82,7 @@ def program() -> bytes:
 
 
 def _only_without(number: int, index: int, bits: int, error: int) -> list[bpf.Line]:
-    """Return the filter lines that refuse the system call if its argument has any of these bits set."""
+    """Return the instructions that refuse the system call if its argument has any of these bits set."""
     return [
         (bpf.EQUAL, 0, 4, number),
         (bpf.LOAD, 0, 0, bpf.argument(index)),

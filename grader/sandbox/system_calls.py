@@ -43,7 +43,7 @@ DENIED = {
         "io_setup": 206, "io_destroy": 207, "io_getevents": 208, "io_submit": 209, "io_cancel": 210,
         "io_pgetevents": 333, "sync": 162, "syncfs": 306,
     },
-    "memory that no limit counts": {
+    "memory that counts towards no limit": {
         "memfd_create": 319, "memfd_secret": 447, "shmget": 29, "shmat": 30, "shmctl": 31, "semget": 64, "msgget": 68,
         "mq_open": 240,
     },
@@ -116,9 +116,9 @@ def program() -> bytes:
 
 
 def _usual_socket() -> list[bpf.Line]:
-    """Return the lines of the filter that make socket and socketpair fail for a rare kind of socket.
+    """Return the instructions that make socket and socketpair fail for rare kinds of sockets.
 
-    The kernel loads the module of a family or protocol before it finds out that the call is not possible.
+    The kernel loads the module of a family or protocol before it finds out that the call must fail.
     """
     lines = _one_of(0, _FAMILIES, errno.EAFNOSUPPORT)
     lines += _one_of(1, _TYPES, errno.ESOCKTNOSUPPORT, bits=_TYPE_BITS)
@@ -128,7 +128,7 @@ def _usual_socket() -> list[bpf.Line]:
 
 
 def _one_of(index: int, values: Sequence[int], error: int, *, bits: int = 0) -> list[bpf.Line]:
-    """Return the lines of the filter that make a call fail unless this argument has one of the values.
+    """Return the instructions that make a call fail unless this argument has one of the values.
 
     Only the given bits of the argument are compared, or all of its low 32 bits.
     """

@@ -33,7 +33,7 @@ looks through the TCP sockets of all networks, which takes 4 ms, so such a list 
 sockets."""
 _IN_USE = re.compile(rb"^TCP6?: inuse (\d+)", re.MULTILINE)
 _MOST_LISTED = 4 * 1024 * 1024
-"""A list of sockets that is longer than this (bytes) has more than 25,000 lines, which only an attack has."""
+"""A list of sockets that is longer than this (bytes) has more than 25,000 lines, which happens only in an attack."""
 _MEMORY = re.compile(r"^(?:RssAnon|RssShmem|VmSwap|VmPTE):\s*(\d+) kB", re.MULTILINE)
 """The memory of a process in /proc/PID/status without mapped files: its own pages, shared pages and page tables."""
 _THREADS = re.compile(r"^Threads:\s*(\d+)", re.MULTILINE)
@@ -94,7 +94,7 @@ class Guard:
         return max((cpu for at, cpu in self._worked if at <= end + EVERY_S), default=first) - before
 
     def ready_s(self, *, but: int) -> float:
-        """Return how long all processes of the cell except `but` have run or waited for a processor (s).
+        """Return the time for which all processes of the cell except `but` have run or waited for a processor (s).
 
         On a crowded machine, a process gets less CPU time, but the total time for which it runs or waits is about the
         same. Only the first thread of each process is counted.
@@ -102,7 +102,7 @@ class Guard:
         return sum(ready_s for pid, ready_s in self._ready.copy().items() if pid != but)
 
     def waited_s(self, *, of: int | None = None) -> float:
-        """Return how long the processes of the cell, or only the process `of`, have waited for a processor (s).
+        """Return the time for which the cell's processes, or only the process `of`, have waited for a processor (s).
 
         Only the first thread of each process is counted.
         """

@@ -35,7 +35,7 @@ MOST_HANGS = 2
 RIGHT_S = 5.0
 """The time for each test on the correct node (s). On a broken node, a test may wait longer for a missing message."""
 DOUBT_S = 1.0
-"""The time for each test on a broken node (s), as long as the tests have not run on the correct node."""
+"""The time for each test on a broken node (s) before the tests have passed on the correct node."""
 
 
 class Bench:
@@ -126,7 +126,7 @@ class _Queue:
         self._lock = Lock()
         self._closed = False
         self._doubts = False
-        """Whether a run on a broken node took long, and may hang on the correct node, too."""
+        """Whether a run on a broken node exceeded its time, so that the tests may hang on the correct node, too."""
         self.ended: list[Ended] = []
 
     @property
@@ -157,7 +157,7 @@ class _Queue:
             return replace(next_, test_s=self._spec.duration_s if rights else DOUBT_S) if next_.node else next_
 
     def put(self, run: _Next, ended: Ended) -> None:
-        """Store the result of a run. A run that had little time and needed more is repeated later."""
+        """Store the result of a run. A run that exceeded the short time limit `DOUBT_S` is repeated later."""
         with self._lock:
             if self._closed or self.is_settled:
                 return

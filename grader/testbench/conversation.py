@@ -117,7 +117,7 @@ class Conversation:
         return bool(data or passed)
 
     def _answer_all(self) -> bool:
-        """Answer the requests that have arrived. Return False if there will be no more answers."""
+        """Answer the requests that have arrived. Return False if no more requests will be answered."""
         data = os.read(self._asks, 4096)
         self._rest += data
         while len(self._rest) >= _QUESTION.size and self._asked < MOST_QUESTIONS:

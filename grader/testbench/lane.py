@@ -57,8 +57,8 @@ class Package:
 class Lane:
     """A sandbox room and the session that runs in this room, as a context manager.
 
-    On entry, the session starts its imports. Without cells, the session uses `folder`, which no other lane uses, and
-    its nodes discover no other nodes on the machine.
+    When the context is entered, the session begins to import its modules. Without cells, the session uses `folder`,
+    which no other lane uses, and its nodes discover no other nodes on the machine.
     """
 
     def __init__(self, ros: Ros, package: Package, duration_s: float, folder: Path | None = None) -> None:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     """The CPU time (s) that all processes of the run used between two times of CLOCK_MONOTONIC."""
 
 LOOK_S = 0.5
-"""A run that has sent no request for this time (s) is examined, and again after the same time."""
+"""A run that sends no request is examined each time this many seconds have passed."""
 _CALLER = "/proc/thread-self/schedstat"
 
 

@@ -12,7 +12,7 @@ from grader.common.json_types import number, text, whole_or_none
 MOST_MESSAGE = 1500
 """The maximum length of a pytest message (characters)."""
 LATEST_S = 1e9
-"""A clock that shows a later time shows the time of day."""
+"""The latest time (s) of a clock that a test advances. A clock with a later time follows the system time."""
 
 
 @dataclass(frozen=True)

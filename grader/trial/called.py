@@ -36,7 +36,7 @@ class Called:
 
 
 def called_from_json(data: dict[str, Any]) -> Called:
-    """Return the result in this JSON. Raises ValueError, TypeError or KeyError if the JSON is invalid."""
+    """Return the result that `data` describes. Raises ValueError, TypeError or KeyError if `data` is invalid."""
     values = data["values"]
     try:
         numbers = None if values is None else tuple(float(each) for each in values[:MOST_VALUES])

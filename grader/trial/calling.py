@@ -45,8 +45,8 @@ def make_calls(
 ) -> bytes:
     """Call the function, or run the executable, and return the output of the cell (see called.read_called).
 
-    `tree` is the install tree of the package (a tar stream). `files` maps paths to the files that are added in the
-    current folder of the program.
+    `tree` is the install tree of the package (a tar stream). `files` maps paths to the contents of files that are added
+    to the program's current folder.
 
     Raises:
         MachineError: the sandbox does not work.

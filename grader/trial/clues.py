@@ -1,4 +1,4 @@
-"""Find clues in the source that a node follows wall time.
+"""Search the source of a node for clues that the node follows wall time.
 
 In simulated time, a node that follows wall time would get a wrong verdict.
 

@@ -52,8 +52,8 @@ trial."""
 REQUESTS_HZ = 500
 """If the simulator answers more requests from the node than this (Hz), the node caused all stalls, on any machine.
 
-On a crowded machine, CPU time alone does not show this, because the simulator and the node each get only little of it.
-For comparison, a node that makes three requests per pose makes 190 per second.
+On a crowded machine, CPU time alone does not show that the node is the cause, because the simulator and the node each
+get only little of it. For comparison, a node that makes three requests per pose makes 190 per second.
 """
 MESSAGES_HZ = 1000
 """If nodes other than the simulator send more messages than this (Hz), the node caused all stalls."""

@@ -26,8 +26,8 @@ from grader.sandbox.user import cell_user
 from grader.trial import fork_client
 
 MOST_MEMORY = 3 * 1024 * MIB
-"""The maximum address space of the conductor (bytes). Messages from the node fill its memory, and the conductor itself
-needs 1 GiB of address space."""
+"""The maximum address space of the conductor (bytes). The conductor itself needs 1 GiB. Messages from the node can fill
+the rest."""
 
 _PLAIN = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin"}
 
@@ -43,7 +43,7 @@ class ConductorProcess(ABC):
         self._may_be_suspended = True
 
     def suspend(self) -> None:
-        """Suspend the conductor until `resume` or `kill`. After `resume` or `kill`, do nothing."""
+        """Suspend the conductor until `resume` or `kill` is called. After such a call, this method does nothing."""
         with self._changing:
             if self._may_be_suspended:
                 self._signal(signal.SIGSTOP)
@@ -67,7 +67,7 @@ class ConductorProcess(ABC):
 
     @abstractmethod
     def pids(self) -> tuple[int, ...]:
-        """Return process ids: all processes of the trial are among these and their descendants."""
+        """Return process ids. These processes and their descendants are all processes of the trial."""
 
     @abstractmethod
     def wait(self, timeout: float) -> int:

@@ -24,14 +24,14 @@ class Fork:
     """A process that a fork server has forked, or will fork. Its methods are those of `subprocess.Popen`."""
 
     def __init__(self, result: socket.socket) -> None:
-        """Watch the fork whose fork server has the other end of this socket."""
+        """Watch the forked process. Its fork server has the other end of the socket `result`."""
         self.returncode: int | None = None
         self._result = result
         self._process: int | None = None
         self._starting = Lock()
 
     def close(self) -> None:
-        """Stop watching. The fork server then kills the process if it still runs."""
+        """Stop watching. The fork server then kills the process if it is still running."""
         self._result.close()
         if self._process is not None:
             os.close(self._process)

@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 CONDUCTORS = {"ROS_PYTHON_CHECK_FIELDS": "0"}
-"""The additional environment of conductors. This check of messages helps beginners, but it would slow down the
-simulator in every frame."""
+"""Additional environment variables of conductors: they disable the check of the values in messages, which helps
+beginners but would slow down the simulator in every frame."""
 
 
 class ForkServer:
-    """A process of grader.trial.fork_server. It exits with this process."""
+    """A process of grader.trial.fork_server. It exits when this process exits."""
 
     def __init__(self, kind: Literal["conductor", "node"], ros: installation.Ros) -> None:
         self._kind, self._ros = kind, ros

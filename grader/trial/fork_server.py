@@ -1,11 +1,11 @@
 """Fork conductors or nodes from a process that has already imported rclpy, so that a trial imports nothing.
 
-A grader has two fork servers: one forks the conductors of its trials, the other one the nodes (grader.trial.launcher).
-They are separate, so that a student's node does not know the memory layout of the conductor, which reads the messages
-of the node. A server knows nothing about its trials. Its forks enter the sandbox before they read anything, and no
-student's code ever runs outside of it.
+A grader has two fork servers: one forks the conductors of its trials, and the other forks the nodes
+(grader.trial.launcher). They are separate, so that a student's node does not know the memory layout of the conductor,
+which reads the messages of the node. A server knows nothing about its trials. Its forks enter the sandbox before they
+read anything, and student code never runs outside the sandbox.
 
-The server runs outside of the sandbox. It reads requests of the grader from a socket, each with descriptors:
+The server runs outside the sandbox. It reads requests of the grader from a socket, each with descriptors:
 
 - **conductor**: JSON with the control groups, the user and the limits. The descriptors are a process in the room
   (pidfd_open(2)), standard input, output and error, the socket on which the conductor asks for nodes, and the socket
@@ -48,7 +48,7 @@ NODES_SOCKET = 3
 MOST_REQUEST = 64 * 1024
 """The maximum size of a request (bytes)."""
 CONDUCTORS, NODES = 6, 5
-"""The number of descriptors with the request for a conductor, and with a cell for a node."""
+"""The number of descriptors that are sent with the request for a conductor, and with the cell of a node."""
 CELLS_USER = 1000
 """The user id in a cell (bubblewrap.cell)."""
 _AHEAD = ("grader.trial.conductor", "grader.trial.simulated", "grader.trial.wall", "grader.trial.without_node")
@@ -103,7 +103,7 @@ def _import_conductor() -> list[launcher.Postponed]:
 
 
 def _next_request(requests: socket.socket) -> tuple[dict[str, Any], list[int]]:
-    """Wait for requests. Each request is returned in a fork of this process, and never in this process."""
+    """Wait for requests. For each request, fork this process, and return the request in the child process only."""
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the forks
     gc.collect()
     gc.freeze()
@@ -168,7 +168,7 @@ def _enter_cell(order: dict[str, Any], problem: str, conductors: int, result: in
 
 
 def _report_to(stderr: int, problem: str) -> None:
-    """Write errors of this process to this descriptor. Exit if there was a problem at the start of the server."""
+    """Redirect standard error to this descriptor. Print the server's start-up problem, if any, and exit."""
     os.dup2(stderr, 2)
     if problem:
         os.write(2, problem.encode())
@@ -176,7 +176,7 @@ def _report_to(stderr: int, problem: str) -> None:
 
 
 def _next_node(conductor: socket.socket, nodes: int) -> list[int]:
-    """Wait until the conductor has made the cell of a node. Each node is returned in a fork of this process."""
+    """Wait for the cells of the nodes. For each cell, fork, and return its descriptors in the child process."""
     for _ in range(nodes):
         data, descriptors, *_ = socket.recv_fds(conductor, 1, NODES)
         if not data:  # the conductor has exited
@@ -196,7 +196,8 @@ def _next_node(conductor: socket.socket, nodes: int) -> list[int]:
 def _fork_supervised(result: int, childs: Sequence[int]) -> None:
     """Fork. Return in the child process. The parent process reports how the child process ends.
 
-    The parent process closes the descriptors `childs`, and kills the child process if nobody waits for the result.
+    The parent process closes the descriptors `childs`, and kills the child process if the other end of the socket
+    `result` is closed.
     """
     results = socket.socket(fileno=result)
     child = os.fork()

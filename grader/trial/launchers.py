@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 READY = b"\x00ready\n"
-"""The output of the launcher before any of the student's code runs."""
+"""The launcher writes this output when it is ready, before any of the student's code runs."""
 _PLAIN = {"PATH": "/usr/bin:/bin"}
 _ENDS_S = 5.0
 

@@ -43,7 +43,7 @@ MOST_MESSAGES = 20_000
 """The maximum number of messages on a judged topic, and on all other topics together."""
 MOST_BYTES = 32 * 1024 * 1024
 MOST_JUDGED_BYTES = 4 * 1024 * 1024
-"""The maximum size of the messages on a judged topic."""
+"""The maximum total size of the messages on all other topics together, and on a judged topic (bytes)."""
 
 
 class Recorder(Node):
@@ -258,7 +258,7 @@ class Recorder(Node):
 
 
 def _each_type_first(endpoints: set[Endpoint]) -> list[Endpoint]:
-    """Return one endpoint of each type first, so that a hundred endpoints of one type do not displace another type."""
+    """Return the endpoints in an order that begins with one endpoint of each type."""
     ordered = sorted(endpoints, key=str)
     first = list({end.type: end for end in reversed(ordered)}.values())
     return first + [end for end in ordered if end not in first]

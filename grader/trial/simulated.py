@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 QUIET_S = 0.02
 """The time without discovery traffic after which discovery counts as finished (s). The value is less than half the time
-between two announcements (fastdds.xml). If this time were longer, the announcements of the simulator and the node might
+between two announcements (fastdds.xml). If the value were larger, the announcements of the simulator and the node might
 leave no gap of this length for many seconds."""
 WAKE_S = 1.0
 """The maximum time to wait until the node notices /clock (s). A node that uses create_rate never wakes up at time 0."""

@@ -1,8 +1,8 @@
 """Choose random places for targets, which are turtles that a node must catch, nearest first.
 
 Places are chosen again until the order of the targets is unambiguous. A turtle that always goes to the nearest target
-must reach them in a single order, and any other rule (by name, by the distance from the start) must give a different
-order.
+must be able to reach them in only one order, and any other rule (by name, by the distance from the start) must give a
+different order.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Target:
 
 
 def draw_targets(count: int, start: Pose, seed: int) -> tuple[Target, ...]:
-    """Return `count` targets, sorted by name. Random places are drawn until they meet the conditions (see above)."""
+    """Return `count` targets, sorted by name. Random places are drawn until they meet the module's conditions."""
     draw = random.Random(f"targets {seed}")
     targets: tuple[Target, ...] = ()
     for _ in range(MOST_DRAWS):

@@ -131,7 +131,8 @@ class Trial:
     def suspend(self) -> None:
         """Suspend the waiting simulator, which uses 0.3 % of a core, until the trial is used.
 
-        Any thread may call `suspend`. Outside a cell, do nothing: suspended processes would outlive a killed grader.
+        Any thread may call `suspend`. Without a sandbox, this method does nothing, because suspended processes would
+        outlive a killed grader.
         """
         if self._in_cell:
             self._conductor.suspend()

@@ -42,7 +42,7 @@ class Hooks:
     when a client calls a service or an action ("spawn", "rotate_absolute") or sets a parameter ("set_background" if
     only colours are set, or else "set_parameters"). `on_call(service, type, request, response, waited_s)` is called
     when a call is answered, `waited_s` (s) after it arrived, and `on_goal(event)` for each event of an action goal.
-    `late` delays the answers if it is not None.
+    `late` delays the responses if it is not None.
     """
 
     on_command: Callable[[str, bytes, Any], object]

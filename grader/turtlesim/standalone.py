@@ -59,7 +59,7 @@ class Feed(Protocol):
 
 
 class View(Protocol):
-    """A view of the simulator. `paused` is true while the turtles' time is stopped, and `open` while the view runs."""
+    """A view of the simulator. `paused` is true while the turtles' time is stopped, and `open` until the view ends."""
 
     paused: bool
     open: bool

@@ -22,7 +22,7 @@ def _screen() -> bool:
 
 
 def over_ssh() -> bool:
-    """Return whether this terminal belongs to a login over ssh."""
+    """Return whether this terminal belongs to an ssh session."""
     return bool(os.environ.get("SSH_CONNECTION"))
 
 

@@ -15,7 +15,7 @@ _TABLES = (Path("/proc/net/tcp"), Path("/proc/net/tcp6"))
 
 
 def is_of_another_user(client: tuple[str, int] | None) -> bool:
-    """Return whether another user of this machine, but not root, opened the connection with this address and port."""
+    """Return whether a user other than this user and root opened the connection with this address and port."""
     return client is not None and any(user not in (0, os.getuid()) for user in _users(*client))
 
 

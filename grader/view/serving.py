@@ -104,7 +104,7 @@ class _Server(uvicorn.Server):
     async def main_loop(self) -> None:
         """Wait until `end` is called.
 
-        uvicorn's own main_loop wakes up ten times per second, which costs 0.1 % of a core on an idle page.
+        uvicorn's own main_loop wakes up ten times per second, which costs 0.1 % of a core while the page is idle.
         """
         await self._ends.wait()
 

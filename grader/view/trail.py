@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from grader.view.feed import Line
 
 UNIT = 10
-"""Units per pixel."""
+"""The number of units per pixel."""
 FAR = 20 * SIDE_PX * UNIT
-"""The limit of coordinates. Points further outside are moved to this limit."""
+"""The largest absolute value of a coordinate. Points beyond this limit are moved to the limit."""
 MOST_POINTS = 20_000
 """The maximum number of points in all strokes. If this number is exceeded, the strokes are merged into the image."""
 _SCALE = 3

@@ -36,7 +36,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     comments = parser.add_mutually_exclusive_group()
     comments.add_argument("--all-comments", action="store_true", help="also print the comments of nested types")
-    comments.add_argument("--no-comments", action="store_true", help="do not print comments and empty lines")
+    comments.add_argument("--no-comments", action="store_true", help="print neither comments nor empty lines")
     kind = parser.add_argument(
         "type", action=_FromInput, help="full name, as in geometry_msgs/msg/Twist; - reads the type from standard input"
     )

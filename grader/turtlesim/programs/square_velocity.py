@@ -1,4 +1,4 @@
-"""Drive around a square with sides of 2 m: compute the velocity from the turtle's pose. Pure functions."""
+"""Drive around a square with sides of 2 m: pure functions that compute the velocity from the turtle's pose."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The keys of turtle_teleop_key: translate the characters from a terminal into commands. Pure functions."""
+"""The keys of turtle_teleop_key: pure functions that translate the characters from a terminal into commands."""
 
 from __future__ import annotations
 

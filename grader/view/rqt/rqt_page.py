@@ -146,7 +146,7 @@ class _Controls:
         return False
 
     def let_go(self, _: object) -> None:
-        """Do nothing, since this page has no held keys."""
+        """Do nothing, since this page does not use held keys."""
 
     def gone(self, _: object) -> None:
         """Do nothing, since no state belongs to a single page."""

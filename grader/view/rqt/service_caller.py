@@ -53,7 +53,7 @@ def services(node: Node) -> list[Service]:
 
 @dataclass
 class _Call:
-    """A call that waits for the service, or for its response if `future` is set."""
+    """A call that is waiting for the service, or for its response if `future` is set."""
 
     id: str
     client: Any
@@ -63,7 +63,7 @@ class _Call:
 
 
 class ServiceCaller:
-    """Calls services in the thread of the node. `tell` receives the answers.
+    """Calls services in the thread of the node. `tell` is called with each response.
 
     `check` must be called several times per second.
     """
