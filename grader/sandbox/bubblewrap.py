@@ -114,8 +114,8 @@ def cell(
     """Return the command that runs `argv` in a cell.
 
     With `network`, the cell shares the network of the room in which the caller runs. With `first`, the program is the
-    first process of the cell. Otherwise, this is a process of bubblewrap that has the same standard streams, and that
-    other processes of the cell can control.
+    first process of the cell. Without `first`, the first process is a process of bubblewrap, which has the same
+    standard streams and can be controlled by the other processes of the cell.
 
     `filter_fd` is the system call filter from system_calls.call_filter(). The process must inherit this descriptor. A
     caller that runs as root must put the cell into a room, in which the cell's user is an ordinary user, because the
