@@ -1,4 +1,4 @@
-"""Measure the most important costs in one run, and print a table of the costs and the values to aim for.
+"""Measure the most important costs in one run, and print a table of the costs and their target values.
 
     python -m grader.benchmarks.all [--times N] [--class N] [--sync N]
 
@@ -41,7 +41,7 @@ _NODE = "my_robot_controller/draw_circle.py"
 
 @dataclass(frozen=True)
 class Row:
-    """A row of the table. `value` and `aim` have the same unit. A value is good if it is not above the aim."""
+    """A row of the table. `value` and `aim` have the same unit. A value is good if it is at most `aim`."""
 
     name: str
     value: float
@@ -105,7 +105,7 @@ def main() -> None:
     print(f"{time.strftime('%d %B %Y', time.gmtime())}, {os.cpu_count()} processors, {load}")
     wall_s, cpu_s = (statistics.median(getattr(f, key) for f in bench.bare) for key in ("wall_s", "cpu_s"))
     print(f"F = {wall_s:.2f} s wall, {cpu_s:.2f} s CPU (medians of {len(bench.bare)})\n")
-    print(f"{'':44}{'measured':>9}{'aim':>8}")
+    print(f"{'':44}{'measured':>9}{'target':>8}")
     for row in rows:
         aim = "" if row.aim is None else f"{row.aim:8.2f}"
         print(f"{row.name:44}{row.value:9.2f}{aim:8} {row.unit}")

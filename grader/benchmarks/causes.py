@@ -7,7 +7,7 @@ of the packages), and judges the packages in simulated time. The correct package
 tests/unusual that follow ROS time. A package that passes despite the mistake is ignored. For all other packages, the
 benchmark prints how often each of these statements is true:
 
-- first: the first failed check names the cause, at a line that must change;
+- first: the first failed check names the cause and a line that must change;
 - at all: any failed check names the cause in this way;
 - false: a failed check names a wrong cause. A diagnosis that only repeats what was observed does not count.
 

@@ -40,7 +40,7 @@ _STEP = "03-circle-publisher"
 _GRADER = str(Path(sys.executable).with_name("grader"))
 _LOOK_S = 0.25
 AIM_F = 1.0
-"""The aim for the wall time per submission on two processors (F)."""
+"""The target for the wall time per submission on two processors (F)."""
 
 
 @dataclass(frozen=True)
@@ -273,7 +273,7 @@ def _print(f_s: float, times: int, rows: list[tuple[str, ClassCost]]) -> None:
     for name, one in rows:
         figures = (one.wall_s, one.wall_s / f_s, one.cpu_s, one.cpu_s / f_s)
         print(f"{name:18}" + "".join(f"{figure:8.2f}" for figure in figures) + f"{one.peak_mb:9.0f}")
-    print(f"\naim: at most {AIM_F:.1f} F wall per submission with two processors, for any size of the class")
+    print(f"\ntarget: at most {AIM_F:.1f} F wall per submission with two processors, for any size of the class")
 
 
 if __name__ == "__main__":

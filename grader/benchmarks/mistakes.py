@@ -5,7 +5,7 @@
 F is the cost of the same work without the grader: a colcon build of the package, and a process with one rclpy node for
 each node that the exercise runs (benchmarks/bare.py). Each part is the median of three measurements. For example,
 04-package-files runs two nodes, and 07-challenges runs four. The speed of a machine varies during the minutes that this
-benchmark takes, so F is measured again after every few cases. A case that seems to exceed the aim is measured three
+benchmark takes, so F is measured again after every few cases. A case that seems to exceed the target is measured three
 more times, each time immediately after F, and the median is used.
 """
 
@@ -57,7 +57,7 @@ def main() -> None:
             ratios |= _ratios(cases[first : first + CASES_A_PIECE], folder / f"whole{first}")
     slowest = max(static, key=lambda name: static[name])
     print(f"static findings: at most {static[slowest]:.3f} s ({slowest}), start of the command {start_s:.2f} s")
-    print(f"  together {static[slowest] + start_s:.2f} s; aim {MOST_STATIC_S:g} s")
+    print(f"  together {static[slowest] + start_s:.2f} s; target {MOST_STATIC_S:g} s")
     for exercise in sorted({_exercise(case).id for case in cases}):
         names = [case.name for case in cases if _exercise(case).id == exercise]
         of_it = {name: ratios[name] for name in names if name in ratios}
@@ -65,7 +65,7 @@ def main() -> None:
             longest = max(of_it, key=lambda name: of_it[name])
             print(f"{exercise}: {len(of_it)} in simulated time, the slowest {of_it[longest]:.2f} F ({longest})")
     over = [name for name, ratio in ratios.items() if ratio > MOST_F]
-    print(f"over the aim of {MOST_F:g} F: {', '.join(over) or 'none'}")
+    print(f"over the target of {MOST_F:g} F: {', '.join(over) or 'none'}")
 
 
 def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:

@@ -31,11 +31,11 @@ if TYPE_CHECKING:
     from grader.tests.open.course import Course
 
 AIM_MORE_S = 0.1
-"""The aim for the additional time of the page over `grader watch` (s)."""
+"""The target for the additional time of the page over `grader watch` (s)."""
 AIM_SIZE = 600_000
 AIM_READY_S = 1.0
 AIM_IDLE = 0.01
-"""The aim for the share of one core that an idle page uses."""
+"""The target for the share of one core that an idle page uses."""
 _REST_S = 2.0
 _IDLE_S = 0.1
 """The processes are idle if they use at most this CPU time (s) within _REST_S."""
@@ -52,7 +52,8 @@ _OBSERVE = """(line) => {
     return null;
 }"""
 """This script does not poll, because polling would keep the browser busy while the grader works. It returns the time at
-which the browser drew the verdict, so the time of a message from the browser to this process is not included."""
+which the browser drew the verdict, so the time that a message takes from the browser to this process is not
+included."""
 
 
 def main() -> None:
@@ -74,10 +75,10 @@ def main() -> None:
     in_page, in_watch = (statistics.median(times) for times in zip(*pairs, strict=True))
     more_s = statistics.median(page_s - watch_s for page_s, watch_s in pairs)
     print(f"save to verdict: page {in_page:.2f} s, watch {in_watch:.2f} s,")
-    print(f"  {more_s:+.2f} s (aim {AIM_MORE_S:+.2f} s), from {_differences(pairs)}")
-    print(f"the page of {CIRCLE}: {size / 1000:.0f} kB (aim {AIM_SIZE / 1000:.0f} kB)")
-    print(f"ready after {ready_s:.2f} s (aim {AIM_READY_S:.2f} s)")
-    print(f"idle: {idle:.2%} of a core (aim {AIM_IDLE:.0%})")
+    print(f"  {more_s:+.2f} s (target {AIM_MORE_S:+.2f} s), from {_differences(pairs)}")
+    print(f"the page of {CIRCLE}: {size / 1000:.0f} kB (target {AIM_SIZE / 1000:.0f} kB)")
+    print(f"ready after {ready_s:.2f} s (target {AIM_READY_S:.2f} s)")
+    print(f"idle: {idle:.2%} of a core (target {AIM_IDLE:.0%})")
 
 
 def _begun(stack: ExitStack, home: Path) -> Course:
@@ -157,7 +158,7 @@ def _loaded(page: Page) -> tuple[int, float]:
 
 
 def _idle(seconds: float) -> float:
-    """Return the share of one core that the descendants of this process use, without the browser."""
+    """Return the share of one core that the descendants of this process use, excluding the browser."""
     before = _used_s()
     time.sleep(seconds)
     after = _used_s()
@@ -165,7 +166,7 @@ def _idle(seconds: float) -> float:
 
 
 def _used_s() -> dict[int, float]:
-    """Return the CPU time (s) of the descendants of this process, without the browser."""
+    """Return the CPU time (s) of the descendants of this process, excluding the browser."""
     used = {}
     for pid in _descendants(os.getpid()):
         with suppress(OSError):  # the process has exited

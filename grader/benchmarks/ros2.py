@@ -34,9 +34,9 @@ COMMANDS = {
     "--help": ["--help"],
 }
 AIMS = {"topic list": 1.0, "topic list --no-daemon": 1.6, "interface show": 0.15, "pkg list": 0.15, "--help": 0.15}
-"""The aims for the wall time on an idle machine, divided by the wall time of the bare node."""
+"""The targets for the wall time on an idle machine, divided by the wall time of the bare node."""
 AIM_TAB_S = 0.15
-"""The aim for the completion of a topic (s)."""
+"""The target for the completion of a topic (s)."""
 
 
 def main() -> None:
@@ -92,7 +92,7 @@ def _measure(runs: dict[str, tuple[list[str], dict[str, str]]], times: int) -> N
             if name in complete:
                 complete[name] += done.stdout == _COMPLETE or (name == "Tab" and "/turtle1/pose" in done.stdout)
     bare_s = statistics.median(wall["bare rclpy node"])
-    print(f"{'':24}{'median s':>10}{'longest s':>11}{'/ bare node':>13}{'aim':>10}")
+    print(f"{'':24}{'median s':>10}{'longest s':>11}{'/ bare node':>13}{'target':>10}")
     for name, seconds in wall.items():
         middle = statistics.median(seconds)
         aim = f"{AIMS[name]:10.2f}" if name in AIMS else f"{AIM_TAB_S:8.2f} s" if name == "Tab" else ""

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 AIM_FRAMES_HZ = 30.0
 AIM_CPU = 0.15
-"""The aim for the share of one core that the simulator and the server use together."""
+"""The target for the share of one core that the simulator and the server use together."""
 AIM_LATENCY_S = 0.06
 
 # Returns the time from the key press until the browser draws the first frame with the moved turtle (ms).
@@ -101,14 +101,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
         none = Cost(*_share(pids, options.seconds))
         node.stop()
     middle_ms = 1000 * statistics.median(latencies)
-    print(f"frames per second on the page: {hertz:5.1f}    (aim {AIM_FRAMES_HZ:.0f})")
-    print(f"key to moved turtle, median:  {middle_ms:6.0f} ms (aim {1000 * AIM_LATENCY_S:.0f})")
+    print(f"frames per second on the page: {hertz:5.1f}    (target {AIM_FRAMES_HZ:.0f})")
+    print(f"key to moved turtle, median:  {middle_ms:6.0f} ms (target {1000 * AIM_LATENCY_S:.0f})")
     print(f"                     longest: {1000 * latencies[-1]:6.0f} ms")
     print(f"\n{'% of one core':24}{'simulator':>10}{'view':>8}{'both':>8}")
     print(f"{'without a view':24}{100 * without:10.1f}")
     for name, cost in (("with one, no page", none), ("one page", one), ("ten pages", ten)):
         print(f"{name:24}{100 * cost.simulator:10.1f}{100 * cost.view:8.1f}{100 * (cost.simulator + cost.view):8.1f}")
-    print(f"(aim: one page below {100 * AIM_CPU:.0f})")
+    print(f"(target: one page below {100 * AIM_CPU:.0f})")
 
 
 def _opened(browser: Browser, url: str) -> Page:

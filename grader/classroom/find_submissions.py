@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
 UNKNOWN = ""
-"""The exercise id for a folder whose layout does not name an exercise."""
+"""The exercise id of a submission whose exercise cannot be determined from the names of the folders."""
 OWN = "exercises"
 """The folder of a clone in which the student works."""
 _OF_PROGRAMS = (".git", ".github", ".gitlab", ".idea", ".ipynb_checkpoints", ".venv", ".vscode", "__MACOSX")

@@ -1,4 +1,4 @@
-"""The order of a run of `grader grade`: the submissions to grade, and the valid results of earlier runs."""
+"""The work of a run of `grader grade`: the submissions to grade, and the valid results of earlier runs."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Order:
         return {name: exercise_from(sources) for name, sources in self.sources.items()}
 
     def key(self, found: Found) -> Key:
-        """Return the key of a submission's result. Raises DiskError like `content.read`."""
+        """Return the key of a submission's result. Raises DiskError, as `content.read` does."""
         exercise = self.exercises[found.exercise]
         return Key(
             submission=fingerprint(found, exercise),
@@ -60,7 +60,7 @@ class Order:
         )
 
     def task(self, found: Found) -> Task:
-        """Read the submission and return its task. Raises DiskError like `content.read`."""
+        """Read the submission and return its task. Raises DiskError, as `content.read` does."""
         owner = self._owner(found)
         content = read(found, self.exercises[found.exercise], owner)
         if isinstance(content, Refused):
@@ -109,7 +109,7 @@ class Order:
 
 
 def sources_for(found: tuple[Found, ...], checks: Path | None) -> dict[str, Sources]:
-    """Return the files that define the exercises of these submissions. Raises UsageError like `sources_of`."""
+    """Return the files that define the exercises of these submissions. Raises UsageError, as `sources_of` does."""
     return sources_of({each.exercise for each in found}, checks)
 
 
@@ -125,7 +125,7 @@ class Todo:
 
 
 def sort_out(order: Order, results: Results) -> tuple[list[Result], list[Todo]]:
-    """Return the results that are still valid, and the submissions to grade. Raises DiskError like `content.read`."""
+    """Return the valid results, and the submissions to grade. Raises DiskError, as `content.read` does."""
     kept: list[Result] = []
     todo: list[Todo] = []
     for found in order.found:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def read_owners(file: Path) -> dict[str, str]:
-    """Return a mapping from the name of a submission to the student id. Raises UsageError like `read_roster`."""
+    """Return a mapping from the name of a submission to the student id. Raises UsageError, as `read_roster` does."""
     return {row["submission"]: row["student"] for row in read_roster(file, ("submission", "student")).values()}
 
 
@@ -29,7 +29,7 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
     The columns in `needed` are never empty, and the values of the first of these columns are unique.
 
     Raises:
-        UsageError: the file is not a roster. The message names the line and says what to do.
+        UsageError: the file is not a roster. The message contains the number of the line and says what to do.
     """
     (_, names), *lines = _lines(file) or [(1, [])]
     columns = [name.lower() for name in names]

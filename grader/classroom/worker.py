@@ -112,7 +112,7 @@ def main(descriptor: int) -> None:
 
 
 def _import_all() -> None:
-    """Import the modules that grading needs in advance, so that the first task does not have to wait for the import."""
+    """Import in advance the modules that grading needs, so that the first task does not have to wait for the import."""
     import grader.report.html  # noqa: F401
 
     load_catkin_pkg()

@@ -34,7 +34,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 READY = b"colcon-is-ready\n"
-"""This line is printed before any of the submission is read. An error after this line is never the machine's fault."""
+"""This line is printed before any part of the submission is read. An error after this line is never the machine's
+fault."""
 _MOST_OPEN = 4096
 _MOST_REQUEST = 1024 * 1024
 _IGNORE = re.compile(r"ignore:([^:]*)")
@@ -47,7 +48,7 @@ _CONDITION = "catkin_pkg.condition"
 
 @dataclass(frozen=True)
 class Run:
-    """Code that a new interpreter would run: the argument of -c, or setup.py (an absolute path) if argv names it."""
+    """Code that a new interpreter would run. `code` is the argument of -c, or the absolute path of a setup.py."""
 
     code: str
     argv: list[str]
@@ -161,7 +162,7 @@ def _next_run(requests: socket.socket) -> Run:
 
 
 def become(run: Run) -> NoReturn:
-    """Make this process the interpreter of this run."""
+    """Execute the run in this process as in a new interpreter, and exit."""
     os.chdir(run.cwd)
     own = set(_entries(os.environ))
     os.environ.clear()

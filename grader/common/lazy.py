@@ -62,7 +62,7 @@ def _why_not_imported(name: str, error: ImportError) -> str:
     entries = [entry for entry in os.environ.get("PYTHONPATH", "").split(os.pathsep) if entry]
     hiding = next((entry for entry in entries if any(Path(entry, file).exists() for file in (top, f"{top}.py"))), None)
     if hiding is not None:
-        return f"{top} in {hiding} cannot be imported: {why}. PYTHONPATH names this folder: remove the folder from it."
+        return f"{top} in {hiding} cannot be imported: {why}. Remove this folder from PYTHONPATH."
     return f"{top} cannot be imported: {why}. Run `make demo` in the course's folder."
 
 

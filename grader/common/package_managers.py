@@ -137,7 +137,7 @@ def command(manager: Optional[Manager], needs: Sequence[Need], *, root: bool) ->
 
 
 def script(manager: Manager, groups: Sequence[Sequence[Need]]) -> str:
-    """Return shell lines that install each group separately, so that a missing package stops only its own group."""
+    """Return shell lines that install each group separately, so that a missing package affects only its own group."""
     lines = ["export LC_ALL=C DEBIAN_FRONTEND=noninteractive", *([manager.update + " -q"] if manager.update else [])]
     for group in groups:
         words = [_install(manager), manager.quiet, *manager.packages(group)]

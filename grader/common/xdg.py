@@ -37,7 +37,7 @@ def state() -> Path:
 
 
 def _folder(variable: str, default: str) -> Path:
-    """Return the grader's folder inside the folder that the environment variable names.
+    """Return the grader's folder inside the folder that is set in the environment variable.
 
     As the specification requires, relative paths are ignored.
     """

@@ -57,7 +57,7 @@ class ConfinedKernelManager(AsyncKernelManager):
 
     @property
     def kernel_spec(self) -> KernelSpec:
-        """The course's kernel, even if the notebook names another kernel."""
+        """The course's kernel, even if another kernel is specified in the notebook."""
         argv = interpreter("-m", "grader.gradebook.relay", "{relay_folder}").argv
         return KernelSpec(argv=argv, display_name="", language="python", interrupt_mode="message")
 

@@ -55,7 +55,7 @@ def _enrol(students: list[dict[str, str]], folders: ClassFolders) -> None:
 
 
 def read_students(file: Path) -> list[dict[str, str]]:
-    """Return the students of a roster as dictionaries whose keys are COLUMNS. Raises UsageError like `read_roster`."""
+    """Return the students of a roster as dictionaries by column name. Raises UsageError, as `read_roster` does."""
     rows = read_roster(file, COLUMNS[:1], COLUMNS[1:])
     for line, student in rows.items():
         # nbgrader uses ids as folder names, and puts + into names in the exchange.

@@ -67,7 +67,7 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
 
 
 def _asked(exercise: Exercise) -> set[str]:
-    """Return the files in which this step asks for code. A file that is the same as in an earlier step is omitted."""
+    """Return the files in which the learner writes code in this step, except files unchanged since an earlier step."""
     ours = _solution_files(exercise)
     marked = [path for path in ours if syntax_of(path) and MEANT.search(ours[path].decode("utf-8", "ignore"))]
     earlier = [_solution_files(find_exercise(id_)) for id_ in catalogue() if id_ < exercise.id]

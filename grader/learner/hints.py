@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
     """Return the next hint of a step (by default, of the current step) or of a part of the step.
 
-    After all hints have been shown, the last hint is repeated. If `step` is a single letter, it names a part of the
-    current step.
+    After all hints have been shown, the last hint is repeated. A single letter in `step` means this part of the current
+    step.
 
     Raises:
         UsageError: no step was started, or the step does not have the part.

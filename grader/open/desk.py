@@ -55,7 +55,7 @@ class Content:
 
 
 class Desk:
-    """The content of the page. Each change calls `show`."""
+    """The content of the page. `show` is called after each change."""
 
     def __init__(self, show: Callable[[Content], object]) -> None:
         self._show = show

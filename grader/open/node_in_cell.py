@@ -149,7 +149,7 @@ def _tell(text: str) -> None:
 
 
 def main() -> None:
-    """Run the program that the settings name, and exit."""
+    """Run the program that is specified in the settings, and exit."""
     settings = json.loads(sys.argv[1])
     workspace = Path(settings["workspace"]) if settings["workspace"] else None
     signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -46,7 +46,7 @@ LEAST_DISK = GIB // 4
 LITTLE_DISK = 2 * GIB
 LITTLE_MEMORY = 1 * GIB
 NARROW = 60
-"""On a terminal with fewer columns than this, the details begin at the fourth column."""
+"""On a terminal with fewer columns than this, continuation lines are indented by 4 columns instead of 20."""
 
 
 @dataclass(frozen=True)

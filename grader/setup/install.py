@@ -1,6 +1,6 @@
 """The second half of the set-up: fill .venv from the lock file.
 
-This module runs in .venv while no packages are installed there.
+This module runs in .venv before any packages are installed there.
 
 `python -m grader.setup.install STAMP`: STAMP is the stamp of bootstrap.py as JSON. The stamp is written to .venv at the
 end, with the duration of each stage (s), so an interrupted set-up has no stamp.
@@ -69,7 +69,8 @@ def main(stamp: Stamp) -> int:
 def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
     """Install from the lock file. Return the duration of the download and of the installation (s).
 
-    Raises: MachineError: no installer succeeded.
+    Raises:
+        MachineError: no installer succeeded.
     """
     text = lock.LOCK_FILE.read_text(encoding="utf-8")
     if sourced:
@@ -106,7 +107,7 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
 def start_fast(folder: Path) -> None:
     """Let each interpreter import the bootstrapper of the ROS wheels only if the bootstrapper has not run yet.
 
-    The import takes 0.05 s on each start, although the bootstrapper does nothing if its variable is set.
+    The import takes 0.05 s each time, even if the variable is set and the bootstrapper does nothing.
     """
     path = folder / f"{_BOOTSTRAPPER}.pth"
     if path.exists():
@@ -142,7 +143,8 @@ def numpy_is_missing() -> bool:
 def _pip(requirements: Path) -> None:
     """Run `pip install` with the lock file.
 
-    Raises: MachineError: pip failed.
+    Raises:
+        MachineError: pip failed.
     """
     options = ("--disable-pip-version-check", "--no-input", "--retries", "2", "--progress-bar", "off", *_OPTIONS)
     env = {**installers.of_configuration(os.environ), **os.environ, "PIP_CONFIG_FILE": os.devnull}
@@ -159,7 +161,8 @@ def _pip(requirements: Path) -> None:
 def _uv(*arguments: str) -> float | None:
     """Run `uv pip install`. Return the duration of the download (s), or None if uv failed and pip may succeed.
 
-    Raises: MachineError: the disk is full or not writable.
+    Raises:
+        MachineError: the disk is full or not writable.
     """
     command = uv("pip", "install", "--python", sys.executable, *arguments)
     if not _may_write(setup_errors.cache()):

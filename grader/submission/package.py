@@ -30,10 +30,11 @@ MAX_REJECTED = 20
 class Submission:
     """A package.
 
-    `package_dir` is the folder of the package, and `files` maps POSIX paths relative to that folder to bytes.
+    `package_dir` is the folder of the package, and `files` maps POSIX paths relative to that folder to the contents of
+    the files.
 
     `files` leaves out build/, install/, log/, hidden folders, virtual environments, caches and everything that is not a
-    regular file in the folder. `rejected` names the files that make the submission invalid, each with the reason, for
+    regular file in the folder. `rejected` lists the files that make the submission invalid, each with the reason, for
     example a symlink that points outside the package. A link to another file in the package has the content of that
     file. Every path in `files` is printable.
     """
@@ -59,7 +60,7 @@ def open_submission(path: str | os.PathLike[str], *, exactly: bool = False) -> S
     With `exactly`, the path must not contain a link.
 
     Raises UsageError if there is no such folder or if it does not contain exactly one package, and MachineError if the
-    disk or the system fails. Every other problem is the student's fault and is named in `rejected`.
+    disk or the system fails. Every other problem is the student's fault and is listed in `rejected`.
     """
     return _read(_submission, os.fspath(path), exactly)
 

@@ -67,7 +67,7 @@ def open_tag(data: bytes) -> tuple[str, int]:
 
 
 def end_of_root(data: bytes) -> tuple[str, int] | None:
-    """Return the name of the first tag that contains all others, with the line where it ends, or None."""
+    """Return the name of the first root tag and the line on which this tag is closed, or None."""
     parser = ParserCreate()
     depth = [0]
     ends: list[tuple[str, int]] = []

@@ -166,7 +166,7 @@ def _entry_points(groups: dict[str, ast.expr] | None, module: Module) -> tuple[E
             return None
         points.append(_entry_point(text, item.lineno))
         if len(points) > MOST_ENTRY_POINTS:
-            message = f"setup.py names more than {MOST_ENTRY_POINTS} executables"
+            message = f"setup.py lists more than {MOST_ENTRY_POINTS} executables"
             raise TooLargeError(message)
     return tuple(points)
 

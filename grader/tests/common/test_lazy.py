@@ -65,7 +65,7 @@ def test_the_parser_of_conditions_is_imported_only_for_a_condition(attribute: st
     assert done.stdout.strip() == printed
 
 
-@pytest.mark.parametrize(("hidden", "told"), [(True, "PYTHONPATH names this folder"), (False, "Run `make demo`")])
+@pytest.mark.parametrize(("hidden", "told"), [(True, "Remove this folder from PYTHONPATH"), (False, "Run `make demo`")])
 def test_a_module_that_cannot_be_imported_is_the_fault_of_the_machine(
     tmp_path: Path, *, hidden: bool, told: str
 ) -> None:
