@@ -1,7 +1,7 @@
 """Draw a graph in DOT with Graphviz, always with the same font.
 
 Graphviz runs in a separate process, because fontconfig reads its settings from the environment and writes warnings to
-standard error. Neither the settings nor the warnings must affect the caller.
+standard error. The settings and the warnings must not affect the caller.
 """
 
 from __future__ import annotations

@@ -8,11 +8,11 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 HIGHEST = 232
-"""The highest domain id that has ports (DDSI-RTPS, 9.6.1)."""
+"""The highest domain id whose port numbers are valid (DDSI-RTPS, 9.6.1)."""
 
 
 def wrong_domain(env: Mapping[str, str]) -> str:
-    """Return a sentence if ROS_DOMAIN_ID is not the id of a domain, with which no node starts, or an empty string."""
+    """Return an error message if ROS_DOMAIN_ID is not a valid domain id, or else an empty string."""
     text = env.get("ROS_DOMAIN_ID", "") or "0"
     if text.isascii() and text.isdecimal() and int(text) <= HIGHEST:
         return ""

@@ -180,7 +180,7 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
     sourced the installation.
 
     Raises:
-        UsageError: ROS_DOMAIN_ID is not the id of a domain.
+        UsageError: ROS_DOMAIN_ID is not a valid domain id.
     """
     if domain is None and wrong_domain(env):
         raise UsageError(wrong_domain(env))

@@ -32,7 +32,7 @@ def see_to_environment(needed: Collection[str]) -> None:
 
     Raises:
         MachineError: ROS 2 was not found.
-        UsageError: ROS_DOMAIN_ID is not the id of a domain.
+        UsageError: ROS_DOMAIN_ID is not a valid domain id.
     """
     if "RMW_IMPLEMENTATION" in os.environ and index.packages().get("rclpy") == Path(sys.prefix):
         # The user may have set this for another ROS 2. Without it, the wheels use the middleware that they have.

@@ -70,9 +70,10 @@ def enter(holder: int, *, cell: bool) -> None:
     The pid namespace only applies to processes that are forked afterwards. The process must have only one thread. If it
     belongs to root, it also leaves all supplementary groups. Afterwards, other processes of the user cannot inspect it.
 
-    Only a conductor knows the holder of a cell, and a conductor can be under the control of a node. Therefore, `cell`
-    requires that the process has namespaces of its own, as no process of a room has. But the namespaces may still be a
-    trap: a program in these mounts must not be trusted, not even by the import of a module or by a traceback.
+    Only a conductor knows the holder of a cell, and a conductor can be under the control of a node. Therefore, if
+    `cell` is true, the process must have namespaces of its own, which no process of a room has. The namespaces may
+    still be a trap: after this call, do not trust any file. Even an import or a traceback can run code from these
+    mounts.
 
     Raises:
         OSError: the kernel refused, or the process has exited.
@@ -131,9 +132,9 @@ def keep(descriptors: Iterable[int]) -> None:
 def confine(limits: Iterable[tuple[int, int]], *, user: int | None, call_filter: bytes = b"") -> None:
     """Give up what a process in a room or cell must not have: other user ids, capabilities, privileges and resources.
 
-    `limits` are pairs of a constant of the module `resource` and a value. `user` is the user id to switch to if root
-    has entered, or None. `call_filter` comes from system_calls.program(). With an empty filter, all system calls remain
-    possible. This process ends with its parent.
+    `limits` are pairs of a constant of the module `resource` and a value. `user` is the user id to switch to if this
+    process runs as root, or None. `call_filter` comes from system_calls.program(). With an empty filter, all system
+    calls remain possible. This process ends with its parent.
 
     Raises:
         OSError: the kernel refused.
@@ -169,5 +170,5 @@ def allow_inspection(*, allow: bool) -> None:
 
 
 def sacrifice() -> None:
-    """Let the kernel kill this process first if memory runs out. Call `allow_inspection(allow=True)` before."""
+    """Let the kernel kill this process first if memory runs out. Needs an earlier `allow_inspection(allow=True)`."""
     Path("/proc/self/oom_score_adj").write_text("1000", "ascii")

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 
 _PLAIN = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin"}
-"""The environment of bubblewrap. A process in the room or cell may be able to read it in /proc/1/environ, even if the
-programs that bubblewrap starts have another one."""
+"""The environment of bubblewrap. A process in the room or cell may be able to read this environment in /proc/1/environ,
+even if the programs that bubblewrap starts have a different one."""
 _ENDS_S = 5.0
 
 

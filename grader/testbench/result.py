@@ -17,7 +17,10 @@ LATEST_S = 1e9
 
 @dataclass(frozen=True)
 class NodeEvents:
-    """What happened to the last node of a run, which the failing test created. The grader has counted this itself."""
+    """What happened to the last node of a run, which the failing test created.
+
+    These values were counted by the grader, not by the student's process.
+    """
 
     poses: int = 0
     """The number of poses that the node received."""

@@ -42,7 +42,7 @@ class Caller:
 
     @property
     def pending(self) -> bool:
-        """Whether a call has not been answered yet."""
+        """Whether a call is still waiting for its response."""
         return any(call.response is None and not call.missing for call in self._made)
 
     def make_due(self, now_s: float, *, spin: Callable[[float], object] | None) -> None:

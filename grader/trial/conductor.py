@@ -72,7 +72,7 @@ class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grad
 
 
 class RefusedError(Exception):
-    """The machine refused the simulator something, which is never the node's fault. The message is a sentence."""
+    """The machine refused a request of the simulator, such as to open a file, which is never the node's fault."""
 
 
 def main(nodes: socket.socket | None = None) -> None:
@@ -172,7 +172,8 @@ def _conduct(order: dict[str, Any], answers: IO[str], nodes: socket.socket | Non
 def _run(trial: SimulatedTrial | WallTrial, duration_s: float) -> float:
     """Run the scenario, and return the time of SIGINT (s).
 
-    After the start of the scenario, the node is considered the cause of every failure, except for those of the machine.
+    After the start of the scenario, the node is considered the cause of every failure, except for failures of the
+    machine.
     """
     try:
         return trial.run(duration_s)

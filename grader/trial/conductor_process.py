@@ -74,7 +74,7 @@ class ConductorProcess(ABC):
         """Wait until the conductor has exited, and return its exit code.
 
         Raises:
-            subprocess.TimeoutExpired: the process has not exited within this time (s).
+            subprocess.TimeoutExpired: the process did not exit within `timeout` (s).
         """
 
     @abstractmethod

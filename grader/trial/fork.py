@@ -15,9 +15,9 @@ from grader.common.linux_calls import pidfd_send_signal
 from grader.sandbox import entering
 
 STARTED = b"s"
-"""The message of the fork server with a descriptor of the new process (pidfd_open(2))."""
+"""The message with which the fork server sends a descriptor of the new process (pidfd_open(2))."""
 STATUS = struct.Struct("<i")
-"""The message of the fork server at the end of the process: the exit code, or a negative signal number."""
+"""The message that the fork server sends when the process has ended: the exit code, or a negative signal number."""
 
 
 class Fork:
@@ -66,7 +66,7 @@ class Fork:
         """Wait until the process has exited, and return its exit code, or -SIGKILL if its fork server was killed.
 
         Raises:
-            subprocess.TimeoutExpired: the process has not exited within this time (s).
+            subprocess.TimeoutExpired: the process did not exit within `timeout` (s).
         """
         if self.returncode is None:
             self.await_started()

@@ -85,7 +85,7 @@ def _exit_on_errors() -> Iterator[None]:
     """End this process if there is an error.
 
     There is no traceback, because Python would read source files, and perhaps import modules, from the disk that this
-    process sees. This may be a disk that student code has made (entering.enter), and the process may be that of root.
+    process sees. This may be a disk that student code has made (entering.enter), and the process may run as root.
     """
     try:
         yield
@@ -128,7 +128,8 @@ def _next_request(requests: socket.socket) -> tuple[dict[str, Any], list[int]]:
 def _forked() -> bool:
     """Fork. Return whether this is the child process.
 
-    Without a child process, the receiver of the result is told that there is none, and other trials continue.
+    If no child process can be created, return False. The other end of the socket for the result then learns this, and
+    other trials continue.
     """
     try:
         return os.fork() == 0

@@ -41,8 +41,8 @@ _AHEAD = (
     "type_description_interfaces.msg",
 )
 POSTPONED = ("numpy", "yaml")
-"""Modules that rclpy and the messages import, and that most nodes never use. They take half of the CPU time that
-importing rclpy needs.
+"""Modules that rclpy and the messages import, and that most nodes never use. Half of the CPU time of importing rclpy is
+spent on these modules.
 """
 _NOT_NEEDED = "rosidl_generator_py.generate_py_impl"
 """A module that creates Python code from interfaces and imports a parser. Messages can be used without this module."""

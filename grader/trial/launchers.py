@@ -72,7 +72,7 @@ class Launcher(ABC):
         """Wait until the process has exited, and return its exit code.
 
         Raises:
-            subprocess.TimeoutExpired: the process has not exited within this time (s).
+            subprocess.TimeoutExpired: the process did not exit within `timeout` (s).
         """
 
     @abstractmethod

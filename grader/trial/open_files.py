@@ -1,4 +1,4 @@
-"""The number of files that the conductor may open. It opens two files for each thread of a node."""
+"""The number of files that the conductor may open. The conductor opens two files for each thread of a node."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import resource
 from grader.common.system_errors import sentence
 
 LEAST = 256
-"""With a lower limit, even a usual node lets the conductor reach the limit."""
+"""With a lower limit, the conductor would reach the limit even with an ordinary node."""
 _USUAL = 1024
 
 
 def raise_limit() -> None:
-    """Raise a low limit of this process to the usual one of Linux, as far as the system allows it."""
+    """If the limit of this process is low, raise it to the usual limit on Linux, as far as the system allows this."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     if soft != resource.RLIM_INFINITY and soft < LEAST:
         highest = _USUAL if hard == resource.RLIM_INFINITY else min(hard, _USUAL)
@@ -21,7 +21,7 @@ def raise_limit() -> None:
 
 
 def lack(error: BaseException) -> str | None:
-    """Return a sentence if the error means that the machine allows too few open files, or None for other errors."""
+    """Return a message if `error` means that the machine allows too few open files, or else None."""
     if not isinstance(error, OSError) or error.errno not in (errno.EMFILE, errno.ENFILE):
         return None
     low = resource.getrlimit(resource.RLIMIT_NOFILE)[0] < LEAST

@@ -80,7 +80,7 @@ class Recorder(Node):
         self._known: set[tuple[str, str]] = set()
         self._kept: Counter[str] = Counter()
         self._bytes: Counter[str] = Counter()
-        """The number and the size of the messages, counted like `_subscribed`."""
+        """The number and the total size (bytes) of the messages, with the same keys as `_subscribed`."""
         self._observed = 0
         self._participant = self._own_participant()
         self._endpoints_before: dict[tuple[str, str], tuple[object, set[Endpoint]]] = {}

@@ -28,7 +28,7 @@ class SilentServers:
     """
 
     def __init__(self, recorder: Recorder, prefixes: list[Path], on_request: Callable[[str, str, Any], object]) -> None:
-        """Create no server yet. `on_request(service, type, request)` is called for each request."""
+        """Create the object without any servers. `on_request(service, type, request)` is called for each request."""
         self._recorder = recorder
         self._prefixes = prefixes
         self._on_request = on_request

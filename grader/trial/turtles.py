@@ -21,7 +21,7 @@ class TurtleWatch:
     """Records the changes to turtles and pens, frame by frame."""
 
     def __init__(self, targets: Iterable[str] = ()) -> None:
-        """Record nothing yet. The `targets` are recorded however many other turtles there are."""
+        """Create an empty log. The `targets` are always recorded, however many other turtles there are."""
         self._targets = frozenset(targets)
         self._pens: dict[str, Pen] = {}
         self._changes: list[PenChange] = []
