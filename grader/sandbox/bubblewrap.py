@@ -10,8 +10,8 @@ bubblewrap creates two kinds of containers:
   filter (system_calls.py), and limits on memory, processes, files, CPU and disk. usage.py watches totals that the
   kernel does not limit.
 
-The functions of this module only return command lines. The caller starts and stops the process. Input and output use
-pipes.
+The functions of this module only return command lines. The caller starts and stops the process. The standard streams of
+the process are pipes.
 """
 
 from __future__ import annotations

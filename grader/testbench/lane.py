@@ -146,7 +146,7 @@ class Lane:
             conversation.passed()
             ended = conversation.result()
             if not (conversation.has_begun or self._has_begun or self._killed):
-                raise MachineError("No cell could be made for the tests: `grader doctor` says what is missing.")  # noqa: EM101
+                raise MachineError("No cell could be made for the tests. `grader doctor` shows what is missing.")  # noqa: EM101
             self._has_begun = True
         return ended
 
@@ -158,7 +158,7 @@ class Lane:
             selector.register(self._process.stdout, selectors.EVENT_READ)
             self._ready = bool(selector.select(START_S)) and self._process.stdout.read(len(READY)) == READY
         if not self._ready and not self._killed:
-            raise MachineError("pytest and rclpy could not be started: `grader doctor` says what is missing.")  # noqa: EM101
+            raise MachineError("pytest and rclpy could not be started. `grader doctor` shows what is missing.")  # noqa: EM101
 
     def kill(self) -> None:
         """Kill all processes of the room and of its cells."""

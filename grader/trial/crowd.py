@@ -1,4 +1,4 @@
-"""Measure, from /proc, whether the simulator and the node get the CPU time that a trial in wall time needs."""
+"""Use /proc to measure whether the simulator and the node get the CPU time that a trial in wall time needs."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from grader.trial.rest import GoneError
 STALL_S = 0.03
 """If the simulator or the node had to wait longer than this between two frames (s), arrival times cannot be trusted."""
 OWN_DOING = 0.5
-"""A node that used at least this share of the time delayed itself, so this is not a stall. Work that the node gives the
-simulator counts as work of the node: a simulator that answers thousands of calls is late, but not because of the
-machine.
+"""A node that worked for at least this share of the time delayed itself, so the delay is not a stall. Work that the
+node gives the simulator counts as work of the node: a simulator that answers thousands of calls is late, but not
+because of the machine.
 """
 SIMULATOR = 0.3
 """The share of a processor that the simulator may use for itself. In measurements, the simulator uses a tenth of a
-processor. What the simulator uses beyond this share counts as work for the node."""
+processor. Any CPU time beyond this share counts as work for the node."""
 OTHERS = 0.2
 """Other programs use the machine if they take at least this share of one processor."""
 WAITED = 0.05

@@ -2,7 +2,7 @@
 
 A grader has two fork servers: one forks the conductors of its trials, and the other forks the nodes
 (grader.trial.launcher). They are separate, so that a student's node does not know the memory layout of the conductor,
-which reads the messages of the node. A server knows nothing about its trials. Its forks enter the sandbox before they
+which reads the messages of the node. A server has no data about the trials. Its forks enter the sandbox before they
 read anything, and student code never runs outside the sandbox.
 
 The server runs outside the sandbox. It reads requests of the grader from a socket, each with descriptors:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from grader.trial.launchers import Launcher
 
 KEPT = 256 * 1024
-"""The number of bytes that are kept of each stream."""
+"""The maximum number of bytes of each output stream that are kept."""
 PIPE = 1024 * 1024
 """The size of the node's pipes (bytes). The size is large, so that the node does not wait for a reader after each
 line."""

@@ -187,8 +187,8 @@ class Recorder(Node):
     def _endpoints(self, kind: Literal["publisher", "subscription"], topic: str, beside: object) -> set[Endpoint]:
         """Return the endpoints of other nodes on a topic.
 
-        A query takes fifty times as long as counting. So the endpoints are queried again only if their number or
-        `beside` has changed. `beside` is everything else in the graph that shows whether the endpoints may have
+        A query takes fifty times as long as counting. Therefore, the endpoints are queried again only if their number
+        or `beside` has changed. `beside` is everything else in the graph that shows whether the endpoints may have
         changed.
         """
         publishes = kind == "publisher"

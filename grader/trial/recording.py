@@ -152,7 +152,7 @@ class Beside:
 
 @dataclass(frozen=True)
 class Recording:
-    """Everything that was observed in one trial. `why` tells a beginner why this clock was used."""
+    """Everything that was observed in one trial. `why` explains to a beginner why this clock was used."""
 
     clock: ClockName
     why: str

@@ -44,7 +44,7 @@ class GoneError(Exception):
 
 
 class DoubtError(Exception):
-    """The process may follow wall time, so its idleness proves nothing. The message says why.
+    """The process may follow wall time, so its idleness proves nothing. The message gives the reason.
 
     `by_chance` is true if another run of the same program might not raise this error.
     """

@@ -57,7 +57,7 @@ def last_words(stderr: bytes) -> str:
 
 
 class WallTimeNeeded(Exception):  # noqa: N818 - not an error
-    """Simulated time may misjudge this node. The message says why.
+    """Simulated time may misjudge this node. The message gives the reason.
 
     `by_chance` is true if another trial in simulated time may be able to judge the node.
     """
@@ -68,7 +68,8 @@ class WallTimeNeeded(Exception):  # noqa: N818 - not an error
 
 
 class OverwhelmedError(Exception):
-    """The node made the simulator fail, or kept the trial from finishing (`hung`). The message says how."""
+    """The node made the simulator fail, or kept the trial from finishing (`hung`). The message describes what
+    happened."""
 
     def __init__(self, how: str, *, hung: bool = False) -> None:
         super().__init__(how)
@@ -263,5 +264,5 @@ def _fault(output: str) -> MachineError:
     """Return the error for a simulator that failed because of the machine."""
     # A complete sentence is one of the grader's messages, and says what to do.
     refused = output if output.endswith(".") else refusal_in(output)
-    unknown = f"The simulator failed: {output or 'it printed nothing'}. `grader doctor` says what is missing."
+    unknown = f"The simulator failed: {output or 'it printed nothing'}. `grader doctor` shows what is missing."
     return MachineError(f"The simulator failed. {refused}" if refused else unknown)

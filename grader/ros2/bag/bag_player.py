@@ -135,7 +135,7 @@ class Player:
         return stamp
 
     def _press(self, name: str) -> bool:
-        """Handle a key. Return whether the key asks for the next message to be published immediately."""
+        """Handle a key. Return whether the key requests that the next message is published immediately."""
         if name == bag_keys.SPACE:
             self._paused = not self._paused
             self._log.info("Pausing play." if self._paused else "Resuming play.")
