@@ -44,11 +44,12 @@ def validate(
 ) -> None:
     """Check exercises, solutions, starting points and lessons (for authors)."""
     from grader.authoring.validate import validate as problems_of
+    from grader.common.words import count
     from grader.report.progress_line import progress
 
     with progress() as tell:
         problems = problems_of(exercises or [], tell)
     for problem in problems:
         typer.echo(f"- {problem}")
-    typer.echo(f"{len(problems)} problems." if problems else "No problems found.")
+    typer.echo(f"{count(len(problems), 'problem')}." if problems else "No problems found.")
     raise typer.Exit(1 if problems else 0)

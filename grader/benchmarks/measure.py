@@ -68,7 +68,7 @@ def cost(argv: Sequence[str], *, env: Mapping[str, str] | None = None, cwd: Path
 
 
 def median(run: Callable[[], Cost], times: int) -> Cost:
-    """Run a command `times` times. Return the median of each value."""
+    """Call `run` `times` times. Return the median of each value."""
     costs = [run() for _ in range(times)]
     return Cost(*(statistics.median(getattr(c, name) for c in costs) for name in ("wall_s", "cpu_s", "peak_mb")))
 

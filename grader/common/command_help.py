@@ -29,7 +29,7 @@ class Command(TyperCommand):
     """A command whose help fits every terminal."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:  # noqa: ANN401 - typer brings its own click
-        """Parse the arguments. A step beside a package belongs behind the option --exercise."""
+        """Parse the arguments. Raises UsageError if a step is given next to a package instead of with --exercise."""
         words = list(args)
         if len(words) == 2 and any("--exercise" in param.opts for param in self.params):
             meant = with_exercise(ctx.command_path, words)
@@ -47,7 +47,7 @@ class Group(TyperGroup):
     """A group of commands whose help fits every terminal."""
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:  # noqa: ANN401 - as above
-        """Find the command. A word that is not a command, but means one, names the command."""
+        """Find the command. Raises UsageError for a word that users type when they mean another command."""
         meant = command_for(args[0]) if ctx.parent is None and args[0] not in self.commands else ""
         if meant:
             message = f"There is no command {printable(args[0])}. Type: {meant}"

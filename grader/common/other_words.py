@@ -27,12 +27,12 @@ _MEANT = {
 
 
 def command_for(word: str) -> str:
-    """Return the command that somebody means who types `grader WORD`, or an empty string."""
+    """Return the command that a user who types `grader WORD` probably means, or an empty string."""
     return next((command for command, words in _MEANT.items() if word.lower() in words.split()), "")
 
 
 def with_exercise(command: str, words: Sequence[str]) -> str:
-    """Return the command that grades a package as a step, if the words are a step and a package, or an empty string.
+    """Return the command that grades the package in `words` for the step in `words`, or an empty string.
 
     Example:
         >>> with_exercise("grader check", ["03", "mine"])

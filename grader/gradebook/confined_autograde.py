@@ -213,7 +213,7 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
 
 
 def _order(submission: Path, folder: Path, connection_file: str, *, trusted: bool) -> Order:
-    """Return the command that the relay must start. `folder` is the folder in which the relay works."""
+    """Return the command that the relay must start. `folder` is the folder of the relay."""
     confined = bubblewrap.require(trusted=trusted)
     copy, home, workspace = folder / "submission", HOME, WORKSPACE
     copy_of(submission, copy, notebooks=False)

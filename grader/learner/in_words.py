@@ -8,7 +8,7 @@ from grader.common.words import a_list, count
 
 
 def difference(theirs: str, ours: str, path: str) -> str:
-    """Return a sentence about the differences between the learner's text and the solution's text."""
+    """Return one or more sentences about the differences between the learner's text and the solution's text."""
     if not theirs:
         return "Your package does not contain this file."
     mine, solution = (_parts(text) if path.endswith(".py") else None for text in (theirs, ours))

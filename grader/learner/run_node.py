@@ -82,7 +82,7 @@ def executables(exercise: Exercise) -> list[str]:
 def run(program: Program, *, view: bool) -> int:
     """Build the package, and run the program with a turtlesim until Ctrl-C. Return the exit code for the user.
 
-    `view` shows the turtle on a page. If a turtlesim is already running, the program drives the turtle of that
+    If `view` is true, a page shows the turtle. If a turtlesim is already running, the program drives the turtle of that
     turtlesim. The exit code is 0 after Ctrl-C. The exit code is 1 if the build failed or the node exited with an error.
     The output of the build and the node appears on the terminal.
     """

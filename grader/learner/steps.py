@@ -134,7 +134,7 @@ def note(exercise: Exercise, submission: Path, report: Report, folder: Path | No
 def keep_picture(evidence: Evidence, report: Report, folder: Path | None = None) -> str:
     """Save an image of the turtle's path in the workspace if a step about driving has passed. Return a message.
 
-    The message is empty if no image was saved. An image that cannot be written is not an error.
+    The message is empty if no image was saved. No error is raised if the image cannot be written.
     """
     from grader.checks.kinds import KINDS
 

@@ -171,7 +171,8 @@ class Watched:
     ) -> Graded:
         """Grade the current content of the folder. See `grader.grading.grade.grade` for `tell` and `early`.
 
-        `opened` is called with the submission before it is graded. Show the verdict first, and then call `prepare`.
+        `opened` is called with the submission before it is graded. The caller shows the verdict, and then calls
+        `prepare`.
 
         Raises:
             UsageError: there is no package in the folder.

@@ -93,7 +93,7 @@ def ended(text: str) -> str:
 
 
 def counts(file: str | None, start: str | None) -> Literal["cell", "file"]:
-    """Return the text that counts: the file's text if the student has changed the file, or else the cell's text.
+    """Return which text counts: that of the file if the student has changed the file, or else that of the cell.
 
     `file` is the text of the file, and `start` is its text in the starting point. The text of a missing file is None.
     """

@@ -78,7 +78,7 @@ def reserve(domain: int) -> Ports:
 
 
 def _bound(ports: Iterable[int]) -> tuple[socket.socket, ...]:
-    """Return a socket for each port, or nothing if one of the ports is in use."""
+    """Return a socket for each port, or an empty tuple if one of the ports is in use."""
     made: list[socket.socket] = []
     for port in ports:
         made.append(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))

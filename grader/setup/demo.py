@@ -30,7 +30,7 @@ STAGES = {
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Grade `solutions/03-circle-publisher`. Return 0, or an unexpected exit code of `grader check`."""
+    """Grade the solution of step 03, or the starting point if there is no solution. Return the exit code."""
     parser = argparse.ArgumentParser(description="Grade the solution of a step and print what to type next.")
     parser.add_argument("--since", type=float, default=time.time(), help="time when the command began (s since 1970)")
     since = parser.parse_args(arguments).since

@@ -123,7 +123,8 @@ def platform_problem(system: str, machine: str, libc: Tuple[str, str], ros: Opti
 def is_offline(env: Mapping[str, str], root: Path = Path("/")) -> bool:
     """Return whether packages certainly cannot be downloaded, because the network has no route.
 
-    The result is False if a mirror, a proxy or a folder of wheels is configured. `root` contains /proc.
+    The result is False if a mirror, a proxy or a folder of wheels is configured. `root` is the folder that contains
+    proc/.
     """
     settings = ("PIP_", "UV_", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY")
     home = Path(env.get("HOME", "/nowhere"))
@@ -250,7 +251,8 @@ def missing_of_python(
         what = f"CPython {wanted[0]}.{wanted[1]}" if wanted else f"CPython 3.{OLDEST[1]} to 3.{NEWEST[1]}"
         if refused:
             why = "; ".join("{} cannot import {}".format(p.path, " and ".join(p.lacks)) for p in refused)
-            what += f" that can import what the sourced ROS 2 needs ({why}); PYTHON=/path/to/python3 names another one"
+            what += f" that can import what the sourced ROS 2 needs ({why})"
+            what += "; set PYTHON=/path/to/python3 to use another one"
             return [Need(what, package) for package in (name, *LEFT_TO_ROS.values())]
         return [Need(what + " with its headers", name + part) for part in ("", "-venv", "-dev")]
     default = os.path.realpath("/usr/bin/python3") == python.path
@@ -260,7 +262,7 @@ def missing_of_python(
         needs.append(Need("Python's module venv, which creates the course's environment", name + "-venv"))
     if not python.headers:
         needs.append(Need("Python's headers (Python.h), for turtlesim's messages", name + "-dev"))
-    which = "which the sourced ROS 2 needs; PYTHON=/path/to/python3 names a Python that has it"
+    which = "which the sourced ROS 2 needs; set PYTHON=/path/to/python3 to use a Python that has it"
     needs += [Need(f"the module {name}, {which}", LEFT_TO_ROS[name]) for name in python.lacks]
     return needs
 

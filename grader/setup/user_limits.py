@@ -26,4 +26,4 @@ def shares() -> tuple[str, str]:
         return observed, f"ulimit -n {4 * LEAST_FILES}"
     if not unlimited and processes < LEAST_PROCESSES:
         return observed, f"ulimit -u {4 * LEAST_PROCESSES}"
-    return observed if large else f"{observed}; pipes stay small while other programs use many pipes pipes", ""
+    return observed if large else f"{observed}; pipes stay small while other programs use many pipes", ""

@@ -251,7 +251,7 @@ def _read_file(tree: Tree, folder: int, entry: Entry, path: str) -> None:
         tree.rejected[path] = reason(error, path)
         return
     if data is None or len(data) != entry.size:
-        tree.rejected[path] = "changed while it was read"
+        tree.rejected[path] = "changed while it was being read"
         return
     _add(tree, path, data, executable=bool(status.st_mode & stat.S_IXUSR))
 
@@ -264,7 +264,7 @@ def _add(tree: Tree, path: str, data: bytes, *, executable: bool) -> None:
 
 
 def _resolve(tree: Tree, path: str) -> None:
-    """Replace a link by the content of its target, if the target is one of the files.
+    """Replace a link with the content of its target, if the target is one of the files.
 
     No file is read from the disk to resolve a link.
     """
@@ -297,5 +297,5 @@ def reason(error: OSError, path: str) -> str:
     if error.errno in (errno.EACCES, errno.EPERM):
         return "cannot be read because of its permissions"
     if error.errno in (errno.ELOOP, errno.ENOTDIR, errno.ENOENT):
-        return "changed while it was read"
+        return "changed while it was being read"
     return f"cannot be read ({error.strerror})"

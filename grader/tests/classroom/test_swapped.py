@@ -42,7 +42,7 @@ def test_a_folder_that_became_a_link_to_another_students_folder(tmp_path: Path, 
     path = os.path.normpath(replaced.replace("STEP", step))
     shutil.rmtree(tmp_path / "ben" / path)
     (tmp_path / "ben" / path).symlink_to(tmp_path / "anna" / path)
-    assert "changed while it was read" in reason(ben, step)
+    assert "changed while it was being read" in reason(ben, step)
 
 
 def test_an_archive_that_became_a_link_to_another_students_archive(tmp_path: Path) -> None:
@@ -53,7 +53,7 @@ def test_an_archive_that_became_a_link_to_another_students_archive(tmp_path: Pat
     ben = found(tmp_path, STEP)
     (tmp_path / "ben.zip").unlink()
     (tmp_path / "ben.zip").symlink_to(tmp_path / "anna.zip")
-    assert reason(ben, STEP) == "ben.zip changed while it was read."
+    assert reason(ben, STEP) == "ben.zip changed while it was being read."
 
 
 def test_a_folder_with_an_archive_that_became_a_link(tmp_path: Path) -> None:
@@ -65,7 +65,7 @@ def test_a_folder_with_an_archive_that_became_a_link(tmp_path: Path) -> None:
     ben = found(tmp_path, STEP)
     shutil.rmtree(tmp_path / "ben")
     (tmp_path / "ben").symlink_to(tmp_path / "anna")
-    assert reason(ben, STEP) == "ben changed while it was read."
+    assert reason(ben, STEP) == "ben changed while it was being read."
 
 
 def test_an_archive_that_became_a_pipe_does_not_stop_the_grader(tmp_path: Path) -> None:

@@ -55,8 +55,8 @@ def link(file: Path, target: str) -> None:
 
 NOTEBOOKS: dict[str, tuple[Callable[[Path], object], str]] = {
     "a pipe": (pipe, "is not a regular file"),
-    "a link to endless zeros": (lambda file: link(file, "/dev/zero"), "changed while it was read"),
-    "a link to another student's": (lambda file: link(file, __file__), "changed while it was read"),
+    "a link to endless zeros": (lambda file: link(file, "/dev/zero"), "changed while it was being read"),
+    "a link to another student's": (lambda file: link(file, __file__), "changed while it was being read"),
     "20 GiB": (sparse, "is larger than the maximum of 8388608 bytes"),
     "deep lists": (lambda file: file.write_text("[" * 100_000 + "]" * 100_000), "nested too deeply"),
     "deep metadata": (

@@ -104,7 +104,7 @@ def test_a_file_swapped_for_a_link_is_not_read(package: Path, monkeypatch: pytes
     monkeypatch.setattr(tree, "_read_file", swap)
     submission = open_submission(package)
     assert "setup.py" not in submission.files
-    assert submission.rejected == ("setup.py changed while it was read.",)
+    assert submission.rejected == ("setup.py changed while it was being read.",)
 
 
 def test_a_folder_swapped_for_a_link_is_not_entered(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
