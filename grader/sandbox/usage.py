@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 EVERY_S = 0.1
 LAUNCHERS = 16
-"""The number of processes that may exist in addition to the student's processes, such as bubblewrap.
+"""The number of processes that may exist in addition to the student's processes, such as those of bubblewrap.
 
 In a cell, the kernel counts processes too and refuses new ones before this number is reached.
 """

@@ -1,7 +1,7 @@
 """The bench: run a student's tests on the correct node several times and on each broken node once, in random order.
 
 The student's process reports whether the tests passed, and this process could lie. The process that runs the tests does
-not know which node it tests, so a false report earns nothing: tests that always pass, always fail, or pass by chance
+not know which node it tests, so a false report gains nothing: tests that always pass, always fail, or pass by chance
 get no points.
 """
 

@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 MOST_CALLS, MOST_ALIKE = 1000, 200
-"""The log keeps the first MOST_CALLS calls. After that, it keeps a call only if it contains fewer than MOST_ALIKE calls
-of services with the same last name, such as the set_pen of every turtle."""
+"""The log keeps the first MOST_CALLS calls. After that, the log keeps a call only if it contains fewer than MOST_ALIKE
+calls of services with the same last name, such as the set_pen of every turtle."""
 
 
 class CallLog:

@@ -68,8 +68,7 @@ class WallTimeNeeded(Exception):  # noqa: N818 - not an error
 
 
 class OverwhelmedError(Exception):
-    """The node made the simulator fail, or kept the trial from finishing (`hung`). The message describes what
-    happened."""
+    """The node made the simulator fail, or kept the trial from finishing (`hung`). The message explains how."""
 
     def __init__(self, how: str, *, hung: bool = False) -> None:
         super().__init__(how)
