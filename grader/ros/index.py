@@ -67,7 +67,7 @@ def executables(package: str, unknown: str) -> list[Path]:
     """Return the executables in a package that `ros2 run` can start, sorted by path.
 
     Raises:
-        Ros2Error: the package is not installed. The message is `unknown`.
+        Ros2Error: the package is not installed. The message consists of `unknown` and the most similar package name.
     """
     folder = prefix_of(package, unknown) / "lib" / package
     return sorted(path for path in _walk(folder) if path.is_file() and os.access(path, os.X_OK))

@@ -135,7 +135,7 @@ class _Queue:
         return any(each.over and not each.node for each in self.ended)
 
     def take(self) -> _Next | None:
-        """Return the next run, or None.
+        """Return the next run, or None if no further run is needed.
 
         If the tests rejected the correct node, they earn no points for rejecting broken nodes. After the tests have
         rejected the correct node, all remaining runs use the correct node. If the tests may hang on the correct node,

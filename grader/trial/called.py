@@ -49,7 +49,10 @@ def called_from_json(data: dict[str, Any]) -> Called:
 
 
 def read_called(output: bytes, ids: Sequence[str]) -> tuple[Called, ...]:
-    """Return the result of each call, from the lines that the cell wrote. Other lines are ignored."""
+    """Return the results of these calls, from the lines that the cell wrote.
+
+    Other lines are ignored. A call without a line gets an empty result.
+    """
     found: dict[str, Called] = {}
     for line in output.splitlines():
         try:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def own_domain(stack: ExitStack) -> int:
-    """Return a ROS domain that no other grader process on this machine can use until `stack` is closed.
+    """Return a ROS domain that no other trial of this user can use on this machine until `stack` is closed.
 
     Raises:
         MachineError: all domains are in use.

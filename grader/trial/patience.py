@@ -63,9 +63,9 @@ class TickPatience:
         self._request_s = now_s + REQUEST_EVERY_S
 
     def ended(self, now_s: float) -> bool:
-        """Return whether the node has worked too long.
+        """Return whether the node has used too much CPU time, or the wall time is over.
 
-        CPU time is counted from the time when it is read for the first time.
+        Only the CPU time after its first reading counts.
         """
         if now_s < self._request_s:
             return False

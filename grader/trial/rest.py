@@ -145,7 +145,7 @@ class Threads:
         raise GoneError
 
     def runs(self) -> tuple[bytes, ...]:
-        """Return the number of times that each thread in the last observation has run.
+        """Return how often each thread in the last observation has run, or an empty tuple if one of them has exited.
 
         Reading the counters is three times as fast as a full observation of the threads.
         """

@@ -37,7 +37,10 @@ class Target:
 
 
 def draw_targets(count: int, start: Pose, seed: int) -> tuple[Target, ...]:
-    """Return `count` targets, sorted by name. Random places are drawn until they meet the module's conditions."""
+    """Return `count` targets, sorted by name.
+
+    Places are drawn until they meet the conditions in the module's docstring, at most MOST_DRAWS times.
+    """
     draw = random.Random(f"targets {seed}")
     targets: tuple[Target, ...] = ()
     for _ in range(MOST_DRAWS):

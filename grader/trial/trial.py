@@ -51,7 +51,7 @@ class Plan:
 
 
 def last_words(stderr: bytes) -> str:
-    """Return the last output of one of the grader's programs, without the stack frames of a traceback."""
+    """Return the output of one of the grader's programs, or only its last line if the output contains a traceback."""
     output = stderr.decode("utf-8", "replace").strip()
     return output.splitlines()[-1] if "Traceback (most recent call last)" in output else output
 

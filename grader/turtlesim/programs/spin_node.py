@@ -1,4 +1,4 @@
-"""Run a node in its own process until Ctrl-C."""
+"""Run a node as the only node of this process, until Ctrl-C."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def run(make: Callable[[], Node]) -> int:
-    """Spin a node until Ctrl-C or SIGTERM, without a traceback, and return the exit code."""
+    """Spin a node until Ctrl-C or SIGTERM, neither of which prints a traceback, and return the exit code."""
     # Before this call, Ctrl-C terminates Python immediately. rclpy passes a signal on to the previous handler.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     rclpy.init(args=sys.argv)
