@@ -96,7 +96,7 @@ def _differences(pairs: list[tuple[float, float]]) -> str:
 def _pair(
     paged: Course, page: Page, watched: Course, screen: pexpect.spawn[str], save: tuple[str, str, str]
 ) -> tuple[float, float]:
-    """Return the times from the same save until the page and `grader watch` show the verdict (s)."""
+    """For the same save, return the times until the page and `grader watch` show the verdict (s)."""
     old, new, line = save
     _rest()
     page.evaluate(_OBSERVE, line)

@@ -105,7 +105,7 @@ def _table_close(_: RendererHTML, _tokens: Sequence[Token], _at: int, _options: 
 
 
 def _th_open(_: RendererHTML, tokens: Sequence[Token], at: int, _options: OptionsDict, _env: EnvType) -> str:
-    # A header without text is no header for a screen reader.
+    # A header without text is not a header for a screen reader.
     return '<th scope="col">' if tokens[at + 1].content else "<td>"
 
 

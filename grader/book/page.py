@@ -47,7 +47,7 @@ def contents_page(among: Sequence[Lesson], repository: str = "", policy: str = P
 
 
 def contents_values(among: Sequence[Lesson], repository: str = "", policy: str = POLICY) -> Mapping[str, object]:
-    """Return the values for the template of the page with all lessons."""
+    """Return the values for the template of the page with the list of all lessons."""
     return _values(among, "", repository, policy)
 
 

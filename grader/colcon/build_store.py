@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from grader.submission.package import Submission
 
 MOST_BUILDS = 20
-"""The number of builds that the store keeps. The build that has not been used for the longest time is removed first."""
+"""The maximum number of builds in the store. The build that has not been used for the longest time is removed first."""
 MOST_BYTES = 4 * 1024 * 1024
 """The maximum size of a file in the store (bytes)."""
 _SCHEMA = 1

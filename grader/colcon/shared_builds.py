@@ -35,7 +35,8 @@ if TYPE_CHECKING:
     from grader.submission.package import Submission
 
 MOST_BUILDS = 50
-"""The number of builds that are kept. The build that has not been used for the longest time is removed first."""
+"""The maximum number of builds that are kept. The build that has not been used for the longest time is removed
+first."""
 MOST_TREE = 1024 * 1024
 """The maximum size of an install tree that is kept (bytes)."""
 _USUAL_FOLDER = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")

@@ -60,7 +60,7 @@ def _protected(stream: TextIO) -> TextIO:
     if not isinstance(stream, io.TextIOWrapper) or isinstance(stream, LogText):
         return stream
     stream.flush()
-    # The buffer is shared and not detached, because other code can have kept the stream.
+    # The buffer is shared and not detached, because other code may have kept the stream.
     return LogText(
         stream.buffer,
         stream.encoding,

@@ -66,7 +66,7 @@ MANAGERS = (
         systems=("debian", "ubuntu"),
         update="apt-get update",
         install="apt-get install -y",
-        # Set a limit on how long to wait for a mirror that does not answer or for another installation.
+        # Set a limit on how long to wait for a mirror that does not respond or for another installation.
         quiet="-q --no-install-recommends -o DPkg::Lock::Timeout=60 -o Acquire::http::Timeout=20",
         names={},
     ),

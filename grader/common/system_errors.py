@@ -64,7 +64,7 @@ def _is_of_shutil(error: BaseException) -> bool:
 
 
 def path_and_reason(error: OSError) -> Tuple[str, str]:
-    """Return the path of an error of the file system ("" if there is none), and the reason.
+    """Return the path that is named in a file system error ("" if there is none), and the reason.
 
     shutil.copytree raises a single error that contains a list with the errors of all files. The first error in this
     list is used.

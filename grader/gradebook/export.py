@@ -61,7 +61,7 @@ class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]
 
 
 def _rows(gradebook: Any, steps: Collection[str], students: Collection[str]) -> Iterator[list[str]]:  # noqa: ANN401
-    """Yield a line for each assignment and student. An empty `steps` or `students` stands for all of them."""
+    """Yield a line for each assignment and student. If `steps` or `students` is empty, nothing is left out."""
     for assignment in gradebook.assignments:
         submissions = {each.student.id: each for each in assignment.submissions}
         for student in gradebook.students:

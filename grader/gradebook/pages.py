@@ -50,7 +50,7 @@ def safe_metadata(output: Any, key: str, mimetype: str | None = None) -> float |
     try:
         value = get_metadata(output, key, mimetype)  # type: ignore[no-untyped-call]
     except AttributeError:
-        return None  # the kernel sent something else than an object
+        return None  # the kernel sent something other than an object
     return value if type(value) in (int, float) else None
 
 

@@ -33,7 +33,7 @@ _ROOM_FOR_TITLES = 60
 
 @dataclass(frozen=True)
 class Begun:
-    """A step that was started, with the changes in the workspace and the folder with the learner's work."""
+    """A step that was started, the changes in the workspace, and the path of the workspace."""
 
     exercise: Exercise
     started: Started

@@ -50,7 +50,7 @@ class Happened:
 
 
 class _Sources(DefaultFilter):
-    """Accept files that can affect a verdict, but not files that colcon and Python write."""
+    """Accepts files that can affect a verdict, but not files that colcon and Python write."""
 
     ignore_dirs = (*DefaultFilter.ignore_dirs, "build", "install", "log")
 

@@ -170,7 +170,7 @@ def open_tasks(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, tupl
 
 
 def _package_files(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, Path]:
-    """Return the package files of the step's starting point that the learner has too, by path."""
+    """Return the package files of the starting point, by path, except those that the learner does not have."""
     if not exercise.package or exercise.apart:
         return {}
     source = starting_point(exercise) / exercise.package

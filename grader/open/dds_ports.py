@@ -1,4 +1,4 @@
-"""The UDP ports of DDS participants on this machine: the ports of the nodes in a cell, and the ports they may reach.
+"""The UDP ports of the nodes in a cell, and of the DDS participants on this machine that these nodes may reach.
 
 A participant has two ports that depend on the domain and on its number (DDSI-RTPS, 9.6.1.1). In addition, the reader
 that rmw_fastrtps has for ros_discovery_info gets the first free port from 7000 on, in every domain.

@@ -136,7 +136,7 @@ def page_data(now: Content, workspace: Path) -> dict[str, object]:
         "checks": checks,
         "hints": hints.read_hints(exercise, step) if exercise else [],
         "more_hints": exercise is not None and hints.has_next(exercise, step),
-        # A line that is written in another way lacks nothing, so the file must also be the reason of a failed check.
+        # The learner may write a line differently, so the file must also be the reason for a failed check.
         "lacking": [each for each in now.lacking if each["file"] in wrong],
         "executables": executables(exercise) if exercise else [],
         "steps": [_step(name, known) for name in catalogue()],

@@ -173,7 +173,7 @@ def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
 
 
 def look_at_colcon() -> Line:
-    """Return a line about colcon, which is installed in this Python and builds submissions."""
+    """Return a line that says whether colcon, which builds submissions, is installed in this Python."""
     try:
         version = metadata.version("colcon-core")
     except metadata.PackageNotFoundError:

@@ -1,8 +1,8 @@
 """Reader: read a student's files in a child process with limits on time and memory.
 
 All code that reads a student's files must go through `read`. The child process is a fork, so it has all data of its
-parent process. The child process returns plain data. A test (grader/tests/test_reading.py) finds every other place that
-reads a submission.
+parent process. The child process returns plain data. A test (grader/tests/test_reading.py) fails if other code reads a
+submission.
 """
 
 from __future__ import annotations

@@ -24,8 +24,8 @@ MAX_FILE_BYTES = 8 * 1024 * 1024
 MAX_TOTAL_BYTES = 64 * 1024 * 1024
 MAX_FILES = 4000
 MAX_ENTRIES = 20_000
-"""The maximum number of entries in one folder, and in total. A folder with more entries is left out, because the order
-of its entries is random."""
+"""The maximum number of entries in one folder, and in total. A folder with more entries is left out as a whole, because
+the first entries of a listing are random."""
 MAX_DEPTH = 24
 MAX_PATH_BYTES = 1000
 

@@ -1,4 +1,4 @@
-// The page of grader open passes the server's news to its parts, and the clicks to the server.
+// The page of grader open forwards the server's updates to its parts, and the clicks to the server.
 
 import { showChecks } from "./checks.js";
 import { showText, withCode } from "./code_text.js";

@@ -4,7 +4,7 @@ import { session } from "./session.js";
 
 const HEADER = "X-Course-Token";
 
-// Return the answer, or { problem } with a message.
+// Return the response, or { problem } with a message.
 export async function act(name, wanted = {}) {
   try {
     const answer = await fetch(`/do/${name}`, {
