@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from grader.graph.graph import Picture
 
 _INCH = 72.0
-"""Points per inch. Graphviz returns sizes in inches and positions in points, with the y axis pointing up."""
+"""The number of points per inch. Graphviz returns sizes in inches and positions in points, with the y axis pointing
+up."""
 
 
 NOTHING: dict[str, Any] = {"width": 0.0, "height": 0.0, "nodes": [], "arrows": []}

@@ -28,7 +28,10 @@ class Arrivals:
             self._observed.popleft()
 
     def hertz(self, now_s: float) -> float | None:
-        """Return the mean rate (Hz), or None if the messages stopped, are too rare, or arrived in fewer than two groups."""
+        """Return the mean rate (Hz).
+
+        The result is None if the messages have stopped or are too rare, or if fewer than two groups have arrived.
+        """
         if len(self._observed) < 2:
             return None
         (first_s, _), (last_s, _) = self._observed[0], self._observed[-1]

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rosbags.interfaces import Qos
 
 _RECORD_BYTES = 31
-"""The size of a message in an MCAP file without its data (bytes)."""
+"""The size of a message in an MCAP file, not counting its data (bytes)."""
 _METADATA = "metadata.yaml"
 
 
