@@ -109,6 +109,8 @@ def run(program: Program, *, view: bool) -> int:
 def _built(program: Program, place: Path, env: Mapping[str, str]) -> Path | None:
     """Build with colcon outside the workspace. Return install/<package>, or None if colcon printed an error."""
     bases = ["--build-base", str(place / "build"), "--install-base", str(place / "install")]
+    # The user's settings of colcon, such as `symlink-install` in ~/.colcon/defaults.yaml, are for the workspace.
+    own = {name: value for name, value in env.items() if not name.startswith("COLCON_")}
     colcon = interpreter(
         *("-c", "import sys; from colcon_core.command import main; sys.exit(main())"),
         *("--log-base", str(place / "log"), "build", "--base-paths", str(program.folder), *bases),
@@ -119,7 +121,7 @@ def _built(program: Program, place: Path, env: Mapping[str, str]) -> Path | None
             "console_stderr-",
             "summary-",
         ),
-        env=env,
+        env={**own, "COLCON_HOME": str(place / "colcon")},
         searches=True,
     )
     done = subprocess.run(

@@ -191,7 +191,7 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
         del needed["ROS_AUTOMATIC_DISCOVERY_RANGE"]
     for name in _UNWATCHED:
         needed.pop(name, None)
-    if " " in str(ros.python):
+    if quote(str(ros.python)) != str(ros.python):
         # The setup.bash of a workspace does not quote the path of Python, so use the interpreter that the link points
         # to. The script needs only the standard library.
         needed["COLCON_PYTHON_EXECUTABLE"] = str(ros.python.resolve())

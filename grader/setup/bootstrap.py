@@ -25,6 +25,7 @@ from grader.common.package_managers import Need
 from grader.common.readable_by_all import make_readable
 from grader.setup import installers, machine, setup_errors
 from grader.setup.compiled_modules import remove_incomplete
+from grader.setup.place import place_problem
 from grader.setup.provide import provide
 from grader.setup.setup_errors import MACHINE_BROKEN
 
@@ -205,6 +206,7 @@ def main(arguments: Sequence[str]) -> int:
     requested = read_arguments(arguments)
     ros = machine.sourced_ros(os.environ, VENV)
     problem = machine.platform_problem(platform.system(), platform.machine(), platform.libc_ver(), ros)
+    problem = problem or place_problem(ROOT)
     if problem:
         terminal_text.say(problem)
         return MACHINE_BROKEN

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import signal
 import sys
 import threading
@@ -18,6 +19,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
 from grader.errors import GraderError
+from grader.ros.domain import wrong_domain
 from grader.turtlesim.node import TurtlesimNode
 from grader.turtlesim.turtle import FRAME_S
 
@@ -33,6 +35,8 @@ if TYPE_CHECKING:
 
 _MOST_AT_ONCE = 200
 """The maximum number of callbacks per frame, so that a flood of messages cannot stop the turtle."""
+_NO_LOG = "log directory"
+"""These words are in the error of rcl if the folder for the log files cannot be created."""
 _NO_WINDOW = (
     "This turtlesim has no window. To see the turtle, stop turtlesim with Ctrl-C and start it again with --view "
     "(a page in the browser) or --view terminal."
@@ -84,6 +88,8 @@ def main(open_view: OpenView, args: Sequence[str] | None = None) -> int:
         signal.signal(number, lambda *_: stop.set())
     try:
         options = _options(remove_ros_args(arguments)[1:])
+        if wrong_domain(os.environ):
+            return _wrong(wrong_domain(os.environ))
         with ExitStack() as stack:
             view = stack.enter_context(open_view(options.view, options.port)) if options.view else None
             # rclpy's own signal handler would shut down the context in the middle of a frame.
@@ -180,4 +186,5 @@ def _wrong(what: str) -> int:
 
 
 def _first_line(error: Exception) -> str:
-    return str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
+    line = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
+    return f"{line}. Choose a folder that you can write to: export ROS_LOG_DIR=FOLDER" if _NO_LOG in line else line

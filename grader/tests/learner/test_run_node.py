@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -64,6 +65,20 @@ def test_it_says_what_colcon_says(learner: Learner) -> None:
     setup.write_text(right, "utf-8")
     assert "SyntaxError" in printed
     assert "The package could not be built. See the messages of colcon above." in printed
+
+
+@pytest.mark.parametrize("setting", ["symlink-install: true", "merge-install: true", "packages-select: [other]", "["])
+def test_the_users_settings_of_colcon_are_for_the_workspace(learner: Learner, setting: str) -> None:
+    folder = Path(learner.env["HOME"], ".colcon")
+    folder.mkdir()
+    folder.joinpath("defaults.yaml").write_text(f"build:\n  {setting}\n")
+    try:
+        child = learner.types("run")
+        child.expect(r"\[draw_circle\]: ")
+        child.sendintr()
+        child.expect(pexpect.EOF)
+    finally:
+        shutil.rmtree(folder)
 
 
 def test_it_names_what_it_can_run(learner: Learner) -> None:

@@ -1,0 +1,27 @@
+"""The folder of the course: whether its path is one with which all programs of the set-up work.
+
+Like machine.py, this module runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
+"""
+
+import os
+from pathlib import Path
+
+_REFUSED = frozenset(':;"\\#?[]|$`')
+"""Characters with which a program of the set-up or of colcon fails: in a search path, a list of CMake, a URL, a
+pattern, a file of ninja, or a string of the shell."""
+
+
+def place_problem(folder: Path) -> str:
+    """Return a text that says why the course cannot be set up in this folder and what to do, or an empty string."""
+    try:
+        path = os.fsencode(folder).decode("utf-8")
+    except UnicodeDecodeError:
+        path = str(folder)
+    refused = sorted({sign for sign in path if sign in _REFUSED or not sign.isprintable()})
+    if not refused:
+        return ""
+    return (
+        f"The path of the course's folder, {path!a}, contains {' '.join(map(ascii, refused))}. CMake, colcon or Python "
+        "cannot handle this. Rename or move the folder, so that its path consists of letters, digits, spaces, - and _, "
+        "and type the same command there."
+    )
