@@ -41,7 +41,7 @@ _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
 
 def exceeded(pids: Sequence[int], limits: Limits, *, in_room: bool = False) -> str | None:
-    """Return the limit that the cell at or below these processes exceeds ("memory", "processes", "files"), or None.
+    """Return the limit ("memory", "processes", "files") that these processes and their descendants exceed, or None.
 
     With `in_room`, this process and the cell are in the same room, so that the cell can fill sockets of their network.
     """

@@ -59,7 +59,7 @@ class Patience:
         self._waited_before_s = self._waited_s()
 
     def answered(self) -> None:
-        """Record that requests have been answered. Call this method each time after answering them."""
+        """Record that requests have been answered. Call this method after each answer."""
         self._moved, self._seen = time.monotonic(), None
         now_ns = self._callers_waited_ns()
         self._callers_waits_ns += now_ns - self._callers_last_ns

@@ -98,7 +98,7 @@ class Others:
         self._before = _machine_worked_s() - time.process_time()
 
     def worked_s(self, *, but_s: float) -> float:
-        """Return the CPU time (s) that other processes have used since the creation, minus the time `but_s` (s)."""
+        """Return the CPU time (s) of all other processes since the creation of this object, minus `but_s` (s)."""
         return _machine_worked_s() - time.process_time() - self._before - but_s
 
 

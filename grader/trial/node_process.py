@@ -33,7 +33,7 @@ STOP_S = 3.0
 """The maximum time that the node may take to exit after SIGINT (s). After this time, the grader sends SIGTERM and, 1 s
 later, SIGKILL. The time for which the node waits for a processor does not count."""
 MOST_WAITED_S = 12.0
-"""The maximum time that does not count because the node waits for a processor (s)."""
+"""Of the time for which the node waits for a processor, at most this much (s) does not count."""
 
 
 def enlarge(pipe: int) -> int:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 OWN_NAMESPACE = "/_grader"
 OWN_NODES = ("/turtlesim", f"{OWN_NAMESPACE}/recorder")
 NAMESAKE = " (not the simulator)"
-"""If a student's node has the same name as one of the grader's nodes, this suffix is added to its name."""
+"""This suffix is added to the name of a student's node if one of the grader's nodes has the same name."""
 NAMELESS = "_NODE_NAME_UNKNOWN_"
 """The name of a node whose endpoints were found before the node itself."""
 _LEVELS = {10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}

@@ -36,7 +36,7 @@ FRAME_S = 0.066
 FIRST_HOLD_S = 0.6
 """The time until a held key begins to repeat (s), which is half a second on most machines."""
 HOLD_S = 0.25
-"""The interval between two repeats of a key with the slowest settings (s)."""
+"""The interval between two repeats of a held key with the slowest settings (s)."""
 _LINES = 3
 
 

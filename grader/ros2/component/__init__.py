@@ -1,1 +1,1 @@
-"""The verbs of `ros2 component` that change nothing, one module each."""
+"""The verbs of `ros2 component` that only print information, one module each."""
