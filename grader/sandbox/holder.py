@@ -74,7 +74,7 @@ class Holder:
                     first = int(json.loads(about.read())["child-pid"])
                     self._first = pidfd_open(first)
                     children = Path(f"/proc/{first}/task/{first}/children").read_text("ascii")
-                    return pidfd_open(int(children.split()[0]))
+                    return pidfd_open(int(children.split()[0]) if children else first)
             except (OSError, ValueError, IndexError) as error:
                 problem = error
         self.kill()

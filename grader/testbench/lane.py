@@ -179,4 +179,6 @@ def _cell(ros: Ros, filter_fd: int | None) -> Sequence[str]:
     """Return the command that opens a cell for forks. The session replaces the descriptor of --info-fd."""
     view = bubblewrap.ros_view(ros, installation.FASTDDS_PROFILE)
     env = {"PATH": "/usr/bin:/bin"}
-    return bubblewrap.cell(entering.HOLDER, view, env=env, limits=NODE_LIMITS, info_fd=-1, filter_fd=filter_fd)
+    return bubblewrap.cell(
+        *(entering.HOLDER, view), env=env, limits=NODE_LIMITS, info_fd=-1, filter_fd=filter_fd, first=True
+    )

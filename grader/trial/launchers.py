@@ -130,7 +130,13 @@ class LauncherInCell(Launcher):
         with call_filter() as filter_fd:
             self._cell = Holder(
                 lambda info_fd: bubblewrap.cell(
-                    HOLDER, view, env=_PLAIN, limits=limits, network=True, info_fd=info_fd, filter_fd=filter_fd
+                    *(HOLDER, view),
+                    env=_PLAIN,
+                    limits=limits,
+                    network=True,
+                    info_fd=info_fd,
+                    filter_fd=filter_fd,
+                    first=True,
                 ),
                 () if filter_fd is None else (filter_fd,),
             )

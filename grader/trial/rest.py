@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+HIDDEN = "hidden"
+"""The call of a thread whose process forbids inspection (PR_SET_DUMPABLE of prctl(2))."""
 DDS = "dds."
 """The prefix of the thread names of Fast DDS."""
 _DDS_TIMERS = "dds.ev"
@@ -191,6 +193,9 @@ class Threads:
                 continue
             try:
                 words = _read(f"/proc/{self.pid}/task/{tid}/syscall").split()
+            except PermissionError:
+                found.append(Wait(tid, self._names[tid], HIDDEN, timed=False))
+                continue
             except OSError:
                 continue
             found.append(_wait(tid, self._names[tid], words))

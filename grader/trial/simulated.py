@@ -19,7 +19,7 @@ from rosgraph_msgs.msg import Clock
 
 from grader.trial.node_group import GroupThreads
 from grader.trial.patience import HandshakePatience, TickPatience
-from grader.trial.rest import DoubtError, GoneError, Threads, not_of_dds, of_dds, only_sends, receives
+from grader.trial.rest import HIDDEN, DoubtError, GoneError, Threads, not_of_dds, of_dds, only_sends, receives
 from grader.trial.simulation import Simulation
 from grader.turtlesim.turtle import FRAME_S
 
@@ -262,7 +262,10 @@ class SimulatedTrial(Simulation):
             rest.close()
 
     def _doubt_sleepers(self) -> None:
-        timed = [wait for wait in self._node.waits() if wait.timed]
+        waits = self._node.waits()
+        if any(wait.call == HIDDEN for wait in waits):
+            self._doubt("the node hides what it waits for")
+        timed = [wait for wait in waits if wait.timed]
         sleeping = [wait for wait in timed if wait.call in ("nanosleep", "clock_nanosleep")]
         if sleeping and not self._is_ending():
             self._doubt("the node sleeps in wall time")

@@ -6,6 +6,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,8 +18,10 @@ from grader.ros import installation, underlay
 from grader.sandbox import bubblewrap
 from grader.sandbox.user import cell_user
 from grader.tests.observed_host import Host, readable_by_others
+from grader.tests.trial.test_fork_server import WALL, run
 from grader.trial import fork_client
 from grader.trial.conductor_process import about_nodes
+from grader.trial.trial import WallTimeNeeded
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -150,6 +153,50 @@ def test_a_server_that_cannot_fork_fails_one_trial_and_ends_no_other(folder: Pat
     (host.work / "program.py").write_text(TOO_MANY, "utf-8")
     done = host.run([sys.executable, "/tmp/work/program.py"])
     assert done.stdout == "refused\nhonest\n True", done.stderr
+
+
+HIDES = """#!/usr/bin/env python3
+import ctypes, os, time
+# The first process of the cell executes this code when it gets input: prctl(PR_SET_DUMPABLE, 0), pause() for ever.
+place = int(open("/proc/1/syscall").read().split()[-1], 16)
+with open("/proc/1/mem", "r+b", buffering=0) as memory:
+    memory.seek(place)
+    memory.write(bytes.fromhex("b89d000000bf0400000031f631d20f05" "b8220000000f05ebf7"))
+with open("/proc/1/fd/0", "wb", buffering=0) as pipe:
+    pipe.write(b"!")
+for pid in [int(name) for name in os.listdir("/proc") if name.isdigit()]:
+    if pid not in (1, os.getpid()):
+        os.kill(pid, 9)
+ctypes.CDLL(None).prctl(4, 0, 0, 0, 0)
+for number in range(60_000):
+    open(f"/dev/shm/{number}", "w").close()
+time.sleep(2)
+print("done")
+"""
+
+
+def test_a_node_cannot_hide_its_disks() -> None:
+    """The conductor looks at the disks through a process of the cell that it may inspect."""
+    recording = run(HIDES, replace(WALL, duration_s=5.0))
+    assert (recording.end.out_of, recording.stdout.text) == ("files", "")
+
+
+SLEEPS = """#!/usr/bin/env python3
+import ctypes, time
+import rclpy
+def work():
+    ctypes.CDLL(None).prctl(4, 0, 0, 0, 0)
+    time.sleep(0.05)
+rclpy.init()
+node = rclpy.create_node("sleeper")
+node.create_timer(0.1, work)
+rclpy.spin(node)
+"""
+
+
+def test_a_node_that_hides_what_it_waits_for_needs_wall_time() -> None:
+    with pytest.raises(WallTimeNeeded, match="the node hides what it waits for"):
+        run(SLEEPS, replace(WALL, clock="simulated", seed=3, duration_s=2.0))
 
 
 CONDUCTOR = """

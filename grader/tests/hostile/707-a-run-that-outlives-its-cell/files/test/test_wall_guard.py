@@ -12,16 +12,13 @@ FUTEX, WAIT, WAKE = 202, 0, 1
 
 
 def take_over():
-    """Write the code where the first process, bubblewrap, waits for a child, and give it one."""
+    """Write the code where the first process waits for input, and give it some."""
     place = int(open("/proc/1/syscall").read().split()[-1], 16)
     with open("/proc/1/mem", "r+b", buffering=0) as memory:
         memory.seek(place)
         memory.write(CODE)
-    if os.fork() == 0:
-        if os.fork() == 0:
-            os._exit(0)
-        os._exit(0)
-    os.wait()
+    with open("/proc/1/fd/0", "wb", buffering=0) as pipe:
+        pipe.write(b"!")
 
 
 def shared():
@@ -35,7 +32,7 @@ def shared():
 
 word = shared()
 found = word is not None and LIBC.syscall(FUTEX, word, WAKE, 100, None, None, 0) > 0
-if os.path.isdir("/proc/2/task/2") and open("/proc/2/comm").read() == "cat\n":
+if open("/proc/1/comm").read() == "cat\n":
     take_over()
 if word is not None and os.fork() == 0:
     os.setsid()
