@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 PORT = "GRADER_ANNOUNCEMENT_PORT"
-"""The environment variable in the profiles loopback.xml and loopback_patient.xml with the port to which a participant
-announces itself; 0 means the ports of all participants of the domain."""
+"""The environment variable that the profiles loopback.xml and loopback_patient.xml read: the port to which a
+participant announces itself, or 0 for the ports of all participants of the domain."""
 _LARGEST = 1 << 16
 _WAIT_S = 1.0
 

@@ -160,7 +160,7 @@ def _network(pid: int) -> str:
 
 
 def _waiting_bytes(pid: int) -> int:
-    """Return the size of the data that waits in the UDP and TCP sockets of the process's network (bytes).
+    """Return the size of the data in the queues of the UDP and TCP sockets of the process's network (bytes).
 
     The kernel has one limit on this memory for all networks of the machine. If this limit is reached, messages of other
     trials are lost.

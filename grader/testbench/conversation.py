@@ -37,7 +37,8 @@ _LENGTH = struct.Struct("<H")
 class Conversation:
     """The grader's ends of the pipes of one run, as a context manager.
 
-    `childs` contains the other ends, which belong to the session. Close them with `passed` when the session has them.
+    `childs` contains the other ends, which belong to the session. Call `passed` to close them as soon as the session
+    has received them.
     """
 
     def __init__(self, node: str, brain: Brain, test_s: float, run_s: float, worked_s: WorkedS) -> None:

@@ -128,8 +128,8 @@ def _next_request(requests: socket.socket) -> tuple[dict[str, Any], list[int]]:
 def _forked() -> bool:
     """Fork. Return whether this is the child process.
 
-    If no child process can be created, return False. The other end of the socket for the result then learns this, and
-    other trials continue.
+    If no child process can be created, return False. The socket for the result is then closed, so that the grader
+    notices the failure, and other trials continue.
     """
     try:
         return os.fork() == 0
