@@ -4,7 +4,8 @@ The kernel adds the CPU time of a process to the CPU time of its parent when the
 process waits for the processes that are still running when a cell ends, so without a control group, most of the CPU
 time of a build or trial can be missing.
 
-This module needs version 1 of control groups. In version 2, a process is in only one group, and each cell has a group.
+This module needs version 1 of control groups. In version 2, a process is in only one group, and each sandbox cell
+already has its own group.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Measure what it costs to grade one submission of a class, relative to F, for several class sizes and Dask workers.
+"""Measure the cost of grading one submission of a class, relative to F, for several sizes and numbers of Dask workers.
 
     python -m grader.benchmarks.grade [--sizes 25,50,100,200] [--workers 1,2,4] [--dask-size 50] [--jobs N]
                                       [--mix right|all] [--times N]

@@ -78,7 +78,7 @@ class DaskEngine:
             self._client: Any = Client(f"tcp://{address}", timeout=CONNECT_S, set_as_default=False)  # type: ignore[no-untyped-call]
         except (OSError, ValueError) as error:
             message = (
-                f"No Dask scheduler answers at {address}: start one with `python -I -m dask scheduler`, "
+                f"No Dask scheduler responds at {address}: start one with `python -I -m dask scheduler`, "
                 "or correct HOST:PORT."
             )
             raise UsageError(message) from error

@@ -53,7 +53,7 @@ class Run:
     code: str
     argv: list[str]
     ignored: list[str]
-    """The beginnings of the warning messages that `-W ignore:...` suppresses."""
+    """The beginnings of the warning messages that `-W ignore:MESSAGE` suppresses."""
     cwd: str
     env: dict[str, str]
 
@@ -212,8 +212,8 @@ class EntryPoints:
     """`importlib.metadata.entry_points` with a cache.
 
     The original function reads the metadata of every package on each call, up to fifteen times per run of setup.py.
-    EntryPoints reads the metadata of the packages that are installed on the machine only once. It reads other folders
-    on sys.path, such as the folder of the submission, on each call.
+    EntryPoints reads the metadata of installed packages a single time. On each call, it reads only the metadata in
+    other folders on sys.path, such as the folder of the submission.
     """
 
     def __init__(self) -> None:

@@ -1,4 +1,4 @@
-"""The help of the command `grader`, and what it says about words that it does not know.
+"""The help of the command `grader`, and its error messages for words that are not commands.
 
 On narrow terminals, the help has one column without boxes instead of typer's tables. In a table with four columns, a
 terminal of 40 columns leaves 8 columns for the text.

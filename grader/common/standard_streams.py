@@ -14,8 +14,8 @@ def make_usable() -> None:
     """Reopen closed standard streams, and allow characters that the encoding of standard output does not have.
 
     With `grader env >&-`, sys.stdout is None, and the next file that is opened would become the standard output of all
-    child processes. If the encoding is not UTF-8, for example with PYTHONIOENCODING=ascii, `?` is printed in place of
-    each character that the encoding does not have.
+    child processes. If the encoding is not UTF-8, for example with PYTHONIOENCODING=ascii, a question mark is printed
+    in place of each character that the encoding does not have.
     """
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:

@@ -1,4 +1,4 @@
-"""The kernels of autograde.
+"""The kernels in which `nbgrader autograde` runs notebooks.
 
 Each kernel runs in a sandbox cell (grader.sandbox), and a relay limits its messages (relay.py).
 

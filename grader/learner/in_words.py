@@ -1,4 +1,4 @@
-"""Describe in one sentence how the learner's file differs from the solution."""
+"""Describe in a few sentences how the learner's file differs from the solution."""
 
 from __future__ import annotations
 

@@ -107,7 +107,7 @@ def _release(cell: Cell, name: str) -> None:
 
 
 def _checksum(source: str, kind: str, about: dict[str, Any]) -> str:
-    """Return nbgrader's checksum. The checksum shows whether a cell was changed, but it is not secret."""
+    """Return nbgrader's checksum. The checksum shows whether a cell was changed, but anybody can compute it."""
     locked = not about["solution"] and (about["grade"] or about["locked"])
     parts = [source, kind, str(about["grade"]), str(about["solution"]), str(locked), about["grade_id"]]
     if about["grade"]:

@@ -33,7 +33,7 @@ _ENDS_S = 15.0
 
 
 def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
-    """Serve the page and grade, until Ctrl-C, SIGTERM, or the terminal is closed.
+    """Serve the page and grade, until Ctrl-C or SIGTERM is received, or the terminal is closed.
 
     Raises:
         UsageError: another program uses the port, or the user is not allowed to use the port.

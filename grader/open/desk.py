@@ -38,7 +38,7 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Content:
-    """The variable content of the page. `number` counts the verdicts. `doing` is the stage of grading, or ""."""
+    """The part of the page that changes. `number` counts the verdicts. `doing` is the stage of grading, or ""."""
 
     exercise: str = ""
     folder: str = ""

@@ -101,7 +101,7 @@ def test_the_submission_of_a_lost_worker_is_graded_by_another(cluster: Cluster, 
 
 def test_a_missing_scheduler_is_a_usage_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(dask_engine, "CONNECT_S", 0.2)
-    with pytest.raises(UsageError, match=r"No Dask scheduler answers at 127\.0\.0\.1:1"):
+    with pytest.raises(UsageError, match=r"No Dask scheduler responds at 127\.0\.0\.1:1"):
         DaskEngine("127.0.0.1:1", None)
 
 
