@@ -65,7 +65,7 @@ class TickPatience:
     def ended(self, now_s: float) -> bool:
         """Return whether the node has used too much CPU time, or the wall time is over.
 
-        Only the CPU time after its first reading counts.
+        CPU time counts only from the time when it is read for the first time.
         """
         if now_s < self._request_s:
             return False

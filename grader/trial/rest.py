@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 HIDDEN = "hidden"
-"""The call of a thread whose process forbids inspection (PR_SET_DUMPABLE of prctl(2))."""
+"""The value of `call` for a thread whose process forbids inspection (PR_SET_DUMPABLE of prctl(2))."""
 DDS = "dds."
 """The prefix of the thread names of Fast DDS."""
 _DDS_TIMERS = "dds.ev"

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 _MOST_AT_ONCE = 200
 """The maximum number of callbacks per frame, so that a flood of messages cannot stop the turtle."""
 _NO_LOG = "log directory"
-"""These words are in the error of rcl if the folder for the log files cannot be created."""
+"""The error message of rcl contains these words if the folder for the log files cannot be created."""
 _NO_WINDOW = (
     "This turtlesim has no window. To see the turtle, stop turtlesim with Ctrl-C and start it again with --view "
     "(a page in the browser) or --view terminal."
