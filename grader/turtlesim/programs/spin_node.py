@@ -1,4 +1,4 @@
-"""Run a node as the only node of this process, until Ctrl-C."""
+"""Run a node in a process of its own until Ctrl-C."""
 
 from __future__ import annotations
 
