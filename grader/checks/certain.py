@@ -1,4 +1,4 @@
-"""Which diagnoses are facts, and which diagnoses hold even if the machine was busy.
+"""The diagnoses that are facts, and the diagnoses that hold even if the machine was busy.
 
 The two questions are independent. "The class has no object" is a fact, and no busy machine can make it wrong. "No call
 of spin() was found" holds on every machine, but it is a conclusion from the source code and may not be the true cause.

@@ -192,7 +192,7 @@ def unreadable(how: str) -> Finding:
     expected = "The grader can read the submitted files and the data that the node sends."
     cause = (
         "Very large, deeply nested or damaged content can cause this. If your submission "
-        "contains nothing of this kind, please report this as a bug of the grader."
+        "contains nothing of this kind, please report this as a bug in the grader."
     )
     return failed(observed, expected, Cause("unreadable", cause))
 
@@ -209,7 +209,7 @@ def _overwhelmed(evidence: Evidence, how: str) -> Finding:
     expected = "The simulator keeps running while the node publishes and calls services at a reasonable rate."
     cause = (
         "The node sends without a pause, or sends invalid data. If your node pauses and sends valid data, "
-        "please report this as a bug of the grader."
+        "please report this as a bug in the grader."
     )
     timer = period_of_zero(evidence, "publish")
     if timer is not None:

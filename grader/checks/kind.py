@@ -114,12 +114,11 @@ def number(
         )
         return None if out else float(value)
 
-    limits = [
-        f"{words} {limit:g}"
-        for words, limit in (("above", above), ("at least", at_least), ("at most", at_most))
-        if limit is not None
-    ]
-    words = f"a number {' and '.join(limits)}".rstrip()
+    if at_least is not None and at_most is not None:
+        words = f"a number from {at_least:g} to {at_most:g}"
+    else:
+        named = (("above", above), ("that is at least", at_least), ("at most", at_most))
+        words = f"a number {' and '.join(f'{each} {limit:g}' for each, limit in named if limit is not None)}".rstrip()
     return _field(Allowed(words, accept, about), MISSING if default is None else default)
 
 

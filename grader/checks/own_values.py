@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
 
 def numbers_spec(evidence: Evidence) -> NumbersSpec:
-    """Return the table `[numbers]` of the exercise. An exercise without it cannot have a check that needs it."""
+    """Return the table `[numbers]` of the exercise.
+
+    An exercise without this table cannot have a check that needs the table.
+    """
     assert evidence.exercise.numbers is not None
     return evidence.exercise.numbers
 

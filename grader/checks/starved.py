@@ -1,4 +1,4 @@
-"""Decide whether the machine, and not the node, may have made a check of a trial in wall time fail.
+"""Decide whether a check of a trial in wall time may have failed because of the machine, not because of the node.
 
 A node that rarely gets a processor does everything later, so it does less before the end of the trial. A lack of
 processor time can therefore explain each failed check that compares times, numbers of messages or trajectories. It

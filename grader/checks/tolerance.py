@@ -1,4 +1,4 @@
-"""Decide whether a value is within its tolerance, and whether it is so near a limit that wall time must decide."""
+"""Decide whether a value is within its tolerance, or so near a limit that the trial must be repeated in wall time."""
 
 from __future__ import annotations
 

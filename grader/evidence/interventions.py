@@ -40,7 +40,7 @@ def moved_by(recording: Recording, *, from_start: bool, others_removed: bool = F
 
     Without `others_removed`, a call that removes a turtle or sets a parameter always counts. With `others_removed`, the
     node may make such calls, but it must not remove turtle1 and spawn it at another place. With `from_start`, movements
-    since the start of the trial count, and otherwise only movements after the first command.
+    since the start of the trial count. Without it, only movements after the first command count.
     """
     always = next((name for name in recording.interventions if name in ALWAYS and not others_removed), None)
     if always is not None:
@@ -77,8 +77,8 @@ def _jumped(recording: Recording, first: int) -> bool:
 class _Path:
     """The part of a trajectory that consists of some successive frames.
 
-    `x`, `y` (m) and `theta` (rad) begin before the first of these frames. `turned_otherwise` says in which frames the
-    turtle did not turn at its turning speed.
+    `x`, `y` (m) and `theta` (rad) begin before the first of these frames. `turned_otherwise` is true for the frames in
+    which the turtle did not turn at its turning speed.
     """
 
     frames: slice
@@ -105,7 +105,7 @@ def _path(recording: Recording, first: int) -> _Path:
 
 
 def _driven(path: _Path, speed: Floats) -> Steps:
-    """Return an array that says in which frames the turtle moved forward at this speed (m/s), or up to a wall."""
+    """Return a mask of the frames in which the turtle moved forward at this speed (m/s), or up to a wall."""
     cos, sin = np.cos(path.theta[1:]), np.sin(path.theta[1:])
     x = np.clip(path.x[:-1] + cos * speed * FRAME_S, 0.0, SIDE_M)
     y = np.clip(path.y[:-1] + sin * speed * FRAME_S, 0.0, SIDE_M)
@@ -114,7 +114,7 @@ def _driven(path: _Path, speed: Floats) -> Steps:
 
 
 def _by_goal(recording: Recording, now: slice) -> Steps:
-    """Return an array that says in which of these frames the turtle turned while it followed a goal."""
+    """Return a mask of the frames in which the turtle turned while it followed a goal."""
     t_s, angular = recording.frames.t_s[now], recording.frames.angular[now]
     # After so many goals, further goals are not in the recording.
     follows = np.full(len(t_s), len(recording.goals) >= MOST_GOALS)
@@ -126,7 +126,7 @@ def _by_goal(recording: Recording, now: slice) -> Steps:
 
 
 def _unasked(recording: Recording, now: slice) -> Steps:
-    """Return an array that says which of these frames have a turning speed that no recent command set."""
+    """Return a mask of the frames that have a turning speed that no recent command set."""
     frames = recording.frames
     times = np.array([command.t_s for command in recording.commands])
     speeds = np.array([command.angular[2] for command in recording.commands])

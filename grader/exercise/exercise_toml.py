@@ -12,8 +12,8 @@ The keys in `schema = 2`:
   from_s, linear_x_m_s and angular_z_rad_s (one number, or the two limits of a random number). `[[trial.call]]` has
   at_s, service, type and request (a table with fields), `[[trial.set]]` has at_s, parameter, value and also.
   `[trial.parameters]` and `[trial.params_file]` map the names of parameters to their values.
-- A `[[trial]]` without a simulator has id and either function and `[[trial.points]]`, or executable and `[[trial.bag]]`
-  (calls_toml.py).
+- A `[[trial]]` without a simulator has id and one of these groups: function and `[[trial.points]]`; executable and
+  `[[trial.bag]]` (both in calls_toml.py); executable, node, duration_s and `[trial.tests]` (tests_toml.py).
 - `[[check]]` has id, kind, points, needs (ids), title, trial (the default is the first trial), hidden, and the
   parameters of its kind. A `[[check]]` can have a preset instead (presets.py).
 - `[[hint]]` has text, checks (the ids of the checks that it helps with) and part (a letter). The hints begin with a

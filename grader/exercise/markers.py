@@ -132,7 +132,7 @@ class _Reader:
 
     def _begin(self, number: int, block: str) -> None:
         if self.inside is not None:
-            raise self._error(number, f"BEGIN {block} inside the {self.inside} block that begins at line {self.since}")
+            raise self._error(number, f"BEGIN {block} inside the {self.inside} block that begins on line {self.since}")
         if block == "STARTER":
             while self.parts and isinstance(self.parts[-1], str) and not self.parts[-1].strip():
                 self.parts.pop()

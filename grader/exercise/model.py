@@ -68,9 +68,9 @@ class Scenario:
 
     If `anywhere` is set, the start pose is random even without a seed. `rename` contains remapping rules for the
     simulator, such as "/turtle1/pose:=/where". `pose_every` is the number of frames between two poses, and between two
-    colours. The first pose of turtle1 is published at `pose_from_s` (s), to simulate a late simulator. Services respond
-    `answers_after_s` (s) after a call. The node starts with `parameters` on its command line and with `params_file` in
-    a parameter file.
+    colours. The first pose of turtle1 is published at `pose_from_s` (s), as if the simulator had started late. Services
+    respond `answers_after_s` (s) after a call. The node starts with `parameters` on its command line and with
+    `params_file` in a parameter file.
 
     The simulator adds `targets` turtles in random places, and the trial itself runs the node that announces these
     turtles (grader/trial/target_keeper.py). If `alone_s` is set, the trial ends early once the other turtles are gone

@@ -110,7 +110,7 @@ def after_simulated(choice: ClockChoice, attempt: Attempt) -> Clock | None:
     """Return the clock for repeating a trial that ran in simulated time (rule 4), or None if it is not repeated."""
     if choice == "simulated" or not any(outcome.finding.near_edge for outcome in attempt.outcomes):
         return None
-    return Clock("wall", "a measured value is near the edge of its tolerance, where wall time decides")
+    return Clock("wall", "a measured value is near the edge of its tolerance, so only a trial in wall time is certain")
 
 
 def wants_another(attempts: Sequence[Attempt]) -> bool:

@@ -28,12 +28,12 @@ if TYPE_CHECKING:
 
 MOST_TRIES = 6
 MOST_F = 1.5
-"""The maximum time for testing changes to a submission, relative to the time for a build and a run of a bare node."""
+"""The maximum time for testing fixes of a submission, relative to the time for a build and a run of a minimal node."""
 BARE_NODE_S = 0.35
 """The time that a minimal process with one node needs to start and exit (s)."""
-ENOUGH = f"only {MOST_TRIES} changes are tried"
-TOO_LONG = "there was no time to try more"
-NOT_SIMULATED = "a changed node needs wall time"
+ENOUGH = f"at most {MOST_TRIES} fixes are tested"
+TOO_LONG = "there was no time to test more fixes"
+NOT_SIMULATED = "a node with a fix can only be tested in wall time, which takes too long"
 
 
 def explain(

@@ -78,7 +78,7 @@ def grade(
 
 
 def can_be_explained(graded: Graded) -> bool:
-    """Return whether the trial ran in simulated time, and a failed check has a cause with a fix that can be tested."""
+    """Return whether the trial did not run in wall time, and a fix for the cause of a failed check can be tested."""
     report = graded.report
     return report.clock != "wall" and any(outcome.finding.fix for outcome in report.with_status(Status.FAILED))
 

@@ -1,4 +1,4 @@
-"""Judging: check a submission while it is being graded: first the files, then the build, then each trial.
+"""Judging: check the files of a submission, then its build, then its trials, while the submission is being graded.
 
 Judging reads files that a student wrote, so it runs in a child process (submission/reader.py). If the child process
 exceeds its limits, the submission is at fault: every check fails with the diagnosis `unreadable`, and nothing more is

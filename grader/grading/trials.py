@@ -87,9 +87,9 @@ class Trials:
 
         `run` waits for the recordings of these trials.
 
-        Nodes that already run from the predicted install tree continue if this tree has the same content as `tree`, the
-        result of the build. If the install trees differ, every trial that was started from the predicted install tree
-        starts again.
+        Nodes that are already running from the predicted install tree continue if this tree has the same content as
+        `tree`, the result of the build. If the install trees differ, every trial that was started from the predicted
+        install tree starts again.
         """
         self.tree = tree
         if self._predicted is not None and not self._is_installed(self._predicted):
@@ -150,7 +150,7 @@ class Trials:
         return self._ahead.trial(evidence.trial.id) if fits else None
 
     def _decide(self, evidence: Evidence, trial: Runs, clock: Clock, settled: Mapping[str, Finding]) -> Attempt:
-        """Run the trial with its clock, and repeat it in wall time if wall time must decide."""
+        """Run the trial with its clock, and repeat it in wall time if the rules of clock.py require it."""
         if clock.name == "simulated":
             try:
                 attempt = self._run_simulated(evidence, trial, clock, settled)
@@ -178,7 +178,7 @@ class Trials:
         """Run the trial in simulated time, and once more if the trial may have been stopped by chance.
 
         Raises:
-            WallTimeNeeded: wall time must decide.
+            WallTimeNeeded: the trial must be repeated in wall time.
         """
         try:
             return self._run(evidence, trial, clock, settled)

@@ -129,8 +129,8 @@ def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> 
     low, high = min(measured.intervals), max(measured.intervals)
     caption = f"{len(series)} intervals, {_s(measured.mean_s)} s on average, from {_s(low)} to {_s(high)} s."
     if stalled:
-        longer = "1 longer interval is" if stalled == 1 else f"{stalled} longer intervals are"
-        caption += f" {longer} left out, caused by the machine and not by the node."
+        others = "1 interval is" if stalled == 1 else f"{stalled} intervals are"
+        caption += f" {others} left out, because the start or a stall of the machine may have changed the length."
     drawn = ""
     if wanted:
         caption += f" Required: {middle_s:.2f} s; allowed: {low_s:.2f} to {high_s:.2f} s (the green band)."

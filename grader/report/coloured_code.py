@@ -8,7 +8,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 Piece = tuple[str, str]
-"""A pair (class, text). The CSS class is an empty string or has a colour in the page's style sheet."""
+"""A pair (class, text).
+
+The CSS class is an empty string, or a class for which the page's style sheet defines a colour.
+"""
 
 
 def coloured(text: str, language: str = "python") -> list[list[Piece]]:

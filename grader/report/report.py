@@ -47,8 +47,8 @@ class Report:
     def max(self) -> float:
         """The maximum points of all checks together, including checks that the machine could not judge.
 
-        If checks that could not be judged were left out, a submission could get full marks by keeping the checks that
-        it fails from being judged.
+        If checks that could not be judged were left out, a submission could get full marks by preventing the grader
+        from judging the checks that it would fail.
         """
         return sum(outcome.max for outcome in self.outcomes)
 
@@ -67,8 +67,8 @@ class Report:
     def exit_code(self) -> int:
         """The exit code for the report.
 
-        The code is 0 if all checks passed, 1 if a check with points did not pass, and 3 if the grader or the machine is
-        broken.
+        The code is 0 if the submission passed (perhaps with warnings), 1 if it did not pass, and 3 if the grader or the
+        machine is broken.
         """
         if self.with_status(Status.ERROR):
             return 3

@@ -12,7 +12,9 @@ if TYPE_CHECKING:
 
 
 def save_files(evidence: Evidence, report: Report, json: Path | None, image: Path | None, html: Path | None) -> None:
-    """Write the report to `json` and `html`, and the picture of the turtle's path to `image`. None writes no file.
+    """Write the report to the files `json` and `html`, and a picture of the turtle's path to the file `image`.
+
+    A file that is None is not written.
 
     Raises:
         UsageError: a file cannot be written at its path.

@@ -11,7 +11,7 @@ Rgb = tuple[int, int, int]
 Role = Literal["trajectory", "other", "expected", "fitted", "tick", "wall", "start"]
 
 SIDE_M = 499 / 45
-"""The side of turtlesim's canvas (m): 500 pixels, 45 pixels per metre."""
+"""The largest coordinate on turtlesim's canvas (m): the last of 500 pixels, with 45 pixels per metre."""
 SEA: Rgb = (69, 86, 255)
 DEEP: Rgb = (16, 20, 84)
 

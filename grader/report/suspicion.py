@@ -1,7 +1,7 @@
 """Find submissions that an instructor should check, because the grader could not judge or read them.
 
-Machine faults affect submissions at random. If the grader repeatedly fails to judge a submission but can judge all
-other submissions, the submission may have been designed to break the grader.
+Machine faults affect submissions at random. If the grader repeatedly fails to judge a submission but can judge other
+submissions, the submission may have been designed to break the grader.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 ERRORS = "errors"
-"""The key in the reports of a class that counts how many times in a row grading has ended with an error."""
+"""The key in the reports of a class whose value is the number of consecutive gradings that ended with an error."""
 REPEATED = 2
 """The number of consecutive errors after which chance is an unlikely explanation."""
 UNREADABLE = "unreadable"

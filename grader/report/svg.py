@@ -74,7 +74,7 @@ def points(of: Iterable[Point]) -> str:
 def picture(*children: str, width: float, height: float, title: str, key: str, name: str, about: str = "") -> str:
     """Return a complete picture that scales with its page.
 
-    `key` is the kind of picture, and `name` is a unique name.
+    `key` is the kind of picture (a CSS class), and `name` makes the ids of the picture unique.
     """
     named = [tag("title", escape(printable(title)), id=f"picture-{name}-title")]
     if about:

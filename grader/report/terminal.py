@@ -89,7 +89,7 @@ def changes(tries: Tries, console: Console) -> None:
         for line in each.difference.splitlines():
             _line(console, Text(f"    {printable(line)}"))
     if tries.stopped:
-        _line(console, Text(f"Not all causes were tried: {tries.stopped}.", style="dim"))
+        _line(console, Text(f"Not all causes were tested: {tries.stopped}.", style="dim"))
 
 
 def _look(outcome: Outcome) -> str:

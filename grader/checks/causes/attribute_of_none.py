@@ -30,9 +30,8 @@ def attribute_of_none(scene: CrashScene, name: str) -> Cause | None:
         return Cause("future-for-answer", text)
     known = [holder for holder in map(dotted, objects) if holder]
     what = f"{shorten(known[0])} is None here, so it" if len(known) == 1 else "The value is None here, so it"
-    return Cause(
-        "attribute-missing", f"{what} has no attribute {shorten(name)}. A function without return returns None."
-    )
+    text = f"{what} has no attribute {shorten(name)}. A function without a return statement returns None."
+    return Cause("attribute-missing", text)
 
 
 def _before_message(scene: CrashScene, objects: list[ast.expr]) -> Cause | None:

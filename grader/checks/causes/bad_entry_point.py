@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from grader.submission.setup_py import EntryPoint
 
 JOINED = re.compile(r"=[^=]*:[^=]*=")
-"""The middle of two entry points without a comma between them."""
+"""Matches an equals sign, a colon and an equals sign: two entry points without a comma between them."""
 
 
 def bad_entry_point(point: EntryPoint) -> Finding:

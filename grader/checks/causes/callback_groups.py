@@ -1,4 +1,4 @@
-"""Find waits for a response in the callback group of the client: a deadlock, however many threads the executor has."""
+"""Find callbacks that wait for a response although they are in the client's callback group: always a deadlock."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ SELF = "self."
 def in_default_group(evidence: Evidence, wait: Wait) -> bool:
     """Return whether the client of this wait and the callback that waits are both in the node's default group.
 
-    The executor never calls two callbacks of this group at the same time. Only a method of the class that creates the
-    client and registers the callback is recognized.
+    The executor never calls two callbacks of this group at the same time. The result is True only if one class creates
+    the client, registers the callback and defines it as a method.
     """
     modules = [module for module in evidence.code.modules if module.file == wait.where.file]
     if any(getattr(node, "attr", "").endswith("default_callback_group") for each in modules for node in each.nodes):

@@ -58,8 +58,8 @@ MEANINGS = {
 class Crash:
     """An exception in the student's node.
 
-    `error` is the exception's class, `where` is the last line of the student's own code, and `callers` are the lines
-    that called it, the nearest caller first.
+    `error` is the exception's class or, without an exception, the signal or exit code. `where` is the last line of the
+    student's own code, and `callers` are the lines that called it, the nearest caller first.
     """
 
     error: str

@@ -132,7 +132,7 @@ def _end(node: ast.AST) -> int:
 
 
 def _small(node: ast.AST) -> bool:
-    """Return whether the node is part of a single statement rather than a function or block around the line."""
+    """Return whether the syntax node is neither a class, a function nor a block, so that it is on the line itself."""
     return not isinstance(
         node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef | ast.If | ast.For | ast.While | ast.Try | ast.With
     )

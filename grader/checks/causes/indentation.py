@@ -1,4 +1,4 @@
-"""Explain an IndentationError: Python names the line where it gave up, which is often not the line to change."""
+"""Explain an IndentationError: the line that Python reports is often not the line that must be changed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def why_indented(file: str, unreadable: Unreadable, data: bytes) -> Cause | None
     here = unreadable.line
     before = [number for number in _statements(data) if number < here]
     if "unexpected unindent" in unreadable.message and before and DECORATOR.match(lines[before[-1] - 1]):
-        text = f"The decorator in line {before[-1]} belongs to line {here}, so both must start at the same column."
+        text = f"The decorator on line {before[-1]} belongs to line {here}, so both must start at the same column."
         return Cause("indentation", text, Where(file, here))
     if not UNEVEN.search(unreadable.message) or not before:
         return None
@@ -53,7 +53,7 @@ def _spaces(line: str) -> int | None:
 
 
 def _statements(data: bytes) -> list[int]:
-    """Return the line of each statement up to the place where Python cannot divide the file into statements."""
+    """Return the line numbers of the statements, up to the line at which Python's tokenizer fails."""
     found: list[int] = []
     begins = True
     try:

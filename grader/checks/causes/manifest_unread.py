@@ -63,12 +63,12 @@ def _malformed(data: bytes, problem: str, line: int | None) -> Cause:
     end = end_of_root(data)
     if end is not None and line is not None:
         last, at = end
-        cause = f"</{shorten(last, 30)}> in line {at} is the last tag. Nothing is allowed after it"
+        cause = f"</{shorten(last, 30)}> on line {at} is the last tag. Nothing is allowed after it"
         more = text.strip() if line > at else ""
-        cause += f', such as "{shorten(more, 30)}" in line {line}.' if more else "."
+        cause += f', such as "{shorten(more, 30)}" on line {line}.' if more else "."
     elif "mismatched tag" in problem:
         name, line = open_tag(data)
-        cause = f"<{shorten(name, 30)}> in line {line} has no closing tag </{shorten(name, 30)}>."
+        cause = f"<{shorten(name, 30)}> on line {line} has no closing tag </{shorten(name, 30)}>."
     elif BARE_AMPERSAND.search(text):
         cause = "In XML, & begins the name of a character. Write &amp; for the character & itself."
     return Cause("xml-malformed", cause, Where(FILE, line))

@@ -26,7 +26,7 @@ FORM = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION in the list c
 
 
 def line(evidence: Evidence) -> Where:
-    """Return the line of setup.py with the entry point, or else with `console_scripts`, or else the call to setup()."""
+    """Return the line of setup.py with the entry point, else with `console_scripts`, else with the call to setup()."""
     setup = evidence.setup_py
     if setup is None:
         return Where("setup.py")

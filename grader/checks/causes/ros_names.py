@@ -59,7 +59,7 @@ PACKAGE = re.compile(
     r"(?!turtlesim_msgs)\w+_(?:msgs|srvs|interfaces)|rclpy|turtlesim|tf2_ros|rosbag2_py|ament_index_python"
     r"|launch|launch_ros|message_filters|cv_bridge"
 )
-"""Imports that are ROS 2 packages: interface packages, and packages that Python nodes often use.
+"""Matches the imports of ROS 2 packages: interface packages, and packages that Python nodes often use.
 
 The list is fixed, so that a report is the same on every machine. turtlesim_msgs is not in Jazzy."""
 ROS_1 = frozenset({"rospy", "roslib", "tf", "catkin", "roscpp", "rosbag", "actionlib"})

@@ -43,7 +43,7 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
     (
         r"was never closed",
         "bracket-open",
-        "This bracket is never closed. Python often reports a missing bracket at a later line.",
+        "This bracket is never closed. Python often reports a missing bracket on a later line.",
     ),
     (
         r"unmatched|does not match opening",
@@ -93,13 +93,13 @@ OTHER_LANGUAGES = (
 )
 """(pattern of a line that Python cannot read, cause): syntax of other languages, and an else without an if."""
 GAP = re.compile(r"""(?P<left>[\w.]+|"[^"]*"|'[^']*')(?=\s+(?P<right>[\w.]+|"[^"]*"|'[^']*'))""")
-"""Two values with only spaces between them. The match ends before the spaces."""
+"""Matches a value that is followed by spaces and another value. The match ends before the spaces."""
 NO_SPACE = re.compile(r"\s*(?P<keyword>def|class)(?P<rest>\w+\s*[(:].*)")
-"""A line in which the keyword `def` or `class` is not followed by a space."""
-AND = "In Python, and is a word: write and, not &&."
-OR = "In Python, or is a word: write or, not ||."
+"""Matches a line in which the keyword `def` or `class` is not followed by a space."""
+AND = "In Python, the operator && is written as the word and."
+OR = "In Python, the operator || is written as the word or."
 BLOCK = re.compile(r"\s*(?:def|class|if|elif|else|for|while|try|except|finally|with|async)\b.*(?P<sign>[;,.])\s*")
-"""A line that begins a block, but ends with another character in place of the colon."""
+"""Matches a line that begins a block, but ends with another character in place of the colon."""
 SIGNS = {";": "a semicolon", ",": "a comma", ".": "a dot"}
 COMMA_FOR_DOT = (
     (r"\s*(?:from|import)\s+\w+(?:,\w+)+\s+import\b.*", "In a module name, write a dot, not a comma."),
@@ -111,12 +111,12 @@ COMMA_FOR_DOT = (
 """(pattern of a line that Python cannot read, cause): a comma in place of a dot."""
 CONFLICT = r"^(<<<<<<<|>>>>>>>)"
 MIDDLE = "======="
-"""Git's line between two versions. In a docstring, the same line can underline a heading."""
+"""The line that Git writes between two versions. In a docstring, the same line can underline a heading."""
 OTHERWISE = "The mistake is often at the end of the previous line: a bracket, a colon or the indentation."
 
 
 def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
-    """Return the cause of a SyntaxError, with the line to look at if Python names a different line."""
+    """Return the cause of a SyntaxError, with the line to look at if Python reports a different line."""
     line = _line(unreadable, data)
     conflict = line_of(data, CONFLICT) or (unreadable.line if line.rstrip() == MIDDLE else None)
     open_string = "unterminated string" in unreadable.message and unreadable.line != conflict
@@ -144,7 +144,7 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
         return Cause("indentation", text, Where(file, int(empty["line"])))
     other = NOT_CLOSED.search(unreadable.message)
     if other is not None:
-        text = f"The bracket {other['bracket']} of line {other['line']} is still open in line {unreadable.line}."
+        text = f"The bracket {other['bracket']} from line {other['line']} is still open on line {unreadable.line}."
         return Cause("bracket-open", text, Where(file, int(other["line"])))
     for pattern, diagnosis, text in CAUSES:
         if re.search(pattern, unreadable.message):
@@ -153,7 +153,7 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
 
 
 def _other_sign(file: str, unreadable: Unreadable, data: bytes) -> Cause | None:
-    """Return the cause if Python can read the line after a small change, such as a colon for a semicolon, else None."""
+    """Return the cause if a small change, such as a colon instead of a semicolon, makes the line valid, else None."""
     line, place = _line(unreadable, data), Where(file, unreadable.line)
     block, glued = BLOCK.fullmatch(line), NO_SPACE.fullmatch(line)
     right: dict[Cause, str] = {}

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def timer_fault(evidence: Evidence) -> Cause | None:
-    """Return the cause for the first timer that waits too long or has no callback, or None."""
+    """Return the cause for the first timer whose period is too long or whose callback does nothing, or None."""
     for timer in evidence.code.calls("create_timer"):
         period = number(timer.argument(0, "timer_period_sec"), timer.module.names)
         if period is not None and period >= evidence.recording.duration_s:
@@ -37,7 +37,7 @@ def timer_fault(evidence: Evidence) -> Cause | None:
         named = _named_by_lambda(timer.argument(1, "callback"))
         if named is not None:
             place, name = Where(timer.module.file, named.lineno), ast.unparse(named)
-            text = f"The lambda names {shorten(name)} but does not call it: the parentheses are missing."
+            text = f"The lambda mentions {shorten(name)} but does not call it: the parentheses are missing."
             return Cause("not-called", text, place).fixed_by(at(place, f"lambda: {name}", f"lambda: {name}()"))
     return None
 

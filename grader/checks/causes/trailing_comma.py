@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
 REFUSED = re.compile(r"\btuple\b|The '\w+' field must be of type|incompatible function arguments")
-"""Python's and rclpy's messages about a tuple, and messages that do not name the type of the refused value."""
+"""Python's and rclpy's messages about a tuple, and messages that do not contain the type of the rejected value."""
 
 
 def trailing_comma(scene: CrashScene) -> Cause | None:
@@ -32,7 +32,7 @@ def trailing_comma(scene: CrashScene) -> Cause | None:
         end = value.end_col_offset or 0
         if line[end - 1 : end] != b",":  # With parentheses, the student wants a tuple.
             continue
-        text = f"The comma after the value in line {value.end_lineno} makes {shorten(name)} a tuple with one value."
+        text = f"The comma after the value on line {value.end_lineno} makes {shorten(name)} a tuple with one value."
         place = scene.at(value.end_lineno)
         without = line[: end - 1] + line[end:]
         return Cause("trailing-comma", text, place).fixed_by(at(place, line.decode(), without.decode()))

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 
 RESPONSES = ("call", "send_goal", "cancel_goal", "get_result")
-"""Methods of service and action clients that wait for the response. Each of them also exists with the ending _async."""
+"""Methods of service and action clients that wait for the response. Each of them also exists with the suffix _async."""
 CREATE = ("create_client", "ActionClient")
 """Functions that return a client of a service or of an action."""
 SPINS = ("spin", "spin_once", "spin_until_future_complete")
@@ -28,13 +28,13 @@ SERVERS = ("wait_for_service", "wait_for_server")
 SLEEPS = ("sleep", "sleep_for", "sleep_until")
 WAITS = (*RESPONSES, *SPINS, *SERVERS, *SLEEPS)
 LOOP = "while"
-"""The name of a wait that is a loop until done() returns True."""
+"""The name of a wait in a loop that runs until done() returns True."""
 THREADS = frozenset({"MultiThreadedExecutor", "Thread", "ThreadPoolExecutor", "Timer", "start_new_thread"})
-"""With one of these, another thread can receive the response while a callback waits."""
+"""If the source uses one of these, another thread can receive the response while a callback waits."""
 STARTS = frozenset({"Thread", "Timer", "start_new_thread", "submit", "to_thread", "run_in_executor"})
 """Functions that run a function, passed as an argument, in another thread."""
 STRAIGHT = frozenset({"__init__", "main"})
-"""Functions that run before rclpy.spin, even if their names are mentioned without a call."""
+"""Functions that run before rclpy.spin. They are not callbacks, even if their names are used without a call."""
 OTHER_CALLS = frozenset({"subprocess", "self", "super", "cls"})
 """Objects whose method `call` does not belong to a service client."""
 

@@ -74,13 +74,13 @@ def always_false(code: TestCode) -> Cause | None:
 
 
 def swallowed(code: TestCode) -> Cause | None:
-    """Return the cause if an except clause catches the failure of an assert without failing the test, else None."""
+    """Return the cause if an except clause catches an AssertionError and does not make the test fail, else None."""
     for module in code.modules:
         for node in module.nodes:
             if isinstance(node, ast.Try) and any(isinstance(each, ast.Assert) for each in _below(node.body)):
                 handler = next(filter(_catches, node.handlers), None)
                 if handler is not None and not _asserts(handler) and not _asserted_later(module, node, handler):
-                    text = "This except catches the AssertionError, so pytest does not notice the failure."
+                    text = "This except clause catches the AssertionError, so pytest does not notice the failure."
                     return Cause("swallows-failure", text, Where(module.file, handler.lineno))
     return None
 

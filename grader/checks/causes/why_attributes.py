@@ -91,14 +91,14 @@ def _without_setter(scene: CrashScene, name: str) -> Cause | None:
 
 
 def _written_name(scene: CrashScene, name: str) -> str:
-    """Return the name as in the source, if the prefix names one of the student's classes and not rclpy's Node."""
+    """Return the name as it is in the source, if its prefix belongs to one of the student's classes, not to Node."""
     mangled = MANGLED.match(name)
     own = mangled is not None and any(each.name.lstrip("_") == mangled["of"] for each in scene.classes)
     return MANGLED.sub("__", name) if own else name
 
 
 def _is_subclass_elsewhere(scene: CrashScene, owner: str, name: str) -> bool:
-    """Return whether the node's code defines the class of the object, and none of its classes sets the attribute."""
+    """Return whether the node's code defines the class of the object, and no class in this code sets the attribute."""
     classes = [
         node for module in scene.evidence.code.modules for node in module.nodes if isinstance(node, ast.ClassDef)
     ]
@@ -197,7 +197,7 @@ def _of_a_wrong_thing(scene: CrashScene, owner: str, name: str) -> Cause | None:
         return Cause("class-for-object", text, scene.at(made))
     if owner == "NoneType":
         return attribute_of_none(scene, name)
-    return Cause("not-called", "The function is named but not called: the parentheses are missing.")
+    return Cause("not-called", "The function is not called: the parentheses after its name are missing.")
 
 
 def _is_message(value: ast.expr) -> bool:
@@ -223,7 +223,7 @@ def _of_own_class(scene: CrashScene, owner: str, name: str) -> Cause:
         return instead
     lines = [line for attribute, line in attributes_set(own) if attribute == name]
     if lines:
-        text = f"self.{shorten(name)} is set in line {min(lines)}, which has not run yet."
+        text = f"self.{shorten(name)} is assigned on line {min(lines)}, which has not run yet."
         return Cause("attribute-too-early", text)
     return _never_set(scene, own, name)
 
@@ -241,7 +241,8 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
     local = [node for node in ast.walk(own) if isinstance(node, ast.Name) and _is_store(node) and node.id == name]
     if local:
         text = (
-            f"Line {local[0].lineno} sets {name} without self, so {name} is not an attribute. Write self.{name} there."
+            f"Line {local[0].lineno} assigns {name} without self, so {name} is not an attribute. "
+            f"Write self.{name} there."
         )
         place = scene.at(local[0])
         return Cause("missing-self", text, place).fixed_by(at(place, name, f"self.{name}"))

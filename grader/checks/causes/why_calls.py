@@ -143,7 +143,7 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
     if "'NoneType' object does not support the context manager" in text:
         return _with_init(scene) or _after_shutdown(scene) or _never_init(scene)
     if "rclpy_resolve_name(): incompatible" in text:
-        return Cause("crash", "A topic name must be a string in quotation marks, or a variable with a string in it.")
+        return Cause("crash", "A topic name must be a string in quotation marks, or a variable that contains a string.")
     if "'Parameter'" in text:
         return Cause(
             "parameter-itself", "get_parameter returns the parameter itself. The value of the parameter is in .value."
@@ -239,7 +239,7 @@ def _not_callable(scene: CrashScene, kind: str) -> Cause | None:
         names = {each.name: each for each in methods(own)}
         for attribute, line in attributes_set(own):
             if attribute in names:
-                text = f"self.{attribute} is set in line {line}, which hides the method of the same name."
+                text = f"self.{attribute} is assigned on line {line}, which hides the method of the same name."
                 return Cause("name-used-twice", text, scene.at(line))
     made = scene.class_named(kind)
     if made is not None:
@@ -263,7 +263,7 @@ def _not_callable(scene: CrashScene, kind: str) -> Cause | None:
 
 
 def why_refused(scene: CrashScene) -> Cause | None:
-    """Return the cause if rclpy refused a type, a period, a callback or a second call to init, else None."""
+    """Return the cause if rclpy rejected a type, a period, a callback or a second call to init, else None."""
     text = scene.crash.message
     if "must only be called once" in text:
         return Cause("init-twice", f"Call rclpy.init only once.{_calls_of_init(scene)}")
@@ -287,7 +287,7 @@ def _calls_of_init(scene: CrashScene) -> str:
     lines = [str(line) for line in sorted({call.lineno for call in calls})]
     if len(calls) < 2:
         return ""
-    return f" rclpy.init is called {f'in lines {a_list(lines)}' if len(lines) > 1 else f'twice in line {lines[0]}'}."
+    return f" rclpy.init is called {f'on lines {a_list(lines)}' if len(lines) > 1 else f'twice on line {lines[0]}'}."
 
 
 def _no_message(scene: CrashScene) -> Cause:

@@ -55,7 +55,7 @@ def _why_no_topic(scene: CrashScene) -> Cause:
 
 
 def _topic_given(scene: CrashScene) -> tuple[str, int] | None:
-    """Return the constant name of a topic, service or action on the line of the crash, with its line, or None."""
+    """Return the string on the line of the crash that names a topic, service or action, with its line, or None."""
     for maker in ("create_publisher", "create_subscription", "create_client", "create_service", "ActionClient"):
         for call in scene.calls_on_line(maker):
             for given in (*call.args, *(keyword.value for keyword in call.keywords)):
@@ -93,8 +93,8 @@ def _why_usage(scene: CrashScene) -> Cause | None:
     if required is None:
         return None
     text = (
-        f"The program ends without the argument {shorten(required['names'], 60)}, and the grader starts it without "
-        "arguments. Give the argument a default value."
+        f"The program needs the argument {shorten(required['names'], 60)}, but the grader starts it without arguments. "
+        "Give the argument a default value."
     )
     return Cause("crash", text, scene.evidence.place("parse_args", "parse_known_args"))
 

@@ -108,11 +108,11 @@ def _named(node: ast.AST) -> str:
 
 
 def named_only(evidence: Evidence, *names: str) -> Cause | None:
-    """Return the cause if a line names one of these functions without calling it, else None."""
+    """Return the cause if a line mentions one of these functions without calling it, else None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.Expr) and dotted(node.value) in names:
-                text = f"This line names {dotted(node.value)} but does not call it: the parentheses are missing."
+                text = f"This line mentions {dotted(node.value)} but does not call it: the parentheses are missing."
                 return Cause("not-called", text, Where(module.file, node.lineno))
     return None
 

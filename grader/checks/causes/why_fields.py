@@ -133,7 +133,7 @@ def assigned(scene: CrashScene, field: str) -> ast.expr | None:
 
 
 def _resolved(scene: CrashScene, value: ast.expr) -> ast.expr:
-    """Return the expression, or the value assigned to a name if the expression is that name.
+    """Return the expression or, if the expression is a name, the value that is assigned to this name.
 
     Call this function only if `scene.module` is not None.
     """

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 CATCHES = ("KeyboardInterrupt", "BaseException")
-"""The exceptions that catch Ctrl-C. An except without an exception catches it, too."""
+"""The exceptions that an except clause can name to catch Ctrl-C. A bare except clause also catches it."""
 LEAVES = ast.Break | ast.Return | ast.Raise
 
 
@@ -41,11 +41,11 @@ def _refuses(evidence: Evidence) -> tuple[str, Where] | None:
 
 
 def _catches(evidence: Evidence) -> tuple[str, Where] | None:
-    """Return the reason if an endless loop goes on after an except that catches Ctrl-C, else None."""
+    """Return the reason if an endless loop continues after an except clause that catches Ctrl-C, else None."""
     for file, loop in _endless_loops(evidence):
         for node in ast.walk(loop):
             if isinstance(node, ast.ExceptHandler) and _catches_ctrl_c(node) and not _leaves(node):
-                text = f"This except catches Ctrl-C, and then the loop in line {loop.lineno} goes on."
+                text = f"This except clause catches Ctrl-C, and then the loop on line {loop.lineno} continues."
                 return text, Where(file, node.lineno)
     return None
 

@@ -1,4 +1,4 @@
-"""Causes of exceptions when a node uses interfaces wrongly: action and service types, their messages, and futures."""
+"""Explain exceptions from an incorrect use of interfaces: action and service types, their messages, and futures."""
 
 from __future__ import annotations
 

@@ -148,7 +148,7 @@ def _of_import(scene: CrashScene, name: str) -> Cause | None:
 
 
 def _in_other_capitals(scene: CrashScene, name: str) -> Cause | None:
-    """Return the cause if the function has a variable that differs from this argument only in capitals, else None."""
+    """Return the cause if an argument on the line is, in lower case, a local variable of the function, else None."""
     passed = any(
         isinstance(argument, ast.Name) and argument.id == name
         for call in scene.on_line
@@ -180,11 +180,11 @@ def _import(scene: CrashScene, line: str) -> tuple[Edit, ...]:
 
 
 def _bound_elsewhere(scene: CrashScene, name: str) -> Cause | None:
-    """Return the cause if a later line or another function sets the name, else None."""
+    """Return the cause if a later line or another function assigns the name, else None."""
     inside = scene.function
     for line, function in sorted(_stores(scene, name), key=lambda each: each[0]):
         if function is None and line > scene.line:
-            return Cause("name-too-early", f"{name} gets its value in line {line}, after this line.")
+            return Cause("name-too-early", f"{name} gets its value on line {line}, after this line.")
         if function is not None and function is not inside:
             text = (
                 f"{name} is a local variable of {function.name} (line {line}). A local variable does not exist in "
@@ -236,7 +236,7 @@ def _bound(scene: CrashScene) -> set[str]:
 
 
 def why_unbound(scene: CrashScene) -> Cause:
-    """Return the cause of an UnboundLocalError: the function sets the name later, or the name is an attribute."""
+    """Return the cause of an UnboundLocalError: the function assigns the name later, or the name is an attribute."""
     match = UNBOUND.search(scene.crash.message)
     name = match["name"] if match is not None else ""
     own = scene.own_class
@@ -252,7 +252,7 @@ def why_unbound(scene: CrashScene) -> Cause:
     if own is not None and other and _only_raised(scene, name):
         line, function = min(other)
         text = (
-            f"Line {line} sets {name} without self, so {name} is a local variable of {function}. "
+            f"Line {line} assigns {name} without self, so {name} is a local variable of {function}. "
             f"To keep a value between calls, write self.{name} everywhere."
         )
         return Cause("missing-self", text, scene.at(line))
@@ -262,7 +262,7 @@ def why_unbound(scene: CrashScene) -> Cause:
         if own is not None and inner is not None and inner.args.args[:1] and inner.args.args[0].arg == "self":
             text = f"{name} is indented too far: it is inside another method, so it is not a method of the class."
             return Cause("method-in-method", text, scene.at(inner))
-        return Cause("name-too-early", f"{name} gets its value in line {local[0]}, after this line.")
+        return Cause("name-too-early", f"{name} gets its value on line {local[0]}, after this line.")
     kept = "Store a value in self if later calls need the value."
     if outside and own is None:
         kept = f"To change the variable of the module, the function needs the line global {name}."

@@ -1,4 +1,4 @@
-"""Explain why a node sends nothing: the method waits for an attribute that stays None, because no line sets it."""
+"""Explain why a node sends nothing: the method waits for an attribute that always stays None."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def _why(evidence: Evidence, module: Module, held: Held, sends: Sequence[str]) -
             continue
         local = _local(own, name)
         if local is not None:
-            text = f"Line {local} sets {shorten(name)} without self, so self.{shorten(name)} stays None."
+            text = f"Line {local} assigns {shorten(name)} without self, so self.{shorten(name)} stays None."
             return Cause("missing-self", text, Where(module.file, local))
         text = f"self.{shorten(name)} is None at first, and no line gives it another value."
         return Cause("never-logs" if "info" in sends else "never-publishes", text, Where(module.file, lines[0]))
@@ -85,7 +85,7 @@ def _set_to_none(evidence: Evidence, name: str) -> list[int]:
 
 
 def _needed(method: ast.FunctionDef, sends: Sequence[str]) -> Iterator[str]:
-    """Yield the attributes of self without which the method returns before it sends something."""
+    """Yield the attributes of self that must not be None, because the method otherwise sends nothing."""
     for statement in method.body:
         if isinstance(statement, ast.If):
             ends = isinstance(statement.body[-1], ast.Return) and not _calls(statement, sends)
@@ -103,7 +103,7 @@ def _parts(test: ast.expr, operator: type[ast.boolop]) -> list[ast.expr]:
 
 
 def _tested(test: ast.expr, *, missing: bool) -> str | None:
-    """Return the attribute of self that is None (with `missing`) or is set (without) if the test is true, or None."""
+    """Return the attribute of self that is not None (or is None, with `missing`) if the test is true, else None."""
     if isinstance(test, ast.Compare) and len(test.ops) == 1 and _is_none(test.comparators[0]):
         wanted = (ast.Is, ast.Eq) if missing else (ast.IsNot, ast.NotEq)
         return _attribute(test.left) if isinstance(test.ops[0], wanted) else None

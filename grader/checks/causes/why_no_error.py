@@ -18,7 +18,7 @@ def why_no_error(evidence: Evidence) -> Cause:
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.Return) and _is_error(node.value):
-                text = "return passes the exception to the caller like any other value. raise raises the exception."
+                text = "return passes the exception to the caller like any other value. Write raise instead of return."
                 return Cause("no-error", text, Where(module.file, node.lineno))
             if isinstance(node, ast.Expr) and _is_error(node.value):
                 text = "This line creates an exception but does not raise it. Write raise before the exception."

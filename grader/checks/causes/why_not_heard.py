@@ -22,7 +22,7 @@ NOTHING_RECEIVED = re.compile(
     r"IndexError: (?:list|deque|tuple) index out of range|IndexError: pop from (?:an )?empty|len\(\[\]\)|assert \[\]|"
     r"'NoneType' object has no attribute '(?:linear|angular)'|is an empty sequence|iterable argument is empty"
 )
-"""The message of a test that looks at a command although it has received none."""
+"""The message of a test that accesses a command although the test has received none."""
 COUNTED = re.compile(r"assert (?P<received>\d{1,6}) (?:==|>=|>) (?P<wanted>\d{1,6})\n +\+  where \d+ = len\(\[")
 """The message of a test that counts messages."""
 
@@ -54,7 +54,7 @@ def why_not_heard(run: NodeRun, code: TestCode, right: Behaviour) -> Cause | Non
 
 
 def _too_few(events: NodeEvents, run: NodeRun, code: TestCode, right: Behaviour) -> Cause | None:
-    """Return the reason why a test has received fewer commands than it wants, if the node's timer shows the reason."""
+    """Return the reason why a test has received too few commands, if the node's timer shows the reason."""
     counted = COUNTED.match(run.message)
     if counted is None or int(counted["received"]) >= int(counted["wanted"]):
         return None
@@ -83,7 +83,7 @@ def why_not_called(run: NodeRun | None, code: TestCode, right: Behaviour) -> Cau
 
 
 def _moves_the_wrong_clock(events: NodeEvents, code: TestCode) -> bool:
-    """Return whether the tests set a clock, but the node uses the time of day."""
+    """Return whether the tests set a clock, although the node's clock follows the system time."""
     return events.clock_s is not None and events.clock_s >= LATEST_S and bool(_uses(code, OVERRIDE))
 
 
@@ -105,8 +105,8 @@ NOT_SPUN = (
     "does the bench call spin_once after each step of the clock?"
 )
 WALL_TIME = (
-    f"The node's clock shows the time of day, so {OVERRIDE} does not move it. Set the node's parameter use_sim_time to "
-    "True first."
+    f"The node's clock follows the system time, so {OVERRIDE} does not change it. Set the node's parameter "
+    "use_sim_time to True first."
 )
 NOT_STARTED = (
     "The pose arrived when the node's clock showed 0 s, which counts as not set. The first period of the timer begins "

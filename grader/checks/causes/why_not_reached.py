@@ -125,7 +125,7 @@ def _turns_away(evidence: Evidence) -> Cause | None:
 
 
 def _turns(evidence: Evidence) -> Iterator[str]:
-    """Yield, for each command that turned turtle1, where the nearest target was.
+    """Yield, for each command that turned turtle1, the side on which the nearest target was.
 
     The target was ahead, behind, on the side to which the turtle turned ("towards"), or on the other side ("away").
     """

@@ -1,4 +1,4 @@
-"""Explain why Python refuses an operator between two values: one of them is a list or a string."""
+"""Explain why an operator does not support the types of two values: one value is a list or a string."""
 
 from __future__ import annotations
 

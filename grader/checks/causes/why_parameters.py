@@ -49,7 +49,7 @@ def too_few(scene: CrashScene, function: str, names: str) -> Cause | None:
         used = {node.id for node in ast.walk(own[0]) if isinstance(node, ast.Name)}
         if not used & set(re.findall(r"'(\w+)'", names)):
             text = (
-                f"{function} does not use its parameter {shorten(names)}, and the call in line {called.lineno} passes "
+                f"{function} does not use its parameter {shorten(names)}, and the call on line {called.lineno} passes "
                 "no value for it."
             )
             return Cause("argument-missing", text, scene.at(own[0]))

@@ -28,7 +28,10 @@ SAME = 0.1
 """A number in the source code explains a measured interval if they differ by less than this share."""
 
 FEWEST_CALLS, MOST_CALLS = 2, 20
-"""A callback that counts its calls sends a message in every n-th call. With more calls, n cannot be measured."""
+"""The range of n, if a callback counts its calls and sends a message in every n-th call.
+
+A larger n cannot be measured.
+"""
 
 PERIOD = "The first argument of create_timer is the timer period in seconds."
 

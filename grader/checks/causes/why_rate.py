@@ -29,7 +29,7 @@ SEVERAL = 0.1
 """If the number of successive calls differs from the number of messages per period by at most this share, the calls
 explain a wrong rate."""
 PAUSES = ("sleep", "sleep_for", "sleep_until", "spin_once", "wait", "get", "join", "input")
-"""Functions and methods that take time on purpose."""
+"""Functions and methods whose purpose is to wait."""
 FRAME_S = 0.016
 """The duration of a turtlesim frame (s). turtlesim publishes the pose once per frame."""
 
@@ -119,7 +119,7 @@ def why_sleep_in_callback(evidence: Evidence) -> Cause | None:
 
 
 def why_rate_in_callback(evidence: Evidence) -> Cause | None:
-    """Return the cause if the node sleeps with a rate in a callback, or while nothing spins the node, else None."""
+    """Return the cause if the node sleeps with a Rate in a callback, or while nothing spins the node, else None."""
     if not evidence.code.calls("create_rate"):
         return None
     found = _made_in_callback(evidence, "sleep")
@@ -133,7 +133,7 @@ def why_rate_in_callback(evidence: Evidence) -> Cause | None:
 
 
 def _rate_without_spin(evidence: Evidence) -> Cause | None:
-    """Return the cause if the node sleeps with a rate, but no other thread can spin the node, else None."""
+    """Return the cause if the node sleeps with a Rate, but no other thread can spin the node, else None."""
     if has_threads(evidence):
         return None
     for sleep in evidence.code.calls("sleep"):
@@ -159,7 +159,7 @@ def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: fl
                 every = len(lines) == _most(node.body, call)
                 if len(lines) > 1 and every and abs(period_s / mean_s - len(lines)) <= SEVERAL * len(lines):
                     named = a_list(list(map(str, lines)))
-                    text = f"{node.name} calls {call} {len(lines)} times each time it runs, in lines {named}."
+                    text = f"{node.name} calls {call} {len(lines)} times each time it runs, on lines {named}."
                     return Cause("wrong-rate", text, Where(module.file, lines[-1]))
     return None
 

@@ -121,7 +121,7 @@ def returns_before(evidence: Evidence, call: str) -> Cause | None:
         returns = [each.lineno for each in method.body if isinstance(each, ast.Return)]
         calls = [each.lineno for each in ast.walk(method) if isinstance(each, ast.Call) and _calls(each, call)]
         if returns and calls and min(returns) < min(calls):
-            text = f"{method.name} returns in line {min(returns)}, before it calls {call}."
+            text = f"{method.name} returns on line {min(returns)}, before it calls {call}."
             return Cause("never-publishes", text, Where(module.file, min(returns)))
     return None
 
@@ -134,7 +134,7 @@ def hidden_error(evidence: Evidence, call: str) -> Cause | None:
                 for handler in node.handlers:
                     catches_all = handler.type is None or dotted(handler.type) in ("Exception", "BaseException")
                     if catches_all and not any(isinstance(each, ast.Call | ast.Raise) for each in ast.walk(handler)):
-                        text = f"This except hides every error. An error before {call} may be the reason."
+                        text = f"This except clause hides every error. An error before {call} may be the reason."
                         return Cause("never-publishes", text, Where(module.file, handler.lineno))
     return None
 
@@ -144,7 +144,7 @@ def _calls(node: ast.AST, name: str) -> bool:
 
 
 def _ends(loop: ast.While) -> bool:
-    """Return whether a statement in the loop may end it."""
+    """Return whether a statement in the loop may end the loop."""
     return any(isinstance(each, ast.Break | ast.Return | ast.Raise) for each in ast.walk(loop))
 
 
@@ -176,7 +176,7 @@ def _never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
 
 
 def _is_called_by_others(evidence: Evidence, module: Module, method: ast.FunctionDef) -> bool:
-    """Return whether Python, a library or getattr may call the method, such as __call__, or run in a thread class."""
+    """Return whether Python (as with __call__), a base class such as Thread, or getattr may call the method."""
     classes = [node for each in evidence.code.modules for node in each.nodes if isinstance(node, ast.ClassDef)]
     own = next(each for each in classes if method in each.body)
     bases = {(dotted(base) or "").rpartition(".")[2] for base in own.bases} - {each.name for each in classes}

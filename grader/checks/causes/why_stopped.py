@@ -30,7 +30,7 @@ def why_stopped(evidence: Evidence, call: str) -> tuple[str, Where | None]:
     condition = _condition(evidence, call)
     if condition is None:
         return "", None
-    return f"{call} is called only if the condition in line {condition.line} is true.", condition
+    return f"{call} is called only if the condition on line {condition.line} is true.", condition
 
 
 def _condition(evidence: Evidence, call: str) -> Where | None:

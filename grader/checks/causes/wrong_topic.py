@@ -54,7 +54,7 @@ def _has_turtle(evidence: Evidence, topic: str) -> bool:
 
 
 def _is_absolute(evidence: Evidence, maker: str, topic: str) -> bool:
-    """Return whether the source contains this full name, so that ROS 2 did not add a namespace to the name."""
+    """Return whether the source contains this full name, which means that ROS 2 did not add a namespace to it."""
     calls = evidence.code.calls(maker)
     return any(evaluate(call.argument(1, "topic"), call.module.names) == topic for call in calls)
 

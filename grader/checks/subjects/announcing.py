@@ -90,7 +90,7 @@ def announces(evidence: Evidence, params: Announces) -> Finding:
 
 
 def _has_targets(evidence: Evidence, gap_s: float, begin_s: float, most: Band) -> bool:
-    """Return whether a target existed when the next announcement was late."""
+    """Return whether a target existed when the next announcement was overdue."""
     late_s = begin_s + (most.high or 0.0)
     return any(is_there(track, late_s, begin_s + gap_s) for track in evidence.recording.tracks)
 
@@ -119,32 +119,32 @@ def _wrong_names(evidence: Evidence, message: Announcement, heard: list[Announce
         return _not_there(evidence, message, strange, expected)
     missing = sorted(throughout - called - set(message.names))
     if missing:
-        observed = f"{at} does not name {a_list([shorten(name) for name in missing])}."
+        observed = f"{at} does not contain {a_list([shorten(name) for name in missing])}."
         stuck = waits_in_callback(evidence)
         text = "Add the name of a turtle to the list in the callback that receives the response from /spawn."
         if any(missing[0] in each.names for each in heard if each.t_s < message.t_s):
             text = (
-                f"An earlier message named {shorten(missing[0])}, so the node has removed the name. Only a call to "
-                "/catch with this name removes it."
+                f"An earlier message contained {shorten(missing[0])}, so the node has removed the name. "
+                "The node may remove a name only when /catch is called with that name."
             )
         return failed(observed, expected, stuck or Cause("target-unannounced", text, where))
     return None
 
 
 def _not_there(evidence: Evidence, message: Announcement, strange: list[str], expected: str) -> Finding:
-    """Return the finding about a message that names turtles before they exist, or after they were removed."""
+    """Return the finding about a message that contains a turtle that does not exist, not yet or no longer."""
     at = f"The message at {message.t_s:.1f} s"
     begin_s = {track.turtle: track.rows[0][0] for track in evidence.recording.tracks}.get(strange[0])
     where = evidence.place("publish")
     if begin_s is None:
-        observed = f"{at} names {a_list([shorten(name) for name in strange])}, but no such turtle exists."
+        observed = f"{at} contains {a_list([shorten(name) for name in strange])}, but no such turtle exists."
         text = "Remove a name when its turtle is caught, and add a name when the response from /spawn arrives."
     elif begin_s > message.t_s:
-        observed = f"{at} names {shorten(strange[0])}, which existed only from {begin_s:.1f} s on."
+        observed = f"{at} contains {shorten(strange[0])}, which existed only from {begin_s:.1f} s on."
         text = "A turtle exists when the response from /spawn arrives. Add its name then, and not with the request."
         where = evidence.place("append", "publish")
     else:
-        observed = f"{at} names {shorten(strange[0])}, which no longer exists."
+        observed = f"{at} contains {shorten(strange[0])}, which no longer exists."
         text = "Remove a name from the list when its turtle is caught."
     return failed(observed, expected, Cause("still-announced", text, where))
 

@@ -28,7 +28,7 @@ STRING = "a string in quotation marks"
 LIST_OF_STRINGS = "a list of strings in quotation marks"
 NUMBER = "a number, without quotation marks"
 EXAMPLES = {STRING: '"answer"', LIST_OF_STRINGS: '["first", "second"]', NUMBER: "12.5"}
-"""How an answer of each form is written."""
+"""Maps each form of an answer to an example."""
 KEEP_LOOKING = "Run the `ros2` command again and compare letter by letter."
 
 
@@ -60,10 +60,12 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class OneOf:
-    """The correct strings. Upper and lower case and spaces do not matter."""
+    """The correct strings. Upper and lower case and additional spaces do not matter."""
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
-    accepts: tuple[str, ...] = strings(about="The right answers. Upper and lower case and spaces do not matter.")
+    accepts: tuple[str, ...] = strings(
+        about="The right answers. Upper and lower case and additional spaces do not matter."
+    )
     cause: str = string("a reason", default=" ", about="The reason that the student reads if the answer is wrong.")
 
 

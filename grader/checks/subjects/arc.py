@@ -169,7 +169,7 @@ def _expected(params: Arc) -> str:
 
 
 def _chosen(evidence: Evidence, params: Arc) -> Steps:
-    """Return an array that says whether each step of the trajectory belongs to the arc."""
+    """Return a boolean array: whether each step of the trajectory belongs to the arc."""
     trajectory = evidence.trajectory
     chosen = (trajectory.steps > RESTS_M) & (trajectory.t_s > params.from_s) & (trajectory.t_s <= params.until_s)
     if params.color is None:

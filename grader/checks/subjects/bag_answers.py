@@ -110,7 +110,7 @@ def _why(quantity: str, value: float, truth: float, count: int) -> Cause:
     if quantity == "radius" and band.holds(value / 2.0):
         return Cause("diameter", "This is the diameter, twice the radius.")
     source = "`ros2 bag info`" if quantity == "duration" else "Your own program"
-    return Cause("wrong-answer", f"{source} shows the right value. Is the answer about an earlier bag?")
+    return Cause("wrong-answer", f"{source} shows the right value. Does the answer come from an earlier bag?")
 
 
 ANSWER = Kind(

@@ -141,8 +141,8 @@ def _other_success(evidence: Evidence, goals: list[Goal], call: Call) -> Cause:
     said = call.response is not None and call.response.get("success") is True
     if said and ended and right and not _always_true(evidence):
         text = (
-            "The goal had ended before this call, and the node still counted it as active. When a goal has ended, "
-            "forget its handle."
+            "The goal had ended before this call, and the node still counted it as active. "
+            "When a goal has ended, discard its handle."
         )
         return Cause("wrong-response", text, evidence.place("get_result_async"))
     text = "Set success in the callback of the service, before the goal is cancelled: it is true if a goal was active."
@@ -150,7 +150,7 @@ def _other_success(evidence: Evidence, goals: list[Goal], call: Call) -> Cause:
 
 
 def _always_true(evidence: Evidence) -> bool:
-    """Return whether all assignments to an attribute `success` assign True. Also True if there are none."""
+    """Return whether every assignment to an attribute `success` assigns True, or there is no such assignment."""
     assigned = [node for module in evidence.code.modules for node in module.nodes if isinstance(node, ast.Assign)]
     values = [
         node.value

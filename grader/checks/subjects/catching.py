@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 NEARER_M = 0.5
 """A target counts as nearer than another one if the distances differ by at least this much (m).
 
-The turtle moves while the node decides.
+A smaller difference does not count, because the turtle moves while the node decides.
 """
 SLACK_M = 0.1
 """The additional distance that is allowed because a pose is slightly old when the node decides (m)."""
@@ -41,9 +41,9 @@ is late."""
 
 @dataclass(frozen=True, kw_only=True)
 class Catches:
-    """Requires that the node catches at least this number of targets, with the service that catches one target."""
+    """Requires that the node catches all targets, at least this number, with the service that catches one target."""
 
-    turtles: float = number(1, at_least=1, about="The minimum number of turtles to catch.")
+    turtles: float = number(1, at_least=1, about="The minimum number of turtles, all of which must be caught.")
     service: str = string(
         "the full name of a service",
         default="",
@@ -184,7 +184,7 @@ def _other_order(
 
 
 def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
-    """The node called the service for each target once, when turtle1 was near enough."""
+    """The node called the service only when turtle1 was near enough to the target, and not again and again."""
     recording = evidence.recording
     expected = f"The node calls {params.service} when the target is at most {params.reach_m:g} m away."
     until = activity.end_s(recording)
@@ -222,13 +222,13 @@ def _near(away_m: float, params: WithinReach) -> bool:
 
 
 def waits_for_pose(evidence: Evidence, _: NoParams) -> Finding:
-    """The node gave turtle1 no velocity before the first pose of turtle1."""
+    """The node sent turtle1 no velocity command before the first pose of turtle1."""
     first_s = evidence.trial.scenario.pose_from_s
     expected = "Until the first pose of turtle1 arrives, the turtle stands still."
     early = next((c for c in activity.commands(evidence.recording) if c.t_s < first_s and any(c.values)), None)
     if early is None:
         return passed("The turtle stood still until its first pose arrived.")
-    observed = f"The node drove the turtle at {early.t_s:.1f} s. The first pose of turtle1 came at {first_s:.1f} s."
+    observed = f"The node drove the turtle at {early.t_s:.1f} s. The first pose of turtle1 arrived at {first_s:.1f} s."
     text = "Before the first pose, the position of turtle1 is unknown. Store None until the first pose arrives."
     return failed(observed, expected, Cause("drives-before-pose", text, evidence.place("Pose", "publish")))
 
@@ -264,6 +264,6 @@ WAITS_FOR_POSE = Kind(
     "The node waits for the first pose",
     NoParams,
     waits_for_pose,
-    about="The node gives turtle1 no velocity before the first pose of turtle1, which the simulator publishes at "
-    "`pose_from_s`.",
+    about="The node sends turtle1 no velocity command before the first pose of turtle1, which the simulator publishes "
+    "at `pose_from_s`.",
 )

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from grader.trial.observed import Goal
 
 BEGIN_S = 0.1
-"""A log line may be about the previous goal until this time after a new goal was accepted (s)."""
+"""For this time after a new goal is accepted, a log line may still be about the previous goal (s)."""
 FRAME_S = 0.016
 LONG = 2.0
 """A goal counts if it lasts at least this many periods. A goal that lasts for a shorter time can end between two log
@@ -34,7 +34,10 @@ lines."""
 
 @dataclass(frozen=True, kw_only=True)
 class LogFeedback:
-    """While a goal is active, the node logs a line every `period_s` seconds. The angle in it is at most `lag_s` old."""
+    """While a goal is active, the node logs a line every `period_s` seconds.
+
+    The angle in the line is at most `lag_s` old.
+    """
 
     format: str = string("a log line with remaining in it", about="The format of a line with the number `remaining`.")
     period_s: float = number(0.5, above=0, about="The time between two lines.")
@@ -51,7 +54,7 @@ def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
         return no_goal(evidence, expected)
     goals = [goal for goal in sent if _ended_s(evidence, goal) - goal.t_s >= LONG * params.period_s]
     if not goals:
-        observed = f"No goal lasted {LONG * params.period_s:g} s, so no line was due."
+        observed = f"No goal lasted {LONG * params.period_s:g} s, so no line was required."
         return failed(observed, expected, Cause("feedback-not-logged", "", evidence.place("send_goal_async")))
     lines = student_log.in_format(evidence.recording, params.format)
     told = [

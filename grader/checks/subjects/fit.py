@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 IN_MODULE = ", in <module>"
 """The end of a traceback entry for code outside of functions."""
 SIGMAS = 6.0
-"""The maximum error of a right answer, in standard deviations of the best fit."""
+"""The maximum error of a right answer in addition to rounding, in standard deviations of the best fit."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +50,7 @@ class FitCall(OneCall):
 
 
 def fits_circle(evidence: Evidence, params: FitCall) -> Finding:
-    """The function returns the centre and the radius of the circle from which the points were drawn."""
+    """The function returns the centre and the radius of the circle on which the points lie."""
     called = evidence.called(params.call)
     arc = _arc(evidence, params.call)
     name = evidence.trial.calls.function.rpartition(":")[2]
@@ -147,7 +147,7 @@ def _why_raised(evidence: Evidence, crash: Crash, id_: str) -> Cause | None:
             return Cause("lists-refused", cause)
     if evidence.code.calls("lstsq") and (crash.error == "LinAlgError" or "to unpack" in crash.message):
         cause = (
-            "lstsq takes the matrix first and the right side second. lstsq returns four values: the solution, "
+            "lstsq takes the matrix first and the right-hand side second. lstsq returns four values: the solution, "
             "the residuals, the rank and the singular values."
         )
         return Cause("lstsq-result", cause)
@@ -155,7 +155,7 @@ def _why_raised(evidence: Evidence, crash: Crash, id_: str) -> Cause | None:
 
 
 def refuses(evidence: Evidence, params: OneCall) -> Finding:
-    """The function raises ValueError for points that do not determine a circle."""
+    """The function raises ValueError with a message for points that do not determine a circle."""
     called = evidence.called(params.call)
     name = evidence.trial.calls.function.rpartition(":")[2]
     x, y = next((each.x, each.y) for each in evidence.trial.calls.points if each.id == params.call)
@@ -216,5 +216,5 @@ REFUSES = Kind(
     "The function refuses points that determine no circle",
     OneCall,
     refuses,
-    about="The function raises ValueError when it is called with the points of a `[[trial.points]]`.",
+    about="The function raises ValueError with a message when it is called with the points of a `[[trial.points]]`.",
 )

@@ -113,7 +113,7 @@ def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expe
     why = Cause("log-format", "Compare the line letter by letter: capital letters, spaces and dots matter.")
     pattern = student_log.Format(params.format).pattern()
     if re.search(r"\{[\w.:]+\}", line):
-        text = "The line contains the braces themselves. Only an f-string replaces braces by a value."
+        text = "The line contains the braces themselves. Only an f-string replaces braces with a value."
         where = evidence.place(*LEVELS)
         why = Cause("log-numbers", text, where).fixed_by(at(where, '("', '(f"'))
     elif re.search(r"%[-+.\d]*[dfsi]|\{\}", line):
@@ -229,7 +229,7 @@ def _set_again(evidence: Evidence) -> Cause | None:
 
 
 def _begins_with(evidence: Evidence) -> set[float]:
-    """Return the numbers that the source assigns to names which it increases."""
+    """Return the numbers that the source assigns to the names that it also increases, as a counter does."""
     found = set()
     for module in evidence.code.modules:
         increased = {ast.unparse(node.target) for node in module.nodes if isinstance(node, ast.AugAssign)}

@@ -189,7 +189,7 @@ def _overwritten(evidence: Evidence) -> Cause | None:
 
 
 def _reads(step: ast.BinOp, begin: str) -> bool:
-    """Return whether a subtraction uses the attribute `begin`, or any attribute of `begin` if it ends with a dot."""
+    """Return whether a subtraction uses the attribute `begin`, or an attribute of it if `begin` ends with a dot."""
     names = [dotted(node) or "" for node in ast.walk(step) if isinstance(node, ast.Attribute)]
     return any(name.startswith(begin) if begin.endswith(".") else name == begin for name in names)
 

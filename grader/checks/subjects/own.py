@@ -1,4 +1,4 @@
-"""Checks of a student's own numbers, from a file in the package, and of a circle that is driven with them."""
+"""Checks of the student's own numbers, which are in a file of the package, and of the movement that they require."""
 
 from __future__ import annotations
 

@@ -119,7 +119,7 @@ def _class_declared(evidence: Evidence, declared: Iterable[str], expected: str) 
 def _imported(evidence: Evidence) -> dict[str, Where]:
     """Return the ROS 2 packages that the nodes of the exercise import, with the line of the first import.
 
-    The result does not contain a name that is almost the name of a known package: such a name is a typing error. A
+    The result does not contain a name that is almost the name of a known package: such a name is a typo. A
     package without the imported names is left out too, because the mistake is in the import, not in package.xml.
     """
     found: dict[str, Where] = {}

@@ -32,7 +32,7 @@ NOT_RETURNED = "Callback returned an invalid type"
 OTHER_TYPE = "Wrong parameter type"
 READ_ONLY = "Trying to set a read-only parameter"
 OUT_OF_RANGE = re.compile(r"Parameter .* out of range|The parameter value for .* valid step")
-"""The reasons of rclpy itself for refusing a value. Every other reason comes from the student's callback."""
+"""The reasons that rclpy itself gives when it refuses a value. Every other reason comes from the student's callback."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +53,7 @@ def declares(evidence: Evidence, params: Declares) -> Finding:
     service = f"/{evidence.trial.node}/describe_parameters"
     call = next((each for each in calls_of(evidence) if each.by_trial and each.service == service), None)
     if call is None or call.response is None:
-        return _unanswered(evidence, f"The node did not answer when the trial asked for {name}.", expected, where)
+        return _unanswered(evidence, f"The node did not respond when the trial requested {name}.", expected, where)
     found = _described(call, name)
     if found is None:
         return _undeclared(evidence, name, expected)
@@ -98,7 +98,7 @@ def sets_parameter(evidence: Evidence, params: SetsParameter) -> Finding:
     call = next((each for each in set_calls(evidence) if _sets(each, params)), None)
     result = _result(call)
     if result is None:
-        return _unanswered(evidence, f"The node did not answer when {name} was set.", expected, where)
+        return _unanswered(evidence, f"The node did not respond when {name} was set.", expected, where)
     successful, reason = result["successful"], result["reason"].strip()
     if params.answer == "accepted" and not successful:
         return _refused(
@@ -123,8 +123,8 @@ def _unanswered(evidence: Evidence, observed: str, expected: str, where: Where |
     if crash is not None:
         return crash_finding(evidence, crash, ended, expected)
     text = (
-        "A node answers while rclpy.spin runs. Something blocks the node's callbacks, or the node's parameter "
-        "services are turned off."
+        "A node responds only while rclpy.spin is running. Something blocks the node's callbacks, or the node's "
+        "parameter services are turned off."
     )
     return failed(f"{observed} {ended}".strip(), expected, Cause("no-response", "" if ended else text, where))
 
@@ -197,12 +197,13 @@ DECLARES = Kind(
     "The parameter has a description and a range",
     Declares,
     declares,
-    about="The node describes a parameter when a `[[trial.call]]` of `/NODE/describe_parameters` requests it.",
+    about="When a `[[trial.call]]` of `/NODE/describe_parameters` requests it, the node describes a "
+    "float with a description and the given range.",
 )
 SETS = Kind(
     "sets_parameter",
     "trial",
-    "The node answers when a parameter is set",
+    "The node responds when a parameter is set",
     SetsParameter,
     sets_parameter,
     about="The node accepts a `[[trial.set]]`, or refuses it with a reason.",

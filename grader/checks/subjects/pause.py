@@ -31,7 +31,7 @@ BEFORE_S = 1.0
 class Pause:
     """From `from_s` to `until_s` (s) the turtle stands still.
 
-    The turtle gets `within_s` (s) to stop, and the same time to drive on after the pause.
+    The turtle gets `within_s` (s) to stop, and the same time to start driving again after the pause.
     """
 
     from_s: float = number(at_least=0, about="The start of the pause, on the trial's clock.")

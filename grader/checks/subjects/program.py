@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from grader.exercise.call_inputs import BagInput
 
 POWERS = ("10 ** 9", "10 ** -9")
-"""The number of nanoseconds in a second, and its inverse, as powers."""
+"""The number of nanoseconds in a second and its inverse, written as powers of ten."""
 HUNDREDTH = 0.0101
-"""A printed value has two decimal places, and may be truncated instead of rounded."""
+"""The maximum error of a printed value, which has two decimal places and may be truncated instead of rounded."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,7 +91,10 @@ def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
         observed = f"For a bag without poses, {name} ended with {crash.observed}."
         return failed(observed, expected, Cause("program-traceback", cause, crash.where))
     if called.ended == "exit 0":
-        cause = "A script that calls the program sees only the exit code. sys.exit with a string ends with 1."
+        cause = (
+            "A script that calls the program sees only the exit code. If you call sys.exit with a string, the exit "
+            "code is 1."
+        )
         observed = f"For a bag without poses, {name} ended with exit code 0."
         return failed(observed, expected, Cause("exit-code", cause, evidence.place("exit", "print")))
     if not called.ended.startswith("exit"):
@@ -100,7 +103,7 @@ def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
     printed = (called.stderr.strip() or called.stdout.strip()).splitlines()
     if not printed:
         observed = f"For a bag without poses, {name} printed no message ({called.ended})."
-        cause = "sys.exit with a string prints the string."
+        cause = "If you call sys.exit with a string, it prints the string."
         return failed(observed, expected, Cause("exit-code", cause, evidence.place("exit")))
     return passed(f'{name} says "{shorten(printed[-1], 80)}"')
 

@@ -25,7 +25,10 @@ STILL_M = 0.05
 MOVES_M = 1e-4
 """The minimum distance between two poses of a turtle that moves."""
 FASTEST_HZ = 110.0
-"""One turtlesim publishes 62.5 poses per second. With more poses than this, more than one turtlesim published."""
+"""One turtlesim publishes 62.5 poses per second.
+
+If the rate of the poses is higher than this, more than one turtlesim published them.
+"""
 SHORTEST_S = 2.0
 ROUND_M = 0.05
 """The maximum deviation of the poses from the circle (root mean square)."""

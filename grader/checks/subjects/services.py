@@ -34,7 +34,7 @@ CLOSE = 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class CallsService:
-    """A call to a simulator service with these fields. `after` names a service that must be called earlier."""
+    """A call to a simulator service with these fields. `after` is the name of a service that must be called first."""
 
     service: str = string("the full name of a service", start="/", about="The name of the service.")
     fields: tuple[tuple[str, Any], ...] = table(about="The relevant fields of the request, with their values.")
@@ -115,9 +115,9 @@ class AnswersCall:
 
 
 def answers_call(evidence: Evidence, params: AnswersCall) -> Finding:
-    """The node answered the trial's call in time, with these fields."""
+    """The node responded to the trial's call in time, with these fields."""
     wanted = ", ".join(f"{name}={_value(value)}" for name, value in params.fields)
-    expected = f"The node answers a call to {params.service} within {params.within_s:g} s, with {wanted}."
+    expected = f"The node responds to a call to {params.service} within {params.within_s:g} s, with {wanted}."
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     call = calls[int(params.nth) - 1] if len(calls) >= params.nth else None
     if call is None or call.missing or call.response is None or call.answered_s is None:
@@ -133,7 +133,7 @@ def answers_call(evidence: Evidence, params: AnswersCall) -> Finding:
         text = "The callback of a service fills in the fields of its second argument and returns this argument."
         cause = Cause("wrong-response", text, evidence.place("create_service"))
         return failed(f"The response has {seen}.", expected, cause)
-    return passed(f"The node answered the call to {params.service}.", near_edge=took.near(took_s))
+    return passed(f"The node responded to the call to {params.service}.", near_edge=took.near(took_s))
 
 
 def no_response(evidence: Evidence, service: str, type_: str, call: Call | None, expected: str) -> Finding:
@@ -147,13 +147,13 @@ def no_response(evidence: Evidence, service: str, type_: str, call: Call | None,
         observed = f"{'The node' if ended else 'The trial'} had ended before the call."
         return failed(observed, expected, Cause("no-response", where=where))
     if not call.missing and ended:
-        observed = f"The node did not answer the call to {service}. {ended}"
+        observed = f"The node did not respond to the call to {service}. {ended}"
         return failed(observed, expected, Cause("no-response", where=where))
     if not call.missing:
         cause = waits_in_callback(evidence) or Cause(
             "no-response", "Something in the node blocks its callbacks.", where
         )
-        return failed(f"The node received the call to {service} and never answered.", expected, cause)
+        return failed(f"The node received the call to {service} and never responded.", expected, cause)
     return _missing(evidence, service, type_, expected)
 
 
@@ -225,8 +225,8 @@ CALLS = Kind(
 ANSWERS = Kind(
     "answers_call",
     "trial",
-    "The node answers",
+    "The node responds",
     AnswersCall,
     answers_call,
-    about="The node answers a `[[trial.call]]` in time, with certain values in the response.",
+    about="The node responds to a `[[trial.call]]` in time, with certain values in the response.",
 )

@@ -146,8 +146,8 @@ def _at(place: tuple[float, float]) -> str:
 def removes(evidence: Evidence, params: Removes) -> Finding:
     """Exactly the turtles that the trial caught were removed. Calls with unknown names changed nothing."""
     expected = (
-        f"When {params.service} is called, the node removes the turtle that the request names, "
-        f"and no other turtle, with /kill."
+        f"When {params.service} is called, the node removes the turtle with the name in the request, and no "
+        "other turtle, with /kill."
     )
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     recording = evidence.recording
@@ -189,7 +189,7 @@ def _not_killed(
     others = [str(kill.request["name"]) for kill in kills if kill.request["name"] != name]
     if others:
         other = shorten(others[0])
-        observed = f"{name} was caught, and the node asked /kill to remove {other or 'a turtle without a name'}."
+        observed = f"{name} was caught, but the node called /kill for {other or 'a turtle without a name'}."
         text = "The name to remove is request.name, the field of the request that the callback receives."
         return failed(observed, expected, Cause("not-killed", text, where))
     heard = announcements(evidence.recording, topic)
@@ -198,7 +198,7 @@ def _not_killed(
         return failed(f"{name} was caught, but it still exists.", expected, Cause("target-unannounced", text, where))
     before = [message for message in heard if message.t_s < caught_s]
     if before and name not in before[-1].names:
-        text = f"The message before the call did not name {name}. Was {name} removed from the list too early?"
+        text = f"The message before the call did not contain {name}. Was {name} removed from the list too early?"
         return failed(f"{name} was caught, but it still exists.", expected, Cause("target-unannounced", text, where))
     killed = [call for call in calls_of(evidence) if call.service == "/kill" and call.t_s < caught_s]
     if killed:
@@ -243,5 +243,5 @@ REMOVES = Kind(
     "The node removes caught turtles",
     Removes,
     removes,
-    about="The node removes each turtle that a `[[trial.call]]` names in its field `name`, and no other turtle.",
+    about="The node removes each turtle whose name is in the field `name` of a `[[trial.call]]`, and no other turtle.",
 )

@@ -164,7 +164,7 @@ def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -
 
 
 def _drives_on(evidence: Evidence, params: Square, sides: Sides, sign: float, expected: str) -> Finding | None:
-    """Return a failed finding if more than one final corner follows the fourth side, else None."""
+    """Return a failed finding unless the turtle stops after the fourth side, or after one more corner."""
     where = evidence.place("publish")
     turned = math.degrees(sign * sides.more_rad)
     last = (Band.around(0.0, params.corner_tolerance_deg), Band.around(90.0, params.corner_tolerance_deg))

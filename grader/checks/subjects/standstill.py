@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 REST_S = 0.5
-"""The turtle must stand still for this long (s) at the end."""
+"""The turtle must stand still for at least this time at the end (s)."""
 STILL = 1e-3
 """Below this speed (m/s, rad/s), a turtle stands still."""
 ZEROS = "Publish a command with all values 0, and keep publishing it or stop the timer."

@@ -144,7 +144,8 @@ STAR = Kind(
     Star,
     star,
     about=(
-        "The turtle drives straight sides, and action goals turn it between the sides. It stops at its start position."
+        "The turtle drives straight sides, and action goals turn it between the sides. The turtle stops at its "
+        "start position."
     ),
     drives=True,
     requested=requested_star,

@@ -135,7 +135,7 @@ def steady(evidence: Evidence, params: Steady) -> Finding:
         return failed("The tests repeat a loop for a fixed time.", expected, loop)
     use = _first_use(code, frozenset(params.random))
     if use is not None:
-        cause = "A test that fails only sometimes cannot be repeated. Choose the values yourself."
+        cause = "A failure that occurs only sometimes is hard to reproduce. Choose the values yourself."
         observed = f"The tests call {shorten(use.written, 60)}."
         return failed(observed, expected, Cause("by-chance", cause, use.where))
     return passed(expected)
@@ -182,7 +182,8 @@ STEADY = Kind(
     "The tests do not depend on chance",
     Steady,
     steady,
-    about="The test files call none of the given functions, under any name.",
+    about="The test files call none of the given functions, under any name, and contain no loop that runs for "
+    "a fixed time.",
 )
 ASSERTS = Kind(
     "tests_assert",

@@ -1,4 +1,4 @@
-"""Checks of a topic: only messages of the right type arrive on the topic."""
+"""Checks of a topic: the node publishes or subscribes with the right type, and no other type is published."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ def test_each_trial_comes_back_as_it_was(tmp_path: Path) -> None:
 
 
 def test_what_was_tried_comes_back_so_that_a_report_can_tell_it_again(tmp_path: Path) -> None:
-    tries = Tries((Try("rate", "timer-period", "passes", "-1\n+2"),), behind=1, stopped="there was no time to try more")
+    tries = Tries((Try("rate", "timer-period", "passes", "-1\n+2"),), behind=1, stopped="at most 6 fixes are tested")
     recording_format.save(tmp_path / "kept", replace(some_trials(), tries=tries), "none", ())
     assert recording_format.load(tmp_path / "kept", lambda _: CHALLENGES).evidence.tries == tries
 

@@ -71,7 +71,7 @@ def test_a_text_without_markers_stays_as_it_is() -> None:
         ("# BEGIN SOLUTION\n# END SOLUTION\n# BEGIN STARTER\n# a\n", 3, "BEGIN STARTER has no END STARTER"),
         ("a\n# END SOLUTION\n", 2, "END SOLUTION without a BEGIN SOLUTION"),
         ("# END STARTER\n", 1, "END STARTER without a BEGIN STARTER"),
-        ("# BEGIN SOLUTION\n# BEGIN SOLUTION\n", 2, "BEGIN SOLUTION inside the SOLUTION block that begins at line 1"),
+        ("# BEGIN SOLUTION\n# BEGIN SOLUTION\n", 2, "BEGIN SOLUTION inside the SOLUTION block that begins on line 1"),
         ("# BEGIN SOLUTION\n# BEGIN STARTER\n", 2, "BEGIN STARTER inside the SOLUTION block"),
         ("# BEGIN SOLUTION\n# END STARTER\n", 2, "END STARTER without a BEGIN STARTER"),
         ("# BEGIN STARTER\n# a\n# END STARTER\n", 1, "right below an END SOLUTION"),

@@ -53,7 +53,7 @@ def test_a_decorator_and_its_function_start_at_the_same_column(above: str, *, de
     where, words = said(source)
     assert where == f"a.py:{at}"
     number = source[: source.index("@")].count("\n") + 1
-    assert (f"The decorator in line {number} belongs to line {at}" in words) == decorator
+    assert (f"The decorator on line {number} belongs to line {at}" in words) == decorator
 
 
 def test_a_block_without_a_decorator_says_nothing_about_one() -> None:

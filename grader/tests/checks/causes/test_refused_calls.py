@@ -107,8 +107,8 @@ def test_too_many_arguments_are_counted_without_self(passed: str, most: int, wor
 @pytest.mark.parametrize(
     ("lines", "more"),
     [
-        ("rclpy.init()\nrclpy.init()", " rclpy.init is called in lines 2 and 3."),
-        ("rclpy.init(); rclpy.init()", " rclpy.init is called twice in line 2."),
+        ("rclpy.init()\nrclpy.init()", " rclpy.init is called on lines 2 and 3."),
+        ("rclpy.init(); rclpy.init()", " rclpy.init is called twice on line 2."),
         ("rclpy.init()", ""),
     ],
 )

@@ -74,7 +74,7 @@ def cause(line: str, error: str) -> str:
             TOO_FEW.format("drive", "step"),
         ),
         (
-            "turn does not use its parameter 'step', and the call in line 10 passes no value for it.",
+            "turn does not use its parameter 'step', and the call on line 10 passes no value for it.",
             "self.turn()",
             "self.drive()",
             TOO_FEW.format("turn", "step"),
@@ -196,7 +196,7 @@ def test_a_function_without_return_that_creates_the_node_is_told(made: str, *, f
     source += "rclpy.spin(node)  # crashed\n"
     given = reported(source, NO_ATTRIBUTE.format("'NoneType' object", "executor")).cause
     assert given.startswith("rclpy.spin was called with None instead of a node.")
-    assert ("make has no return, so it returns None." in given) == found
+    assert ("make has no return statement with a value, so it returns None." in given) == found
 
 
 @pytest.mark.parametrize(
@@ -228,7 +228,7 @@ def test_a_function_without_return_whose_value_is_published_is_told(body: str, *
     given = reported(source, error)
     assert given.line == to_look_at(source)
     assert "This publisher sends a Twist, but publish was called with None." in given.cause
-    assert ("make has no return, so it returns None." in given.cause) == found
+    assert ("make has no return statement with a value, so it returns None." in given.cause) == found
 
 
 @pytest.mark.parametrize(("callback", "found"), [("Driver.stop", True), ("self.stop", False)])

@@ -155,7 +155,7 @@ def test_what_another_line_causes_is_explained_there() -> None:
     assert "has no body" not in unreadable_finding("a.py", Unreadable(empty, 2), data).cause
     other = "closing parenthesis ']' does not match opening parenthesis '(' on line 1"
     found = unreadable_finding("a.py", Unreadable(other, 2), b"f(1,\n]\n")
-    assert (str(found.where), "The bracket ( of line 1 is still open" in found.cause) == ("a.py:1", True)
+    assert (str(found.where), "The bracket ( from line 1 is still open" in found.cause) == ("a.py:1", True)
     same = "closing parenthesis ']' does not match opening parenthesis '('"
     assert "is still open" not in unreadable_finding("a.py", Unreadable(same, 2), b"f(1,\n]\n").cause
     conflict = b"<<<<<<< HEAD\nx = 1\n"
@@ -167,10 +167,10 @@ def test_what_another_line_causes_is_explained_there() -> None:
 @pytest.mark.parametrize(
     ("line", "words"),
     [
-        ("if x && y:", "write and, not &&."),
+        ("if x && y:", "is written as the word and."),
         ("if x and y y:", None),
         ('if x y == "&&":', None),
-        ("while x || y || z:", "write or, not ||."),
+        ("while x || y || z:", "is written as the word or."),
         ("if x is not None;", "This line ends with a semicolon."),
         ("def send(self),", "This line ends with a comma."),
         ("except (A, B).", "This line ends with a dot."),
@@ -183,5 +183,7 @@ def test_a_sign_is_blamed_if_python_can_read_the_line_without_it(line: str, word
     unreadable = read_module("a.py", source.encode()).unreadable
     assert unreadable is not None
     found = unreadable_finding("a.py", unreadable, source.encode())
-    assert any(each in found.cause for each in ("write and", "write or", "ends with a ")) == (words is not None)
+    assert any(each in found.cause for each in ("as the word and", "as the word or", "ends with a ")) == (
+        words is not None
+    )
     assert words is None or (words in found.cause and found.fix)

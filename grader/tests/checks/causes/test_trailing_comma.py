@@ -59,7 +59,7 @@ def test_the_comma_after_the_value_is_named_where_it_is(line: str, value: str, e
     found = reported(source, error)
     at = line_with(LOOK, source)
     assert (found.diagnosis, found.line) == ("trailing-comma", at)
-    assert found.cause == f"The comma after the value in line {at} makes {name} a tuple with one value."
+    assert found.cause == f"The comma after the value on line {at} makes {name} a tuple with one value."
     assert fixed(source, error) == source.replace(",  # look", "  # look")
 
 
@@ -80,7 +80,7 @@ def test_a_tuple_that_is_meant_or_is_elsewhere_is_not_blamed(line: str, value: s
 def test_the_line_of_the_crash_may_have_the_comma_itself() -> None:
     source = DRIVER.format(line="msg.linear.x = 2.0,")
     found = reported(source, FIELD)
-    assert found.cause.startswith("The comma after the value in line 18 makes msg.linear.x a tuple")
+    assert found.cause.startswith("The comma after the value on line 18 makes msg.linear.x a tuple")
     assert "decimal" not in found.cause
     assert fixed(source, FIELD) == source.replace("2.0,", "2.0")
     assert "Write a dot, not a comma" in reported(DRIVER.format(line="msg.linear.x = 2,0"), FIELD).cause

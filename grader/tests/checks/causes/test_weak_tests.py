@@ -87,7 +87,7 @@ def test_only_a_test_that_cannot_end_earlier_always_fails(body: str, *, found: b
 def test_an_except_that_hides_a_failure_is_found(handler: str, after: str, *, found: bool) -> None:
     cause = swallowed(code(TRY.format(handler=handler) + after))
     assert (cause is not None) == found
-    words = "This except catches the AssertionError, so pytest does not notice the failure."
+    words = "This except clause catches the AssertionError, so pytest does not notice the failure."
     assert cause is None or (cause.text, cause.where and cause.where.line) == (words, 4)
 
 

@@ -39,7 +39,7 @@ from grader.tests.checks.crashes import DRIVER, reported, to_look_at
             "The class Kill_Request has no constant or method with that name.",
         ),
         ("'Metaclass_Twist' object has no attribute 'linear'", "class-for-object", "Twist is a class."),
-        ("'function' object has no attribute 'now'", "not-called", "the parentheses are missing"),
+        ("'function' object has no attribute 'now'", "not-called", "the parentheses after its name are missing"),
         (
             "'Twist' object has no attribute 'liner'",
             "message-field",
@@ -195,7 +195,7 @@ NO_INIT = "class Driver(Node):\n    def send(self):\n        print(self._x)  # c
 @pytest.mark.parametrize(
     ("source", "name", "diagnosis", "words"),
     [
-        (TOO_EARLY, "count", "attribute-too-early", "self.count is set in line 5,"),
+        (TOO_EARLY, "count", "attribute-too-early", "self.count is assigned on line 5,"),
         (OUTSIDE, "send", "method-outside-class", "send is outside the class."),
         (INSIDE, "send", "method-in-method", "send is indented too far"),
         (ELSEWHERE, "send", "attribute-missing", "Nothing sets self.send,"),
@@ -206,7 +206,7 @@ NO_INIT = "class Driver(Node):\n    def send(self):\n        print(self._x)  # c
         (ELSEWHERE, "create_timmer", "attribute-misspelt", "A similar name exists: create_timer."),
         (TOO_EARLY, "agian", "attribute-misspelt", "A similar name exists: again."),
         (TOO_EARLY, "conut", "attribute-misspelt", "A similar name exists: count."),
-        (LOCAL, "speed", "missing-self", "Line 4 sets speed without self"),
+        (LOCAL, "speed", "missing-self", "Line 4 assigns speed without self"),
         (COMPARED, "speed", "equals", "== compares two values."),
         (BASE, "start_agian", "attribute-misspelt", "A similar name exists: start_again."),
         (TOO_EARLY, "velocity", "attribute-missing", "Nothing sets self.velocity,"),

@@ -217,7 +217,7 @@ def test_what_was_spun_is_named() -> None:
 def test_a_value_that_hides_a_method_is_found() -> None:
     found = reported(HIDES, "TypeError: 'int' object is not callable")
     assert (found.diagnosis, found.line) == ("name-used-twice", to_look_at(HIDES))
-    assert found.cause == "self.send is set in line 4, which hides the method of the same name."
+    assert found.cause == "self.send is assigned on line 4, which hides the method of the same name."
 
 
 @pytest.mark.parametrize(
@@ -243,7 +243,7 @@ def test_a_second_init_is_reported_with_all_its_lines() -> None:
     assert reported(once, error).cause == "Call rclpy.init only once."
     found = reported(f"rclpy.init()\nrclpy.spin(node)\n{once}", error)
     assert found.diagnosis == "init-twice"
-    assert found.cause.endswith(" rclpy.init is called in lines 1 and 3.")
+    assert found.cause.endswith(" rclpy.init is called on lines 1 and 3.")
 
 
 NOT_CALLABLE = "RuntimeError: callback should be either be callable with one argument or two"

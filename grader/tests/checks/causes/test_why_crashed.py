@@ -80,7 +80,7 @@ def test_an_argument_that_the_program_requires_is_named(said: str, exit_code: in
     crash = crash_of(given)
     assert crash is not None
     cause = why_crashed(given, crash)
-    words = "The program ends without the argument --speed, and the grader starts it without arguments."
+    words = "The program needs the argument --speed, but the grader starts it without arguments."
     assert (words in cause.text) == found
     assert (cause.where is not None) == found
 

@@ -32,7 +32,7 @@ def ended(source: str, t_s: float = 3.0) -> tuple[str, str, int | None]:
 @pytest.mark.parametrize(
     ("body", "diagnosis", "words"),
     [
-        ("rclpy.spin  # look", "not-called", "This line names rclpy.spin but does not call it"),
+        ("rclpy.spin  # look", "not-called", "This line mentions rclpy.spin but does not call it"),
         ("return  # look\n    rclpy.spin(Driver())", "ends-at-once", "main returns here, before it calls rclpy.spin."),
         (
             "pass\n\nif __name__ == '__main__':  # look\n    rclpy.spin(Driver())",

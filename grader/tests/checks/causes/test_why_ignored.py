@@ -32,10 +32,10 @@ class Asker(Node):
             "the program ignores SIGINT",
         ),
         ("    signal.signal(signal.SIGTERM, signal.SIG_IGN)\n    rclpy.spin(node)  # look", ""),
-        (LOOP.format(caught="BaseException", look="  # look", then="pass"), "then the loop in line 6 goes on."),
+        (LOOP.format(caught="BaseException", look="  # look", then="pass"), "then the loop on line 6 continues."),
         (
             LOOP.format(caught="(KeyboardInterrupt, OSError)", look="  # look", then="pass"),
-            "This except catches Ctrl-C",
+            "This except clause catches Ctrl-C",
         ),
         (
             LOOP.format(caught="KeyboardInterrupt", look="", then="break").replace("spin(node)", "spin(node)  # look"),

@@ -110,7 +110,7 @@ def test_an_unbound_name_in_other_words_is_local_all_the_same() -> None:
         ("import rclpy\nspin(node)  # crashed\n", "spin", "module-prefix", "Write rclpy.spin."),
         ("spin(node)  # crashed\n", "spin", "name-undefined", "Nothing defines this name"),
         ("x = true  # crashed\n", "true", "name-misspelt", "In Python, the spelling is True."),
-        ("spin(node)  # crashed\nnode = 1\n", "node", "name-too-early", "in line 2, after this line"),
+        ("spin(node)  # crashed\nnode = 1\n", "node", "name-too-early", "on line 2, after this line"),
         (
             "def a():\n    node = 1\ndef b():\n    spin(node)  # crashed\n",
             "node",
@@ -130,7 +130,7 @@ def test_a_name_that_stands_elsewhere_is_reported_where(source: str, name: str, 
 @pytest.mark.parametrize(
     ("source", "name", "diagnosis", "words"),
     [
-        ("def main():\n    spin(node)  # crashed\n    node = 1\n", "node", "name-too-early", "in line 3, after this"),
+        ("def main():\n    spin(node)  # crashed\n    node = 1\n", "node", "name-too-early", "on line 3, after this"),
         (
             "import time\ndef main():\n    print(time.time())  # crashed\n    time = 3  # look\n",
             "time",

@@ -38,7 +38,7 @@ def said(source: str) -> tuple[str, int | None] | None:
 @pytest.mark.parametrize(
     ("first", "kept", "guard", "words"),
     [
-        (FIRST, "pose = pose  # look", RETURN, "sets pose without self, so self.pose stays None."),
+        (FIRST, "pose = pose  # look", RETURN, "assigns pose without self, so self.pose stays None."),
         (FIRST, "pose = pose  # look", "if not self.pose: return", "so self.pose stays None."),
         (f"{FIRST}  # look", "last = pose", RETURN, NEVER),
         (f"{FIRST}  # look", "pass", "if self.pose is None or self.ends: return", NEVER),

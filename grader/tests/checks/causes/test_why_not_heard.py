@@ -64,7 +64,7 @@ def cause(message: str, events: NodeEvents | None, source: str = BENCH) -> str:
             OF_DAY,
             STOOD,
             "bench-wall-time test/test_it.py:8",
-            "The node's clock shows the time of day, so set_",
+            "The node's clock follows the system time, so set_",
         ),
         (VALUE, OF_DAY, RIGHT, "bench-wall-time test/test_it.py:8", "Set the node's parameter use_sim_time to True"),
         (

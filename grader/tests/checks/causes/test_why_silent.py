@@ -51,7 +51,12 @@ def silence(source: str) -> tuple[str, str, int | None] | None:
         ("self.create_timer(500, self.send)  # look", "pass", "timer-milliseconds", "The timer waits 500 s"),
         ("self.create_timer(10, self.send)  # look", "pass", "timer-milliseconds", "The timer waits 10 s"),
         ("self.create_timer(0.5, self.send())  # look", "pass", "callback-called", "create_timer needs the method"),
-        ("self.create_timer(0.5, lambda: self.send)  # look", "pass", "not-called", "The lambda names self.send but"),
+        (
+            "self.create_timer(0.5, lambda: self.send)  # look",
+            "pass",
+            "not-called",
+            "The lambda mentions self.send but",
+        ),
         ("while True: self.send()  # look", "pass", "blocks-in-init", "__init__ loops forever"),
         ("while 1: self.send()  # look", "pass", "blocks-in-init", "__init__ loops forever"),
         ("while rclpy.ok(): self.send()  # look", "pass", "blocks-in-init", "__init__ loops forever"),
@@ -234,7 +239,7 @@ def test_a_program_that_never_spins_is_told_so() -> None:
 def test_a_return_before_the_message_is_found(sent: str, *, found: bool) -> None:
     cause = returns_before(given(NODE.format(made=TIMER, sent=sent)), "publish")
     assert (cause is not None) == found
-    assert cause is None or cause.text == "send returns in line 8, before it calls publish."
+    assert cause is None or cause.text == "send returns on line 8, before it calls publish."
 
 
 @pytest.mark.parametrize("body", ["self.send()", "self.send() or self.send", "(self.send, None)"])

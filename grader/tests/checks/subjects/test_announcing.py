@@ -51,7 +51,7 @@ def test_a_turtle_that_was_caught_is_no_longer_announced() -> None:
     every = tuple(said(1.0 + 0.5 * number, " ".join(PLACES)) for number in range(18))
     finding = of_announces(given(messages=every))
     assert finding.diagnosis == "still-announced"
-    assert "names target2, which no longer exists." in told(finding)
+    assert "contains target2, which no longer exists." in told(finding)
     assert "which no longer exists" not in told(of_announces(given()))
 
 
@@ -59,7 +59,7 @@ def test_a_turtle_that_does_not_exist_yet_is_not_announced() -> None:
     messages = tuple(said(0.25 + 0.5 * number, names_at(0.25 + 0.5 * number)) for number in range(20))
     finding = of_announces(given(messages=messages))
     assert finding.diagnosis == "still-announced"
-    assert finding.observed == "The message at 0.2 s names target1, which existed only from 0.5 s on."
+    assert finding.observed == "The message at 0.2 s contains target1, which existed only from 0.5 s on."
     assert "A turtle exists when the response from /spawn arrives." in told(finding)
     assert "which existed only from" not in told(of_announces(given()))
 
@@ -129,7 +129,7 @@ NEVER_NAMED = tuple(said(t_s, "target1") for t_s in TIMES)
             with_one("mouse"),
         ),
         (
-            "The message at 2.1 s names target9, but no such turtle exists.",
+            "The message at 2.1 s contains target9, but no such turtle exists.",
             with_one("target1 target2 target3 target9"),
             with_one("target1 target2 target3"),
         ),
@@ -139,13 +139,13 @@ NEVER_NAMED = tuple(said(t_s, "target1") for t_s in TIMES)
             with_one("target1 target2"),
         ),
         (
-            "The message at 2.1 s does not name target3.",
+            "The message at 2.1 s does not contain target3.",
             with_one("target1 target2"),
             with_one("target1 target2 target3"),
         ),
         ("Add the name of a turtle to the list in the callback", NEVER_NAMED, with_one("target1 target2")),
         (
-            "An earlier message named target3, so the node has removed the name.",
+            "An earlier message contained target3, so the node has removed the name.",
             with_one("target1 target2"),
             NEVER_NAMED,
         ),

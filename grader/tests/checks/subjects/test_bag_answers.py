@@ -63,7 +63,7 @@ def about(check: str, answer: str) -> str:
         ("n messages have only n - 1 intervals.", "rate", '"62.57 Hz"', '"62.39 Hz"'),
         ("This is the diameter, twice the radius.", "radius", '"2.2 m"', '"3.3 m"'),
         (
-            "`ros2 bag info` shows the right value. Is the answer about an earlier bag?",
+            "`ros2 bag info` shows the right value. Does the answer come from an earlier bag?",
             "duration",
             '"13 s"',
             '"11.1 s"',

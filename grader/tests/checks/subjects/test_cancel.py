@@ -152,7 +152,7 @@ def test_a_sentence_about_success_is_true(goals: tuple[Goal, ...]) -> None:
 
 
 def test_a_response_that_never_came_says_nothing_about_a_goal() -> None:
-    assert "The node received the call to /stop and never answered." in about_success(None, ACTIVE)
+    assert "The node received the call to /stop and never responded." in about_success(None, ACTIVE)
     assert found(SAYS_WHETHER_ACTIVE, given(ACTIVE), service="/stop").diagnosis == "no-response"
 
 
@@ -164,7 +164,7 @@ def test_a_goal_that_has_ended_and_still_counts_is_told(value: str, ended_s: flo
     source = CLIENT.replace("        self.timer", f"        response.success = {value}\n        self.timer", 1)
     made = recording([], goals=(goal(1.0, 80.0, ended_s),), calls=(stop(3.0), stop(3.4)))
     reported = told(success_of(evidence(made, submission({NODE_FILE: source}))))
-    assert ("the node still counted it as active. When a goal has ended, forget its handle." in reported) == told_so
+    assert ("the node still counted it as active. When a goal has ended, discard its handle." in reported) == told_so
     assert ("but success was true." in reported) == (ended_s < 3.4)
 
 

@@ -287,7 +287,7 @@ def test_turtle1_stands_still_until_its_first_pose(commands: list[tuple[float, .
     reported, fails = told(finding), early_s is not None
     assert diagnosis(finding) == ("drives-before-pose" if fails else None)
     assert ("The turtle stood still until its first pose arrived." in reported) == (not fails)
-    drove = f"The node drove the turtle at {early_s} s. The first pose of turtle1 came at 2.0 s."
+    drove = f"The node drove the turtle at {early_s} s. The first pose of turtle1 arrived at 2.0 s."
     assert (drove in reported) == fails
     assert ("Until the first pose of turtle1 arrives, the turtle stands still." in reported) == fails
     unknown = "Before the first pose, the position of turtle1 is unknown. Store None until the first pose arrives."

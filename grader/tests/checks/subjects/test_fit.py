@@ -156,7 +156,7 @@ TOO_MANY = raised("whole", "ValueError: too many values to unpack (expected 3)")
             raised("whole", "ZeroDivisionError: division by zero"),
         ),
         (
-            "lstsq takes the matrix first and the right side second. lstsq returns four values",
+            "lstsq takes the matrix first and the right-hand side second. lstsq returns four values",
             TOO_MANY,
             raised("whole", "ZeroDivisionError: division by zero"),
         ),

@@ -98,8 +98,8 @@ BLOCKED = "Something blocks the node's callbacks, or the node's parameter servic
         ("The parameter radius is a float with a description and the range", described(description=""), described()),
         ("The node has no parameter radius.", described(type=0), SILENT),
         ("declare_parameter declares a parameter, with its default value", described(type=0), described(type=2)),
-        ("The node did not answer when the trial asked for radius.", SILENT, described(type=0)),
-        ("The node did not answer when the trial asked for radius.", None, described(type=0)),
+        ("The node did not respond when the trial requested radius.", SILENT, described(type=0)),
+        ("The node did not respond when the trial requested radius.", None, described(type=0)),
         ("The parameter radius is not a float.", described(type=2), described(description="")),
         (
             "A default value without a decimal point makes the parameter an integer",
@@ -137,8 +137,8 @@ UNSET = was_set(2.0, successful=True)
     ("words", "true", "near"),
     [
         ("The node accepted radius = 1.0.", was_set(1.0, successful=True), UNSET),
-        ("The node did not answer when radius was set.", UNSET, was_set(1.0, successful=True)),
-        ("A node answers while rclpy.spin runs. Something blocks the node's callbacks, or", UNSET, refused("no")),
+        ("The node did not respond when radius was set.", UNSET, was_set(1.0, successful=True)),
+        ("A node responds only while rclpy.spin is running. Something blocks", UNSET, refused("no")),
         ("The node refused radius = 1.0: no reason.", refused(""), refused("no")),
         ("Setting radius to 1.0 is accepted.", refused("no"), was_set(1.0, successful=True)),
         (

@@ -123,7 +123,7 @@ CRASH = raised("no-poses", "IndexError: list index out of range")
             ended("exit 1"),
             ended("exit 1", stdout="a"),
         ),
-        ("sys.exit with a string prints the string.", ended("exit 1"), ended("signal 9")),
+        ("If you call sys.exit with a string, it prints the string.", ended("exit 1"), ended("signal 9")),
         (
             "For a bag without poses, bag_report did not exit by itself (signal 9).",
             ended("signal 9", stderr="no poses\n"),
@@ -131,7 +131,7 @@ CRASH = raised("no-poses", "IndexError: list index out of range")
         ),
         ("For a bag without poses, bag_report ended with exit code 0.", ended("exit 0"), ended("exit 1")),
         (
-            "A script that calls the program sees only the exit code. sys.exit with a string ends with 1.",
+            "sees only the exit code. If you call sys.exit with a string, the exit code is 1.",
             ended("exit 0"),
             ended("exit 1"),
         ),

@@ -209,6 +209,6 @@ def test_a_condition_around_the_only_call_explains_why_commands_stop() -> None:
     found = rate("three quarters", (publish, f"        if self.count < 9:\n    {publish}"))
     assert found.diagnosis == "stopped-early"
     line = str(found.where).rpartition(":")[2]
-    assert found.cause == f"publish is called only if the condition in line {line} is true."
+    assert found.cause == f"publish is called only if the condition on line {line} is true."
     other = rate("three quarters", (publish, f"        if self.count < 9:\n            return\n{publish}"))
     assert (other.diagnosis, other.cause) == ("stopped-early", "")

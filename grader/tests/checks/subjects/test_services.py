@@ -120,9 +120,9 @@ def about_answers(calls: list[Call], **changes: Any) -> str:  # noqa: ANN401
 @pytest.mark.parametrize(
     ("words", "true", "near"),
     [
-        ("The node answered the call to /pause.", [paused(success=True)], [paused(success=False)]),
+        ("The node responded to the call to /pause.", [paused(success=True)], [paused(success=False)]),
         (
-            "The node answers a call to /pause within 1 s, with success=True.",
+            "The node responds to a call to /pause within 1 s, with success=True.",
             [paused(success=False)],
             [paused(success=True)],
         ),
@@ -134,7 +134,7 @@ def about_answers(calls: list[Call], **changes: Any) -> str:  # noqa: ANN401
         ),
         ("The response took 2.5 s.", [paused(5.5, success=True)], [paused(3.9, success=True)]),
         ("A callback must not sleep or wait.", [paused(5.5, success=True)], [paused(success=False)]),
-        ("The node received the call to /pause and never answered.", [paused(None)], [paused(None, missing=True)]),
+        ("The node received the call to /pause and never responded.", [paused(None)], [paused(None, missing=True)]),
         (BLOCKED, [paused(None)], [paused(None, missing=True)]),
         ("The node offers no service.", [paused(None, missing=True)], [paused(None)]),
     ],
@@ -156,7 +156,7 @@ def test_a_call_that_was_not_made_is_told_from_a_call_without_a_response(
 
 def test_a_node_that_ended_after_a_call_did_not_block_its_callbacks() -> None:
     ended = about_answers([paused(None)], end=ENDED)
-    assert "The node did not answer the call to /pause. The node exited on its own after 3.2 s." in ended
+    assert "The node did not respond to the call to /pause. The node exited on its own after 3.2 s." in ended
     assert BLOCKED not in ended
 
 

@@ -146,7 +146,7 @@ Gone = dict[str, float]
         ("A call to /catch removes the turtle.", ([catch(), kill()], CAUGHT), ([], {})),
         ("had ended before the call.", ([], {}), ([catch()], {})),
         (
-            "When /catch is called, the node removes the turtle that the request names, and no other turtle",
+            "When /catch is called, the node removes the turtle with the name in the request, and no other turtle",
             ([catch()], {}),
             ([catch(), kill()], CAUGHT),
         ),
@@ -159,7 +159,7 @@ Gone = dict[str, float]
         ("The callback of the service must send a request to /kill.", ([catch()], {}), ([catch(), kill("")], {})),
         ("target2 was removed too late: 2.0 s after it was caught.", ([catch(), kill()], LATE), ([catch()], {})),
         (
-            "target2 was caught, and the node asked /kill to remove a turtle without a name.",
+            "target2 was caught, but the node called /kill for a turtle without a name.",
             ([catch(), kill("")], {}),
             ([catch(), kill()], LATE),
         ),
@@ -184,7 +184,7 @@ def test_a_turtle_that_was_never_announced_is_told(names: str, *, found: bool) -
 def test_a_turtle_that_was_forgotten_too_early_is_told(before: str, *, found: bool) -> None:
     messages = (said(1.0, "target1 target2"), said(CAUGHT_S - 0.5, before))
     reported = told(of_removes(given(calls=[catch()], gone={}, messages=messages)))
-    words = "The message before the call did not name target2. Was target2 removed from the list too early?"
+    words = "The message before the call did not contain target2. Was target2 removed from the list too early?"
     assert (words in reported) == found
 
 

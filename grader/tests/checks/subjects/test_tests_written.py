@@ -88,7 +88,7 @@ def about_steadiness(source: str) -> str:
         ("The tests call sleep.", NAP, CHANCE),
         ("On a slow computer, the sleep may be too short. Spin until the message arrives, or set", NAP, CHANCE),
         ("The tests call randint.", CHANCE, NAP),
-        ("A test that fails only sometimes cannot be repeated. Choose the values yourself.", CHANCE, NAP),
+        ("A failure that occurs only sometimes is hard to reproduce. Choose the values yourself.", CHANCE, NAP),
         (
             "The tests repeat a loop for a fixed time.",
             f"def test_it():\n    {LOOP.replace(chr(10), chr(10) + '    ')}",
