@@ -141,7 +141,7 @@ SENTENCES: dict[str, Callable[[Facts, re.Match[str], Outcome], bool]] = {
     r'The file declares "(?P<word>[^"]+)"': _stands_in,
     rf"\b{NAME} is never called": _never_called,
     rf"Nothing calls {NAME}": _is_named_nowhere,
-    rf"Line (?P<line>\d+) sets {NAME}": _on_line,
+    rf"Line (?P<line>\d+) assigns {NAME}": _on_line,
     rf"self\.{NAME} is assigned on line (?P<line>\d+)": _on_line,
     rf"\b{NAME} gets its value on line (?P<line>\d+)": _on_line,
     rf"\b{NAME} is a local variable of \w+ \(line (?P<line>\d+)\)": _on_line,
