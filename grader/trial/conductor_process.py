@@ -156,7 +156,8 @@ class ConductorInRoom(ConductorProcess):
                 for descriptor in (its_stdin, its_stdout):
                     passed.callback(os.close, descriptor)
                 groups = [str(folder) for folder in self._group.folders]
-                conductor = {"groups": groups, "user": user, "limits": [(resource.RLIMIT_AS, MOST_MEMORY)]}
+                limits = [(resource.RLIMIT_AS, MOST_MEMORY)]
+                conductor = {"groups": groups, "user": user, "limits": limits, "home": str(bubblewrap.HOME)}
                 descriptors = [room, its_stdin, its_stdout, errors.fileno(), asks.fileno()]
                 self._forks = [fork_client.conductors(ros).request(conductor, descriptors)]
                 stack.callback(self._forks[0].close)

@@ -7,13 +7,14 @@ import json
 import socket
 import subprocess
 from functools import cache
+from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING, Any, Literal
 
 from grader.common.interpreter import interpreter
 from grader.common.loader import loaded
 from grader.ros import installation
-from grader.sandbox import bubblewrap, entering
+from grader.sandbox import entering
 from grader.trial.fork import Fork
 
 if TYPE_CHECKING:
@@ -22,6 +23,11 @@ if TYPE_CHECKING:
 CONDUCTORS = {"ROS_PYTHON_CHECK_FIELDS": "0"}
 """Additional environment variables of conductors: they disable the check of the values in messages, which helps
 beginners but would slow down the simulator in every frame."""
+
+
+NOBODYS_HOME = Path("/nonexistent")
+"""The HOME of a server, which only root can create. LTTng, which rclpy loads, obeys any program that listens on a
+socket in HOME, and a folder in /tmp could belong to another user. Forks get a HOME of their own."""
 
 
 class ForkServer:
@@ -59,7 +65,7 @@ class ForkServer:
         self._requests, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
             module = ("-m", "grader.trial.fork_server", self._kind, str(theirs.fileno()))
-            env = installation.environment(self._ros, home=bubblewrap.HOME, domain=None)
+            env = installation.environment(self._ros, home=NOBODYS_HOME, domain=None)
             env |= CONDUCTORS if self._kind == "conductor" else {}
             start = interpreter(*module, python=str(self._ros.python), env=env, searches=True)
             # Without a session of its own, a node could write into the input of the user's terminal. Without the

@@ -7,7 +7,7 @@ read anything, and student code never runs outside the sandbox.
 
 The server runs outside the sandbox. It reads requests of the grader from a socket, each with descriptors:
 
-- **conductor**: JSON with the control groups, the user and the limits. The descriptors are a process in the room
+- **conductor**: JSON with the control groups, the user, the limits and HOME. The descriptors are a process in the room
   (pidfd_open(2)), standard input, output and error, the socket on which the conductor asks for nodes, and the socket
   for the result;
 - **node**: JSON with the control groups, the limits, the system call filter and the number of nodes. The descriptors
@@ -145,7 +145,8 @@ def _enter_room(order: dict[str, Any], problem: str, room: int, *passed: int) ->
     _fork_supervised(result, [room, *streams])
     entering.keep(streams)
     entering.confine(order["limits"], user=order["user"])
-    os.chdir(os.environ["HOME"])
+    os.environ.update({"HOME": order["home"], "ROS_LOG_DIR": f"{order['home']}/log"})
+    os.chdir(order["home"])
 
 
 def _enter_cell(order: dict[str, Any], problem: str, conductors: int, result: int) -> None:

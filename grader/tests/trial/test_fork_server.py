@@ -169,6 +169,16 @@ def test_the_environment_of_the_grader_is_not_in_a_room(monkeypatch: pytest.Monk
             assert b"GRADER_TOKEN" not in Path(f"/proc/{pid}/environ").read_bytes()
 
 
+def test_a_server_looks_for_no_files_where_another_user_can_create_them() -> None:
+    ros = with_turtlesim(find_ros())
+    run("#!/usr/bin/env python3\n")
+    for server in (fork_client.conductors(ros), fork_client.nodes(ros)):
+        assert server._process is not None
+        lines = Path(f"/proc/{server._process.pid}/environ").read_text().split("\0")
+        env = dict(line.split("=", 1) for line in lines if line)
+        assert (env["HOME"], env["ROS_LOG_DIR"]) == ("/nonexistent", "/nonexistent/log")
+
+
 def test_all_processes_of_a_trial_are_in_its_control_group() -> None:
     with Trial(WALL, with_turtlesim(find_ros()), in_cell=True) as trial:
         trial.await_ready()
