@@ -1,4 +1,4 @@
-"""Configuration of nbgrader for this folder. Source: solutions/; release: exercises/; the files of a class: class/."""
+"""Configuration of nbgrader for this course: source in solutions/, release in exercises/, a class in class/."""
 
 from pathlib import Path
 

@@ -38,7 +38,7 @@ channel.addEventListener("message", ({ data }) => {
   }
 });
 
-// A code from the address works only once, so it is not sent to other tabs. The server answers with the token.
+// A code from the address works only once, so it is not sent to other tabs. The server responds with the token.
 let known = read() !== "";
 const given = fromAddress();
 if (given) sessionStorage.setItem(NAME, given);

@@ -147,7 +147,7 @@ def drive(learner: Course, browser: Browser) -> None:
     assert text_px(page, "#graph") >= READABLE_PX
 
     learner.save("2.0", "1.0")
-    page.get_by_text("This node still runs the code from before your last save.").wait_for()
+    page.get_by_text("This node is still running the code from before your last save.").wait_for()
     page.get_by_role("button", name="Run the new code").click()
     page.get_by_text("This node still runs").wait_for(state="hidden")
     page.get_by_role("img", name="Linear: linear.x 1.00 m/s").wait_for()

@@ -1,4 +1,4 @@
-// The connection to the server. A lost connection is restored automatically, and the server is told when the page is
+// The connection to the server. A lost connection is restored automatically. The page reports to the server when it is
 // hidden or shown.
 
 const AGAIN_MS = 700;
@@ -58,7 +58,7 @@ export class Link {
     this.socket.close();
   }
 
-  // A hidden page gets no news. When it is shown again, it gets the whole state.
+  // A hidden page gets no updates. When it is shown again, it gets the whole state.
   wake() {
     const awake = document.visibilityState === "visible";
     if (awake === this.awake) return;

@@ -1,4 +1,4 @@
-// The page passes the server's news to its parts, and the user's input to the server.
+// The page of a simulator: it passes the server's updates to its parts, and the user's input to the server.
 
 import { Link } from "./link.js";
 import { Simulator } from "./simulator.js";
@@ -31,7 +31,7 @@ function lost(refused) {
     simulator.tell("This is not the address of the running simulator. Open the address that the simulator has printed.");
   } else {
     say("Not running", "ends");
-    simulator.tell("The simulator has stopped. This page continues when you start it again with --view.");
+    simulator.tell("The simulator has stopped. This page continues when you start the simulator again with --view.");
   }
 }
 

@@ -1,4 +1,4 @@
-// The page of rqt, rqt_console and rqt_plot: it passes the server's news to the visible parts.
+// The page of rqt, rqt_console and rqt_plot: it passes the server's updates to the visible parts.
 
 import { Console } from "./console.js";
 import { Graph } from "./graph.js";
@@ -51,7 +51,7 @@ function hear(news) {
 
 function lost(refused) {
   if (refused) say("Wrong address", "ends", "This is not the address of the running command. Open the address that the command has printed.");
-  else say("Not running", "ends", "The command has stopped. This page continues when you start it again.");
+  else say("Not running", "ends", "The command has stopped. This page continues when you start the command again.");
 }
 
 const link = new Link({ news: hear, up: () => say("Live", "runs"), down: lost });

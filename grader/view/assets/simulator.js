@@ -33,7 +33,7 @@ export class Simulator {
     for (const name of ["clear", "reset"]) find(name).addEventListener("click", () => this.send({ do: name }));
   }
 
-  // Show the news from the server.
+  // Show an update from the server.
   show(news) {
     if (news.turtles) this.frame(news);
     if (news.graph) this.graph.show(news.graph);

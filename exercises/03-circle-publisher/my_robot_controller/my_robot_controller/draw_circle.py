@@ -19,7 +19,7 @@ class DrawCircleNode(Node):
 
     def send_velocity_command(self):
         # TODO 4: make a Twist, set the two numbers that matter for the turtle (forwards in m/s, turning in
-        # rad/s; the lesson says how much), and publish it.
+        # rad/s; the lesson gives the values), and publish it.
         pass
 
 

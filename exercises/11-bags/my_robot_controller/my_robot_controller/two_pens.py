@@ -30,7 +30,7 @@ class TwoPensNode(Node):
         if self.publisher.get_subscription_count() == 0:
             return  # no subscriber yet: the command would be lost
         msg = Twist()
-        # TODO 5: what happens in each state? "begin": request the yellow pen as soon as both services are there.
+        # TODO 5: what happens in each state? "begin": request the yellow pen as soon as both services are ready.
         # "first arc": half a circle to the left in TICKS calls; then ask for the turtle.
         # "second arc": half a circle to the right. In all other states, stand still.
         self.publisher.publish(msg)

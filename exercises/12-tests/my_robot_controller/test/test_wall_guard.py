@@ -16,7 +16,7 @@ from my_robot_controller.wall_guard import WallGuard
 
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "OFF"  # no other program takes part in the tests
 
-# TODO 3: write a class Bench with the guard, a listener beside it, and a clock that you move.
+# TODO 3: write a class Bench with the guard, a listener beside it, and a clock that you advance.
 
 # TODO 4: write a fixture that gives each test a fresh bench.
 

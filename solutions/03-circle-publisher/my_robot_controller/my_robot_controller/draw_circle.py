@@ -37,7 +37,7 @@ class DrawCircleNode(Node):
         # END SOLUTION
         # BEGIN STARTER
         # # TODO 4: make a Twist, set the two numbers that matter for the turtle (forwards in m/s, turning in
-        # # rad/s; the lesson says how much), and publish it.
+        # # rad/s; the lesson gives the values), and publish it.
         # pass
         # END STARTER
 

@@ -60,7 +60,7 @@ class TwoPensNode(Node):
                 self.state = "done"
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 5: what happens in each state? "begin": request the yellow pen as soon as both services are there.
+        # # TODO 5: what happens in each state? "begin": request the yellow pen as soon as both services are ready.
         # # "first arc": half a circle to the left in TICKS calls; then ask for the turtle.
         # # "second arc": half a circle to the right. In all other states, stand still.
         # END STARTER

@@ -109,7 +109,7 @@ def test_stops_when_no_pose_comes(bench):
 
 # END SOLUTION
 # BEGIN STARTER
-# # TODO 3: write a class Bench with the guard, a listener beside it, and a clock that you move.
+# # TODO 3: write a class Bench with the guard, a listener beside it, and a clock that you advance.
 #
 # # TODO 4: write a fixture that gives each test a fresh bench.
 #

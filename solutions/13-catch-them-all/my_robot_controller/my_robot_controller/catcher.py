@@ -28,7 +28,7 @@ class CatcherNode(Node):
         self.targets_subscription = self.create_subscription(String, "/targets", self.targets_received, 10)
         self.client = self.create_client(Kill, "/catch")
         self.timer = self.create_timer(0.1, self.step)
-        self.pose = None  # of turtle1
+        self.pose = None  # the last pose of turtle1
         self.listeners = {}  # name of a target -> the subscription to its pose
         self.places = {}  # name of a target -> its last pose
         self.asked = None  # the target in the last request to /catch, until the response arrives
