@@ -28,6 +28,9 @@ from grader.trial import fork_client
 MOST_MEMORY = 3 * 1024 * MIB
 """The maximum address space of the conductor (bytes). The conductor itself needs 1 GiB. Messages from the node can fill
 the rest."""
+MOST_ERRORS = 64 * MIB
+"""The maximum size of a file that the conductor writes (bytes). Its standard error is a file outside of the room, and
+the messages of a node can make the libraries of ROS 2 print errors."""
 
 _PLAIN = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin"}
 
@@ -156,7 +159,7 @@ class ConductorInRoom(ConductorProcess):
                 for descriptor in (its_stdin, its_stdout):
                     passed.callback(os.close, descriptor)
                 groups = [str(folder) for folder in self._group.folders]
-                limits = [(resource.RLIMIT_AS, MOST_MEMORY)]
+                limits = [(resource.RLIMIT_AS, MOST_MEMORY), (resource.RLIMIT_FSIZE, MOST_ERRORS)]
                 conductor = {"groups": groups, "user": user, "limits": limits, "home": str(bubblewrap.HOME)}
                 descriptors = [room, its_stdin, its_stdout, errors.fileno(), asks.fileno()]
                 self._forks = [fork_client.conductors(ros).request(conductor, descriptors)]

@@ -1,8 +1,8 @@
-"""What hostile nodes and conductors attempt with the fork servers, and with the forks of other submissions."""
+"""What hostile nodes attempt with the fork servers, and with the forks of other submissions."""
 
 from __future__ import annotations
 
-import socket
+import os
 import subprocess
 import sys
 import tempfile
@@ -12,15 +12,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-import grader
 from grader.common.interpreter import interpreter
 from grader.ros import installation, underlay
 from grader.sandbox import bubblewrap
-from grader.sandbox.user import cell_user
 from grader.tests.observed_host import Host, readable_by_others
 from grader.tests.trial.test_fork_server import WALL, run
-from grader.trial import fork_client
-from grader.trial.conductor_process import about_nodes
 from grader.trial.trial import WallTimeNeeded
 
 if TYPE_CHECKING:
@@ -132,6 +128,25 @@ def test_other_processes_of_the_user_cannot_inspect_a_server_or_a_supervisor(fol
     assert done.stdout == "[False, False, False, False, False, True]", done.stderr
 
 
+USERS = f"""{TRIALS}{FORKS}
+with Trial(plan, ros, in_cell=True) as trial:
+    trial.await_ready()
+    _, conductor, forks_nodes = trial._conductor.pids()
+    for pid in (conductor, *children(children(forks_nodes)[0])):
+        status = dict(line.split(":", 1) for line in Path(f"/proc/{{pid}}/status").read_text().splitlines())
+        print(len({{*status["Uid"].split(), *status["Gid"].split()}}), int(status["Gid"].split()[0]) > 1000,
+            status["Groups"].split())
+"""
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can change its user")
+def test_forks_of_root_have_neither_its_user_nor_any_of_its_groups() -> None:
+    start = interpreter("-c", USERS, searches=True)
+    command = ["setpriv", "--groups", "0,4242", *start.argv]
+    done = subprocess.run(command, env=start.env, capture_output=True, text=True, check=True, timeout=60)
+    assert done.stdout == "1 True []\n1 True []\n"
+
+
 TOO_MANY = f"""{TRIALS}{FORKS}
 from grader.errors import MachineError
 with Trial(plan, ros, in_cell=True) as first:
@@ -197,75 +212,3 @@ rclpy.spin(node)
 def test_a_node_that_hides_what_it_waits_for_needs_wall_time() -> None:
     with pytest.raises(WallTimeNeeded, match="the node hides what it waits for"):
         run(SLEEPS, replace(WALL, clock="simulated", seed=3, duration_s=2.0))
-
-
-CONDUCTOR = """
-import ctypes, os, signal, socket, sys, time
-from pathlib import Path
-
-libc = ctypes.CDLL(None, use_errno=True)
-asks, what, sources = socket.socket(fileno=int(sys.argv[1])), sys.argv[2], Path(sys.argv[3])
-
-def mount(folder):
-    assert libc.mount(b"tmpfs", str(folder).encode(), b"tmpfs", 0, None) == 0
-
-def trap():
-    # A user, mounts, processes, a network, a host name and System V objects of its own.
-    user, group = os.getuid(), os.getgid()
-    assert libc.unshare(0x10000000 | 0x00020000 | 0x20000000 | 0x40000000 | 0x04000000 | 0x08000000) == 0
-    Path("/proc/self/setgroups").write_text("deny")
-    Path("/proc/self/uid_map").write_text(f"1000 {user} 1")
-    Path("/proc/self/gid_map").write_text(f"1000 {group} 1")
-    encodings = Path(__import__("encodings").__file__).parent
-    mount(encodings)
-    (encodings / "trap.py").write_text("open('/tmp/trapped', 'w').close()")
-    mount(sources)
-    (sources / "fork_server.py").write_text("# -*- coding: trap -*-\\n" * 400)
-    if os.fork() == 0:
-        os.write(ready, b"!")
-        signal.pause()
-    os.wait()
-
-target = os.getpid()
-if what == "trap":
-    waits, ready = os.pipe()
-    child = os.fork()
-    if child == 0:
-        trap()
-    os.read(waits, 1)
-    target = int(Path(f"/proc/{child}/task/{child}/children").read_text())
-stdin, _, output, stdout = *os.pipe(), *os.pipe()
-ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-result = stdout if what == "trap" else theirs.fileno()
-socket.send_fds(asks, [b"."], [os.pidfd_open(target), stdin, stdout, stdout, result])
-theirs.close()
-os.close(stdout)
-answer = b""
-while chunk := os.read(output, 1000):
-    answer += chunk
-print(answer, Path("/tmp/trapped").exists())
-"""
-
-
-@pytest.mark.parametrize("what", ["trap", "room"])
-def test_a_conductor_under_the_control_of_a_node_gains_nothing_from_the_server_of_the_nodes(what: str) -> None:
-    """It sends the server a process in namespaces that it has made, or a process of the room, which is not in a cell.
-
-    In the trap, a traceback would import a module of the conductor: Python reads the lines of source files, and the
-    first line can name any encoding.
-    """
-    ros = underlay.with_turtlesim(installation.find_ros())
-    asks, answers = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    package = Path(grader.__file__).parent
-    view = bubblewrap.View(bubblewrap.ros_view(ros, package).read_only)
-    arguments = (str(asks.fileno()), what, str(package / "trial"))
-    code = interpreter("-c", CONDUCTOR, *arguments, python=str(ros.python), env={})
-    with asks, cell_user() as user:
-        with answers:
-            forks = fork_client.nodes(ros).request(about_nodes([], 1), [answers.fileno()])
-        command = bubblewrap.room(code.argv, view, env={"_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}, user=user)
-        done = subprocess.run(command, pass_fds=[asks.fileno()], capture_output=True, text=True, check=True, timeout=60)
-    forks.close()
-    refused = {"trap": "b'OSError: [Errno 88] ", "room": "b'OSError: [Errno 22] "}[what]
-    assert done.stdout.startswith(refused), done.stdout
-    assert done.stdout.endswith(" False\n"), done.stdout
