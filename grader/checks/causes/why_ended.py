@@ -6,6 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.why_other_object import CREATE_OBJECT
 from grader.evidence.activity import ended_at_start
 from grader.submission.constants import dotted
 from grader.submission.where import Where
@@ -99,7 +100,21 @@ def why_no_node(evidence: Evidence) -> Cause:
                 text = f"The class {node.name} is defined but never called. Call the class to create the node."
                 return Cause("node-not-made", text, Where(module.file, node.lineno))
     text = "The program may wait or loop forever before it creates the node, or it may never create a node."
-    return Cause("no-node", text, evidence.place("init"))
+    return _stored_class(evidence) or Cause("no-node", text, evidence.place("init"))
+
+
+def _stored_class(evidence: Evidence) -> Cause | None:
+    """Return the cause if a variable that nothing reads gets a node's class instead of an object, else None."""
+    nodes = [(module, node) for module in evidence.code.modules for node in module.nodes]
+    classes = {node.name for _, node in nodes if isinstance(node, ast.ClassDef) and _is_node(node)}
+    read = {node.id for _, node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
+    for module, node in nodes:
+        if not isinstance(node, ast.Assign) or any(_named(target) in read for target in node.targets):
+            continue
+        if _named(node.value) in classes:
+            text = f"This line stores the class {_named(node.value)}, not an object. {CREATE_OBJECT}"
+            return Cause("node-not-made", text, Where(module.file, node.lineno))
+    return None
 
 
 def _named(node: ast.AST) -> str:

@@ -100,6 +100,7 @@ def main():
         ("class Driver(Node):", "rclpy.init()", "rclpy.spin(node)", "node-not-made", 6),
         ("class Driver(rclpy.node.Node):", "rclpy.init()", "rclpy.spin(node)", "node-not-made", 6),
         ("class Driver(Base()):", "rclpy.init()", "rclpy.spin(node)", "no-node", 10),
+        ("class Driver(Node):", "rclpy.init()", "node = Driver", "node-not-made", 11),
         ("class Driver(Node):", "rclpy.init()", "kind = Driver; rclpy.spin(kind())", "no-node", 10),
         ("class Driver(Node):", "rclpy.init()", "rclpy.spin(Driver())", "no-node", 10),
         ("def drive():", "rclpy.init()", "rclpy.spin(node)", "no-node", 10),
@@ -114,4 +115,6 @@ def test_a_program_without_a_node_is_explained_by_the_source(
     assert cause.where is not None
     assert cause.where.file == NODE_FILE
     words = "The class Driver is defined but never called. Call the class to create the node."
-    assert (cause.text == words) == (diagnosis == "node-not-made")
+    stored = "This line stores the class Driver, not an object. Add parentheses after the class name"
+    assert (cause.text == words) == (diagnosis == "node-not-made" and body != "node = Driver")
+    assert cause.text.startswith(stored) == (body == "node = Driver")
