@@ -88,6 +88,8 @@ def run(program: Program, *, view: bool) -> int:
     """
     from grader.ros import shell
 
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _interrupt)
     env = shell.users_environment(None, _tell)
     with tempfile.TemporaryDirectory(prefix="grader-run-") as place:
         _tell(f"Building {program.package}")
@@ -199,8 +201,6 @@ def _until_it_ends(program: Program, script: Path, env: Mapping[str, str]) -> in
     start = interpreter(str(script), env=env, searches=True)
     node = subprocess.Popen(start.argv, env=start.env)
     interrupted = False
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, _interrupt)
     while True:
         try:
             code = node.wait(ENDS_S if interrupted else None)

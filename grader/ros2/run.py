@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 
 _QUOTED = re.compile(r'#!"([^"]+)"(.*)')
+_UNQUOTED = re.compile(r"#!(/[^\s\"]+)(.*)")
+_LONGEST = 255
+"""The kernel reads this many bytes of the first line of a script (BINPRM_BUF_SIZE of Linux, less the last byte)."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -75,14 +78,16 @@ def _path(args: argparse.Namespace) -> Path:
 def _program(path: Path) -> list[str]:
     """Return the command for a script.
 
-    setuptools quotes interpreter paths that contain spaces, but Linux cannot run quoted paths.
+    setuptools quotes interpreter paths that contain spaces, but Linux cannot run quoted paths, nor very long ones.
     """
     try:
         with path.open("rb") as file:
-            quoted = _QUOTED.match(file.readline(4096).decode("utf-8", "replace"))
+            line = file.readline(4096)
     except OSError:
-        quoted = None
-    return [quoted[1], *quoted[2].split(), str(path)] if quoted else [str(path)]
+        line = b""
+    form = _UNQUOTED if len(line) > _LONGEST else _QUOTED
+    found = form.match(line.decode("utf-8", "replace"))
+    return [found[1], *found[2].split(), str(path)] if found else [str(path)]
 
 
 def _words(prefix: str | None) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import signal
 import subprocess
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from grader.errors import UsageError
 from grader.learner.run_node import program_of
 from grader.tests.domains import own_domain
 from grader.tests.learner.story import Learner
+from grader.tests.waiting import until
 
 NODE = "src/my_robot_controller/my_robot_controller/draw_circle.py"
 
@@ -91,6 +93,18 @@ def test_it_names_what_it_can_run(learner: Learner) -> None:
 def test_a_program_in_the_place_of_a_step_names_the_step() -> None:
     with pytest.raises(UsageError, match=r"draw_circle is a program, not a step\. Type: grader run 03 draw_circle"):
         program_of("draw_circle", None, None)
+
+
+def test_a_terminal_that_is_closed_during_the_build_leaves_nothing(learner: Learner, tmp_path: Path) -> None:
+    learner.env["TMPDIR"] = str(tmp_path)
+    try:
+        child = learner.types("run")
+        until(lambda: any(tmp_path.glob("grader-run-*/log")))
+        child.kill(signal.SIGHUP)
+        child.expect(pexpect.EOF)
+        until(lambda: not any(tmp_path.iterdir()))
+    finally:
+        del learner.env["TMPDIR"]
 
 
 def test_nothing_is_left_in_the_workspace(learner: Learner) -> None:

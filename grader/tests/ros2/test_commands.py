@@ -107,6 +107,15 @@ def test_run_finds_an_interpreter_with_a_space_in_its_path(tools: World, tmp_pat
     assert tools.run("ros2 run ours quoted one", **env).stdout == f"{tmp_path}/built/lib/ours/quoted one\n"
 
 
+def test_run_finds_an_interpreter_with_a_path_that_is_too_long_for_linux(tools: World, tmp_path: Path) -> None:
+    shell = tmp_path.joinpath(*["a" * 50] * 5, "sh")
+    shell.parent.mkdir(parents=True)
+    shell.symlink_to("/bin/sh")
+    package(tmp_path / "built", "ours", long=f'#!{shell} -u\necho "$0" "$1"\n')
+    env = {"AMENT_PREFIX_PATH": f"{tmp_path}/built:{tools.env['AMENT_PREFIX_PATH']}"}
+    assert tools.run("ros2 run ours long one", **env).stdout == f"{tmp_path}/built/lib/ours/long one\n"
+
+
 def test_the_first_of_two_prefixes_counts(tools: World, tmp_path: Path) -> None:
     package(tmp_path / "over", "tools", say="#!/bin/sh\necho over\n")
     env = {"AMENT_PREFIX_PATH": f"{tmp_path}/over:{tools.env['AMENT_PREFIX_PATH']}:/does/not/exist"}

@@ -63,6 +63,19 @@ def test_grader_sim_can_draw_in_the_terminal_and_says_when_there_is_none(alone: 
     assert "--view terminal needs a terminal" in done.stderr
 
 
+@pytest.mark.parametrize(
+    ("variable", "value", "todo"),
+    [
+        ("ROS_LOG_DIR", "/dev/null/log", "Choose a folder that you can write to: export ROS_LOG_DIR=FOLDER"),
+        ("ROS_DOMAIN_ID", "abc", "To use the usual domain, type: unset ROS_DOMAIN_ID"),
+    ],
+)
+def test_what_keeps_turtlesim_from_starting_says_what_to_do(alone: World, variable: str, value: str, todo: str) -> None:
+    done = alone.run(OUR_TURTLESIM, **{variable: value})
+    assert "Traceback" not in done.stderr
+    assert todo in done.stderr
+
+
 def test_a_simulator_outlives_its_view(alone: World) -> None:
     simulator = alone.start(f"{OUR_TURTLESIM} --view", "Spawning turtle")
     (view,) = children(program(simulator))
