@@ -220,7 +220,8 @@ def _too_short(evidence: Evidence, trajectory: Trajectory, turns: float, expecte
         observed = (
             f"The turtle drove {turns:.2f} of a turn; the first command arrived at {evidence.commands[0].t_s:.1f} s."
         )
-        why = Cause("late-start", "A turtle that starts late has less time for the circle.")
+        text = "A turtle that starts late has less time for the circle."
+        why = Cause("late-start", text, evidence.place("sleep", "publish"))
     elif trajectory.rests:
         observed = f"The turtle drove {turns:.2f} of a turn, with {count(trajectory.rests, 'stop')} on the way."
         why = Cause("stops-and-goes", "The turtle stops when no command arrives for 1 s.")
