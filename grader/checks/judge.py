@@ -62,9 +62,9 @@ class Judgement:
 def judge(evidence: Evidence) -> tuple[Outcome, ...]:
     """Return the outcome of every check, in the order of the exercise.
 
-    A check is skipped if a check that it needs did not pass. The message of the skipped check names the first check
-    that did not pass. If the machine could not produce the evidence for a check (`evidence.fault`), the status of that
-    check and of every check that needs it is `error`.
+    A check is skipped if a check that it needs did not pass. The message of the skipped check contains the title of the
+    first check that did not pass. If the machine could not produce the evidence for a check (`evidence.fault`), the
+    status of that check and of every check that needs it is `error`.
     """
     return judge_so_far(evidence, {}).outcomes
 

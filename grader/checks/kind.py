@@ -52,7 +52,7 @@ class Kind(Generic[P]):
     early: Callable[[Evidence, P], Finding | None] | None = None
     """For a check that needs a build or a trial: return a finding if the files alone show a failure, else None."""
     drives: bool = False
-    """Whether a node must send velocity commands to the turtle to pass."""
+    """Whether a node passes such a check only if it sends velocity commands to the turtle."""
     requested: Callable[[Evidence, P], Requested | None] | None = None
     """Return the requirements of the check as shapes and values, or None if the submission does not determine them."""
     radius_m: Callable[[P], float] | None = None

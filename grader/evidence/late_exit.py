@@ -22,7 +22,8 @@ TOP = re.compile(r'\s*File ".*", line \d+, in <module>')
 def with_crash_first(recording: Recording) -> Recording:
     """Return the recording.
 
-    If the node raised an uncaught exception before Ctrl-C, the returned recording says that the node exited on its own.
+    If the node raised an uncaught exception before Ctrl-C, the returned recording shows that the node exited on its
+    own.
     """
     end, stderr = recording.end, recording.stderr
     if end.by == "itself" or end.out_of is not None:

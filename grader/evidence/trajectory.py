@@ -26,7 +26,7 @@ class Trajectory:
     """The trajectory up to SIGINT, with one step per frame.
 
     `x` and `y` (m) have the shape (N + 1,) and begin with the start position. The other arrays have the shape (N,):
-    `t_s` is the time (s), `turn` is the change of the heading (rad), and `wall` says whether the simulator had to keep
+    `t_s` is the time (s), `turn` is the change of the heading (rad), and `wall` is true if the simulator had to keep
     the turtle inside the canvas.
     """
 

@@ -1,4 +1,4 @@
-"""Try: the result of changing a copy of a submission at the place that a check named as the cause."""
+"""Try: the result of changing a copy of a submission at the place to which a failed check points."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Tries:
 
     `behind` counts the causes that appeared only after other causes had been fixed.
 
-    `stopped` says why some changes were not tested. `stopped` is empty if all changes were tested.
+    `stopped` is the reason why some changes were not tested. `stopped` is empty if all changes were tested.
     """
 
     made: tuple[Try, ...] = ()

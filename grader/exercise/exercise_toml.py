@@ -147,7 +147,7 @@ def _must_be_check(table: Table, key: str, name: str, ids: list[str]) -> None:
     if name not in ids:
         guess = nearest(name, ids)
         hint = f' Did you mean "{guess}"?' if guess else ""
-        table.problem(f'"{key}" names "{shorten(name)}", which is not a check.{hint} Allowed: {", ".join(ids)}.')
+        table.problem(f'"{key}" contains "{shorten(name)}", which is not a check.{hint} Allowed: {", ".join(ids)}.')
 
 
 def _checks(

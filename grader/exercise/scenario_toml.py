@@ -62,7 +62,7 @@ def _trial(table: Table, package: str) -> TrialSpec:
 
 
 def _with_scenario(table: Table, trial: TrialSpec, trials: tuple[TrialSpec, ...]) -> TrialSpec:
-    """Return the trial. If the key `beside` names another trial, the trial gets the scenario of that other trial."""
+    """Return the trial. If the key `beside` is the id of another trial, the trial has the scenario of that trial."""
     if not trial.beside:
         return trial
     ids = [each.id for each in trials if each.node and not each.beside and each.tests is None]

@@ -1,4 +1,4 @@
-"""Prove causes: change a copy of the submission at the place that a failed check names, and run the copy.
+"""Prove causes: change a copy of the submission at the place to which a failed check points, and run the copy.
 
 Each fix stays in the copy while the next cause is tested, which also reveals mistakes that were hidden by other
 mistakes. Like the submission itself, the copy is built and run in the sandbox. The copy always runs in simulated time.

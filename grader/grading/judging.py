@@ -75,7 +75,7 @@ class Judging:
         return self._clocks.get(evidence.trial.id, UNREAD)
 
     def known(self, evidence: Evidence) -> Evidence:
-        """Return the evidence. If the submission could not be read, the `fault` of the evidence says so."""
+        """Return the evidence. If the submission could not be read, the `fault` of the evidence contains the reason."""
         return evidence if self.fault is None else dataclasses.replace(evidence, fault=self.fault)
 
     def _give_up(self, error: UnreadableError) -> None:

@@ -36,7 +36,7 @@ TICK_M = 0.11
 class Scene:
     """The content of a drawing: `shapes` from bottom to top, the meaning of each role, and facts with numbers.
 
-    `notice` says why there is no trajectory to draw. If there is a trajectory, `notice` is empty.
+    `notice` is the reason why there is no trajectory to draw. If there is a trajectory, `notice` is empty.
     """
 
     shapes: tuple[Line | Ring | Arrow, ...] = ()

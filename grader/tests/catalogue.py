@@ -49,10 +49,10 @@ SHOWN_BY_TESTS = {
 HEAD = """\
 # The catalogue of mistakes
 
-A failed check names its cause by a stable id, the diagnosis. This page lists all diagnoses with the cases that show
-them. A case is a folder with a submission and with the requirements for its report. The folder is in
+The cause of a failed check has a stable id, the diagnosis. This page lists each diagnosis with the cases that show it.
+A case is a folder with a submission and with the requirements for its report. The folder is in
 `grader/tests/mistakes/` (the tables below contain only its number) or in `grader/tests/cases/`. A few diagnoses are
-shown by a test instead. [diagnoses.py](diagnoses.py) contains the ids and their meanings.
+shown by a test instead of a case. [diagnoses.py](diagnoses.py) contains the ids and their meanings.
 `python -m grader.tests.catalogue` generates this page, and a test fails when the page is out of date.
 
 To add a mistake:
@@ -64,7 +64,7 @@ To add a mistake:
 3. Run the case:
 
 ```text
-python -m pytest grader/tests/test_mistakes.py -k NNN
+python -m pytest -m "" grader/tests/test_mistakes.py -k NNN
 ```
 
 A message has at most 60 words. It says what was observed, what was expected and where, and it never contains a line of

@@ -17,7 +17,7 @@ def too_soon(finding: Finding, evidence: Evidence) -> Finding:
     """Return the finding about a trajectory whose first part is too short, with the cause `too-soon` if possible.
 
     In simulated time, the clock starts only when the publisher and the subscription are connected, so no command is
-    lost. If the node itself checks how many subscriptions are connected, no command is lost in wall time.
+    lost. If the node itself checks how many subscriptions are connected, no command is lost in wall time either.
     """
     if evidence.recording.clock != "wall" or any(evidence.code.calls(name) for name in WAITS_FOR_SUBSCRIBER):
         return finding

@@ -1,4 +1,4 @@
-"""Advice: suggestions that make the code better. They cost no points."""
+"""Advice: suggestions that make the code better. A student who does not follow them loses no points."""
 
 from __future__ import annotations
 

@@ -116,7 +116,7 @@ def _broken(evidence: Evidence) -> Finding:
     message = f": {shorten(words[-1], 150)}" if words else f" (exit code {build.exit_code})"
     missing = NO_FILE.search(words[-1]) if words else None
     if missing is not None:
-        cause = "data_files in setup.py names a file that does not exist in the package."
+        cause = "data_files in setup.py lists a file that does not exist in the package."
         diagnosis: Diagnosis = "package-xml-missing" if missing["file"] == "package.xml" else "data-file-missing"
         last = missing["file"].rpartition("/")[2]
         if last == setup.name != evidence.exercise.package:

@@ -130,7 +130,7 @@ def says_whether_active(evidence: Evidence, params: SaysWhetherActive) -> Findin
             was = "was" if active else "was not"
             observed = f"The turtle {was} following a goal at {call.t_s:.1f} s, but success was {str(said).lower()}."
             return failed(observed, expected, _other_success(evidence, goals, call))
-    return passed("success says whether a goal was active.")
+    return passed("success was true if a goal was active, and false if not.")
 
 
 def _other_success(evidence: Evidence, goals: list[Goal], call: Call) -> Cause:
@@ -200,6 +200,6 @@ SAYS_WHETHER_ACTIVE = Kind(
     "The response says whether there was a goal",
     SaysWhetherActive,
     says_whether_active,
-    about="In the response to each `[[trial.call]]` of the service, `success` says whether a goal of "
+    about="In the response to each `[[trial.call]]` of the service, `success` shows whether a goal of "
     "`/turtle1/rotate_absolute` was active.",
 )

@@ -39,7 +39,7 @@ def entry_point(evidence: Evidence, _: NoParams) -> Finding:
     if executable not in build.executables:
         folder = f"lib/{build.package or evidence.exercise.package}"
         observed = f"{executable} was not installed in the folder of the package, {folder}."
-        expected = "setup.cfg says where to install executables, so that `ros2 run` finds them."
+        expected = "setup.cfg sets the folder for executables, so that `ros2 run` finds them."
         cause = "Compare your setup.cfg with the one in the lesson, letter by letter."
         if "setup.cfg" not in evidence.submission.files:
             cause = "setup.cfg is missing."

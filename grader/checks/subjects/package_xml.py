@@ -191,10 +191,10 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
     manifest, setup = evidence.manifest, evidence.setup_py
     expected = f"package.xml, setup.py and the folder with the Python files have the name {wanted}."
     if manifest is not None and manifest.problem is None and manifest.name != wanted:
-        observed = f"package.xml names the package {shorten(manifest.name)}."
+        observed = f"The package name in package.xml is {shorten(manifest.name)}."
         return failed(observed, expected, Cause("package-name", _dash(manifest.name), _line(evidence, "<name>")))
     if setup is not None and setup.name is not None and setup.name != wanted:
-        observed = f"setup.py names the package {shorten(setup.name)}."
+        observed = f"The package name in setup.py is {shorten(setup.name)}."
         return failed(observed, expected, Cause("package-name", _dash(setup.name), Where("setup.py", setup.name_line)))
     modules = [import_path(path) for path in evidence.submission.files if path.endswith(".py")]
     if not any(path.startswith(f"{wanted}/") for path in modules):

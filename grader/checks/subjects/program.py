@@ -105,7 +105,7 @@ def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
         observed = f"For a bag without poses, {name} printed no message ({called.ended})."
         cause = "If you call sys.exit with a string, it prints the string."
         return failed(observed, expected, Cause("exit-code", cause, evidence.place("exit")))
-    return passed(f'{name} says "{shorten(printed[-1], 80)}"')
+    return passed(f'{name} printed "{shorten(printed[-1], 80)}"')
 
 
 def _why(evidence: Evidence, key: str, given: dict[str, float], bag: BagInput) -> Cause:

@@ -40,7 +40,7 @@ def code_of(evidence: Evidence) -> TestCode:
 
 
 def declared(evidence: Evidence, _: NoParams) -> Finding:
-    """setup.py says that pytest runs the tests, and package.xml says that pytest must be installed."""
+    """setup.py declares that pytest runs the tests, and package.xml declares pytest as a dependency."""
     expected = (
         f'setup.py lists "{PYTEST}" under "test" in extras_require, '
         f"and package.xml declares {TEST_DEPEND} as a <test_depend>."
@@ -63,7 +63,7 @@ def declared(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def _tested_with(setup: SetupPy, evidence: Evidence) -> tuple[str, ...]:
-    """Return the packages for tests that colcon finds. An argument that setup.py computes counts as correct."""
+    """Return the test dependencies that colcon finds. An argument that setup.py computes counts as correct."""
     if setup.tested_with is None:
         return (PYTEST,)
     return setup.tested_with if setup.has_extras else extras_of_files(evidence.submission.files)
@@ -166,7 +166,7 @@ DECLARED = Kind(
     "colcon test runs the tests with pytest",
     NoParams,
     declared,
-    about="setup.py names pytest as `test` in `extras_require`, and package.xml declares python3-pytest.",
+    about="setup.py lists pytest under `test` in `extras_require`, and package.xml declares python3-pytest.",
 )
 OUTSIDE = Kind(
     "tests_outside",

@@ -193,8 +193,8 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
             'needs = ["rate"]',
             'needs = ["rat"]',
             (
-                '[[check]] 2 (values): "needs" names "rat", which is not a check. Did you mean "rate"? Allowed: rate, '
-                "values."
+                '[[check]] 2 (values): "needs" contains "rat", which is not a check. Did you mean "rate"? Allowed: '
+                "rate, values."
             ),
         ),
         (
@@ -223,7 +223,7 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
         (
             'text = "Think."',
             'text = "Think."\nchecks = ["rat"]',
-            '[[hint]] 1: "checks" names "rat", which is not a check. Did you mean "rate"? Allowed: rate, values.',
+            '[[hint]] 1: "checks" contains "rat", which is not a check. Did you mean "rate"? Allowed: rate, values.',
         ),
         ("[[hint]]", "[hint]", '"hint" is a table; it must be an array of tables, [[hint]].'),
     ],

@@ -151,7 +151,7 @@ SENTENCES: dict[str, Callable[[Facts, re.Match[str], Outcome], bool]] = {
     r"[Aa] comma is missing": _missing(","),
     r"never closed": _missing(")]}"),
     r"[Aa] quotation mark is missing": _missing("\"'"),
-    r"the parentheses are missing": _missing("("),
+    r"the parentheses (?:after its name )?are missing": _missing("("),
     r"one closing bracket too many": _is_extra,
     r"in this order|are swapped": _swapped,
     r"There are (?P<count>\d+) timers": _timers,

@@ -147,8 +147,8 @@ def test_a_sentence_about_success_is_true(goals: tuple[Goal, ...]) -> None:
     ):
         assert words in wrong
         assert words not in right
-    assert "success says whether a goal was active." in right
-    assert "success says whether a goal was active." not in wrong
+    assert "success was true if a goal was active, and false if not." in right
+    assert "success was true if a goal was active, and false if not." not in wrong
 
 
 def test_a_response_that_never_came_says_nothing_about_a_goal() -> None:

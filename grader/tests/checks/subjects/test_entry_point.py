@@ -130,7 +130,7 @@ ELSEWHERE = replace(BUILD, executables=())
         ("The function is at the top level of the file.", (ONE_LINE, BUILD), (EMPTY, BUILD)),
         ("The file contains the function main, which the entry point names.", (EMPTY, BUILD), (ONE_LINE, BUILD)),
         (
-            "setup.cfg says where to install executables, so that `ros2 run` finds them.",
+            "setup.cfg sets the folder for executables, so that `ros2 run` finds them.",
             ({}, ELSEWHERE),
             ({}, BUILD),
         ),

@@ -116,8 +116,8 @@ CRASH = raised("no-poses", "IndexError: list index out of range")
 @pytest.mark.parametrize(
     ("words", "true", "near"),
     [
-        ('bag_report says "no poses"', ended("exit 1", stderr="no poses\n"), ended("exit 1")),
-        ('bag_report says "no poses"', ended("exit 1", stdout="no poses\n"), ended("exit 0", stdout="no poses\n")),
+        ('bag_report printed "no poses"', ended("exit 1", stderr="no poses\n"), ended("exit 1")),
+        ('bag_report printed "no poses"', ended("exit 1", stdout="no poses\n"), ended("exit 0", stdout="no poses\n")),
         (
             "For a bag without poses, bag_report printed no message (exit 1).",
             ended("exit 1"),
