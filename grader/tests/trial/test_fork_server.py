@@ -133,8 +133,9 @@ def mapped(pid: int) -> set[str]:
 def test_a_node_does_not_have_the_memory_layout_of_the_conductor() -> None:
     ros = with_turtlesim(find_ros())
     with Trial(WALL, ros, in_cell=True) as first, Trial(WALL, ros, in_cell=True) as second:
-        conductors = [trial._conductor.pids()[1] for trial in (first, second)]
-        nodes = [trial._conductor.pids()[2] for trial in (first, second)]
+        for trial in (first, second):
+            trial.await_ready()
+        conductors, nodes = zip(*(forks(trial) for trial in (first, second)), strict=True)
         layouts = [mapped(pid) for pid in (*conductors, *nodes)]
     assert layouts[0] == layouts[1], "the conductors are not forks of one process"
     assert layouts[2] == layouts[3], "the nodes are not forks of one process"
@@ -170,13 +171,13 @@ def test_the_environment_of_the_grader_is_not_in_a_room(monkeypatch: pytest.Monk
 
 
 def test_a_server_looks_for_no_files_where_another_user_can_create_them() -> None:
-    ros = with_turtlesim(find_ros())
-    run("#!/usr/bin/env python3\n")
-    for server in (fork_client.conductors(ros), fork_client.nodes(ros)):
-        assert server._process is not None
-        lines = Path(f"/proc/{server._process.pid}/environ").read_text().split("\0")
-        env = dict(line.split("=", 1) for line in lines if line)
-        assert (env["HOME"], env["ROS_LOG_DIR"]) == ("/nonexistent", "/nonexistent/log")
+    """Its forks keep its first environment in /proc/PID/environ."""
+    with Trial(WALL, with_turtlesim(find_ros()), in_cell=True) as trial:
+        trial.await_ready()
+        for pid in forks(trial):
+            lines = Path(f"/proc/{pid}/environ").read_text().split("\0")
+            env = dict(line.split("=", 1) for line in lines if line)
+            assert (env["HOME"], env["ROS_LOG_DIR"]) == ("/nonexistent", "/nonexistent/log")
 
 
 def test_all_processes_of_a_trial_are_in_its_control_group() -> None:
@@ -188,6 +189,12 @@ def test_all_processes_of_a_trial_are_in_its_control_group() -> None:
         for folder in folders:
             inside = (folder / "cgroup.procs").read_text().split()
             assert [pid for pid in family(*trial._conductor.pids()) if str(pid) not in inside] == []
+
+
+def forks(trial: Trial) -> tuple[int, int]:
+    """Return the process ids of the conductor and of the node of a trial that is ready."""
+    _, conductor, forks_nodes = trial._conductor.pids()
+    return conductor, children(children(forks_nodes)[0])[0]
 
 
 def children(pid: int) -> list[int]:

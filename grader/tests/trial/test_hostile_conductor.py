@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import socket
 import subprocess
 from pathlib import Path
@@ -87,6 +88,8 @@ def test_a_conductor_under_the_control_of_a_node_gains_nothing_from_the_server_o
     In the trap, a traceback would import a module of the conductor: Python reads the lines of source files, and the
     first line can name any encoding.
     """
+    if what == "room" and os.geteuid() != 0:
+        pytest.skip("a room of an ordinary user has namespaces of its own, and its processes have the same user")
     ros = underlay.with_turtlesim(installation.find_ros())
     asks, answers = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     package = Path(grader.__file__).parent
