@@ -27,8 +27,8 @@ class GoToGoalNode(Node):
 
     def step(self):
         msg = Twist()
-        # TODO d: how far is the goal, and in which direction? Turn towards it, drive when you face it, stand
-        # still when you are there.
+        # TODO d: how far is the goal, and in which direction? Turn towards it, drive when you face it,
+        # and stand still when you are there.
         self.publisher.publish(msg)
 
 

@@ -59,7 +59,7 @@ class CatcherNode(Node):
         pass
 
     def catch(self, name):
-        # TODO 14: ask /catch for this target, once, without waiting for the response.
+        # TODO 14: call /catch for this target, once, without waiting for the response.
         pass
 
     def caught(self, future):

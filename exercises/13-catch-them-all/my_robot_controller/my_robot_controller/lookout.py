@@ -47,11 +47,11 @@ class LookoutNode(Node):
         pass
 
     def goal_ended(self, future):
-        # TODO 6: the goal has ended. If it succeeded, the next one is on the other side.
+        # TODO 6: the goal has ended. If it succeeded, send the next goal, on the other side.
         pass
 
     def stop(self, request, response):
-        # TODO 8: if there is a goal, cancel it, without waiting. The response says whether there was one.
+        # TODO 8: if there is a goal, cancel it, without waiting. The response says whether there was a goal.
         return response
 
 

@@ -88,7 +88,7 @@ class LookoutNode(Node):
         self.turn()
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 6: the goal has ended. If it succeeded, the next one is on the other side.
+        # # TODO 6: the goal has ended. If it succeeded, send the next goal, on the other side.
         # pass
         # END STARTER
 
@@ -100,7 +100,7 @@ class LookoutNode(Node):
             self.goal.cancel_goal_async()
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 8: if there is a goal, cancel it, without waiting. The response says whether there was one.
+        # # TODO 8: if there is a goal, cancel it, without waiting. The response says whether there was a goal.
         # END STARTER
         return response
 

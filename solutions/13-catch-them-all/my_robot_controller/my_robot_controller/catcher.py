@@ -109,7 +109,7 @@ class CatcherNode(Node):
             self.client.call_async(Kill.Request(name=name)).add_done_callback(self.caught)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 14: ask /catch for this target, once, without waiting for the response.
+        # # TODO 14: call /catch for this target, once, without waiting for the response.
         # pass
         # END STARTER
 

@@ -45,8 +45,8 @@ class GoToGoalNode(Node):
                 msg.linear.x = min(1.5, 1.5 * distance)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO d: how far is the goal, and in which direction? Turn towards it, drive when you face it, stand
-        # # still when you are there.
+        # # TODO d: how far is the goal, and in which direction? Turn towards it, drive when you face it,
+        # # and stand still when you are there.
         # END STARTER
         self.publisher.publish(msg)
 
