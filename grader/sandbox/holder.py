@@ -9,6 +9,7 @@ import signal
 import subprocess
 from contextlib import suppress
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING
 
 from grader.common.linux_calls import pidfd_open, pidfd_send_signal
@@ -34,6 +35,7 @@ class Holder:
         """Start bubblewrap. `command(info_fd)` returns the command line, whose program is entering.HOLDER."""
         self._info, info = os.pipe()
         self._first: int | None = None
+        self._changing = Lock()
         try:
             pipe = subprocess.PIPE
             self._process = subprocess.Popen(
@@ -82,15 +84,15 @@ class Holder:
         raise HolderError(output or str(problem or "")) from problem
 
     def kill(self) -> None:
-        """Kill all processes of the room or cell."""
+        """Kill all processes of the room or cell. Any thread may call this method."""
         # Kill the whole process group, because a child of bubblewrap may outlive it while bubblewrap is starting.
         if self._process.returncode is None:
             with suppress(ProcessLookupError):
                 os.killpg(self._process.pid, signal.SIGKILL)
         # The first process of a cell belongs to the user of the cell. Student code can change its memory, so that it
         # does not exit together with its parent. All other processes of the cell end with it: pid_namespaces(7).
-        if self._first is not None:
-            with suppress(ProcessLookupError):
+        with self._changing, suppress(ProcessLookupError):
+            if self._first is not None:
                 pidfd_send_signal(self._first, signal.SIGKILL)
 
     def close(self) -> None:
@@ -100,9 +102,10 @@ class Holder:
             assert pipe is not None
             pipe.close()
         self._process.wait()
-        if self._first is not None:
+        with self._changing:
+            first, self._first = self._first, None
+        if first is not None:
             ended = select.poll()
-            ended.register(self._first, select.POLLIN)
+            ended.register(first, select.POLLIN)
             ended.poll(_ENDS_S * 1000.0)
-            os.close(self._first)
-            self._first = None
+            os.close(first)
