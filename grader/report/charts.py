@@ -130,7 +130,9 @@ def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> 
     caption = f"{len(series)} intervals, {_s(measured.mean_s)} s on average, from {_s(low)} to {_s(high)} s."
     if stalled:
         others = "1 interval is" if stalled == 1 else f"{stalled} intervals are"
-        caption += f" {others} left out, because the start or a stall of the machine may have changed the length."
+        caption += (
+            f" {others} left out, because the start of the trial or a stall of the machine may have changed the length."
+        )
     drawn = ""
     if wanted:
         caption += f" Required: {middle_s:.2f} s; allowed: {low_s:.2f} to {high_s:.2f} s (the green band)."

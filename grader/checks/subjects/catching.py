@@ -41,7 +41,10 @@ is late."""
 
 @dataclass(frozen=True, kw_only=True)
 class Catches:
-    """Requires that the node catches all targets, at least this number, with the service that catches one target."""
+    """Requires that all targets, and at least this many, are caught.
+
+    `service` is the service that catches one target.
+    """
 
     turtles: float = number(1, at_least=1, about="The minimum number of turtles, all of which must be caught.")
     service: str = string(
