@@ -105,7 +105,7 @@ def _path(recording: Recording, first: int) -> _Path:
 
 
 def _driven(path: _Path, speed: Floats) -> Steps:
-    """Return a mask of the frames in which the turtle moved forward at this speed (m/s), or up to a wall."""
+    """Return a mask of the frames in which the turtle moved forward at this speed (m/s), or as far as a wall."""
     cos, sin = np.cos(path.theta[1:]), np.sin(path.theta[1:])
     x = np.clip(path.x[:-1] + cos * speed * FRAME_S, 0.0, SIDE_M)
     y = np.clip(path.y[:-1] + sin * speed * FRAME_S, 0.0, SIDE_M)

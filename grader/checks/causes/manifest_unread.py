@@ -57,7 +57,7 @@ def why_not_read(evidence: Evidence, manifest: Manifest) -> Cause:
 
 
 def _malformed(data: bytes, problem: str, line: int | None) -> Cause:
-    """Return the cause if the file is not XML. `line` is the line at which the XML parser gave up."""
+    """Return the cause if the file is not XML. `line` is the line at which the XML parser stopped."""
     cause = "Each <tag> needs a closing </tag> with the same name. Close the inner tag before the outer tag."
     text = _line_text(data, line)
     end = end_of_root(data)

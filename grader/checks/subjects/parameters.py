@@ -187,7 +187,7 @@ def _refused(evidence: Evidence, observed: str, expected: str, reason: str) -> F
     if OUT_OF_RANGE.match(reason):
         text = "The range in the ParameterDescriptor does not contain this value."
         return failed(observed, expected, Cause("parameter-range", text, evidence.place("declare_parameter")))
-    text = "The callback must accept every value that is possible: SetParametersResult(successful=True)."
+    text = "For every valid value, the callback must return SetParametersResult(successful=True)."
     return failed(observed, expected, Cause("parameter-refused", text, where))
 
 

@@ -115,7 +115,7 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
         return _hung(expected, code, run)
     if not run.accepted:
         name = shorten(run.test.rpartition("::")[2], 60)
-        return passed(f"{name or 'A test'} fails on {params.does}, as it should.")
+        return passed(f"{name or 'A test'} fails on {params.does}, as required.")
     observed = f"No test fails on {params.does}."
     return failed(observed, expected, _why_accepted(evidence, params, code))
 

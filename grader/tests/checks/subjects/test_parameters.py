@@ -162,7 +162,7 @@ UNSET = was_set(2.0, successful=True)
             refused("Parameter radius is too small"),
         ),
         (
-            "The callback must accept every value that is possible: SetParametersResult(successful=True).",
+            "For every valid value, the callback must return SetParametersResult(successful=True).",
             refused("no turtle of this type"),
             refused("Parameter radius out of range. Min: 2.0, Max: 3.0, value: 1.0"),
         ),

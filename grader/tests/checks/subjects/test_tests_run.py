@@ -164,7 +164,7 @@ def about_stop(*runs: NodeRun) -> str:
 @pytest.mark.parametrize(
     ("words", "true", "near"),
     [
-        (f"test_it fails on {DOES}, as it should.", [GOOD, STOP], [GOOD, dataclasses.replace(GOOD, node="stop")]),
+        (f"test_it fails on {DOES}, as required.", [GOOD, STOP], [GOOD, dataclasses.replace(GOOD, node="stop")]),
         (f"No test fails on {DOES}.", [GOOD, dataclasses.replace(GOOD, node="stop")], [GOOD, STOP]),
         (f"At least one test fails on {DOES}.", [GOOD, dataclasses.replace(GOOD, node="stop")], [GOOD, STOP]),
         ("At least one test fails on", [GOOD, HUNG], [GOOD, STOP]),
