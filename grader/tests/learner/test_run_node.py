@@ -96,15 +96,19 @@ def test_a_program_in_the_place_of_a_step_names_the_step() -> None:
 
 
 def test_a_terminal_that_is_closed_during_the_build_leaves_nothing(learner: Learner, tmp_path: Path) -> None:
+    setup = learner.home / "ros2_ws/src/my_robot_controller/setup.py"
+    before = setup.read_text()
+    setup.write_text("import time\ntime.sleep(3.0)\n")
     learner.env["TMPDIR"] = str(tmp_path)
     try:
-        child = learner.types("run")
+        child = learner.types("run", "03")
         until(lambda: any(tmp_path.glob("grader-run-*/log")))
         child.kill(signal.SIGHUP)
         child.expect(pexpect.EOF)
-        until(lambda: not any(tmp_path.iterdir()))
+        assert list(tmp_path.iterdir()) == []
     finally:
         del learner.env["TMPDIR"]
+        setup.write_text(before)
 
 
 def test_nothing_is_left_in_the_workspace(learner: Learner) -> None:
