@@ -7,6 +7,7 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.comma_for_dot import comma_for_dot
 from grader.checks.causes.crash_scene import CrashScene
 from grader.checks.causes.trailing_comma import trailing_comma
 from grader.checks.causes.why_attributes import why_no_attribute
@@ -78,6 +79,9 @@ def _why_undeclared(scene: CrashScene) -> Cause:
 
 
 def _why_value(scene: CrashScene) -> Cause | None:
+    if "to unpack" in scene.crash.message:
+        text = "The number of names before the equals sign differs from the number of values after it."
+        return comma_for_dot(scene) or Cause("crash", text)
     if "empty" not in scene.crash.message or not any(name in scene.crash.message for name in ("min()", "max()")):
         return None
     return Cause("crash", "min or max had nothing to compare. Check first whether there is any value.")

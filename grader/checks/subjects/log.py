@@ -25,6 +25,8 @@ from grader.submission.constants import evaluate
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from grader.checks.diagnosis import Diagnosis
     from grader.evidence.evidence import Evidence
 
@@ -184,9 +186,10 @@ def log_counter(evidence: Evidence, params: Counter) -> Finding:
         return failed(observed, expected, _sign_for_sum(evidence, "counter-step") or step)
     if numbers[0] != params.first:
         observed = f"The first number is {numbers[0]:.0f}."
-        too_early = numbers[0] == params.first + 1 and numbers[0] not in _begins_with(evidence)
+        assigned = next((place for value, place in _starts(evidence) if value == numbers[0]), None)
+        too_early = numbers[0] == params.first + 1 and assigned is None
         cause = "Log the number first, then increase it." if too_early else f"Start with {params.first:.0f}."
-        return failed(observed, expected, Cause("counter-start", cause, where))
+        return failed(observed, expected, Cause("counter-start", cause, assigned or where))
     return passed(f"The counter starts at {params.first:.0f} and increases by one per line.")
 
 
@@ -228,16 +231,15 @@ def _set_again(evidence: Evidence) -> Cause | None:
     return None
 
 
-def _begins_with(evidence: Evidence) -> set[float]:
-    """Return the numbers that the source assigns to the names that it also increases, as a counter does."""
-    found = set()
+def _starts(evidence: Evidence) -> Iterator[tuple[float, Where]]:
+    """Yield each number that the source assigns to a name that it also increases, as for a counter, with its place."""
     for module in evidence.code.modules:
         increased = {ast.unparse(node.target) for node in module.nodes if isinstance(node, ast.AugAssign)}
         for node in module.nodes:
             if isinstance(node, ast.Assign) and increased & {ast.unparse(target) for target in node.targets}:
                 value = evaluate(node.value, module.names)
-                found |= {float(value)} if isinstance(value, int | float) else set()
-    return found
+                if isinstance(value, int | float):
+                    yield float(value), Where(module.file, node.lineno)
 
 
 def _logs(call: ast.Call) -> bool:
