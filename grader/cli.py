@@ -252,13 +252,14 @@ def _show(
     from grader.report import terminal
     from grader.report.report_files import save_files
 
-    save_files(evidence, report, json, image, html)
     console = Console(highlight=False)
     terminal.render(report, console, verbose=verbose)
     if changes:
         terminal.changes(evidence.tries, console)
     if following:
         console.print(following, soft_wrap=True)
+    # The verdict comes first, because these files may be on a disk that is full.
+    save_files(evidence, report, json, image, html)
     raise typer.Exit(report.exit_code)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from typing import TYPE_CHECKING
 
 from grader.common.system_errors import of_the_machine
@@ -12,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def check_writable(file: Path | None) -> None:
-    """Check that the folder of a file exists and that the file is not a folder. Call this before doing any work.
+    """Check that the user may write the file, and that it is not a folder. Call this before doing any work.
 
     Raises UsageError if the file could not be written.
     """
@@ -21,6 +23,9 @@ def check_writable(file: Path | None) -> None:
         raise UsageError(message)
     if file is not None and file.is_dir():
         message = f"{file} is a folder. Choose a file name."
+        raise UsageError(message)
+    if file is not None and not os.access(file if file.exists() else file.absolute().parent, os.W_OK):
+        message = f"{file} cannot be written: {os.strerror(errno.EACCES)}."
         raise UsageError(message)
 
 

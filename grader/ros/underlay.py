@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 SOURCES = Path(__file__).parents[1] / "turtlesim/package"
 _TEMPORARY = ".building-"
 _LOG_LINES = 15
+_FULL = 1 << 20
+"""If fewer bytes are free after a build has failed, the disk was full. CMake and compilers do not always say so."""
 
 
 def _report_nothing(_: str) -> None:
@@ -246,6 +248,8 @@ def _run(command: list[str], env: dict[str, str], tell: Callable[[str], None]) -
                 reported = percent
                 tell(f"Building the turtlesim interfaces: {percent} %")
     if process.returncode != 0:
+        if shutil.disk_usage(env["HOME"]).free < _FULL:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         end = "\n".join(line for line in lines[-_LOG_LINES:] if line)
         message = (
             f"The turtlesim interfaces could not be built: `{command[0]}` ended with exit code {process.returncode}. "

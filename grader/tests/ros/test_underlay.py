@@ -176,6 +176,19 @@ def test_a_build_that_fails_leaves_nothing_and_says_why(
     assert [path.name for path in cache.iterdir()] == ["turtlesim.lock"]
 
 
+def test_a_build_that_fails_on_a_full_disk_names_the_disk(
+    ros: installation.Ros, cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sources = tmp_path / "sources"
+    sources.mkdir()
+    (sources / "CMakeLists.txt").write_text('message(FATAL_ERROR "The C compiler is broken")\n')
+    monkeypatch.setattr(underlay, "SOURCES", sources)
+    usage = shutil.disk_usage(tmp_path)
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: usage._replace(free=4096))
+    with pytest.raises(MachineError, match=rf"built in {cache}: No space left on device\. .* set XDG_CACHE_HOME"):
+        underlay.ensure(ros)
+
+
 def test_what_a_killed_build_left_is_removed(ros: installation.Ros, cache: Path, builds: list[Sequence[str]]) -> None:  # noqa: ARG001
     left = cache / ".building-dead"
     left.mkdir(parents=True)

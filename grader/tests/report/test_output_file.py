@@ -1,0 +1,36 @@
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader.errors import UsageError
+from grader.report import output_file
+
+SOLUTION = Path(output_file.__file__).parents[2] / "solutions/03-circle-publisher"
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_a_file_that_may_not_be_written_is_named_before_any_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, there: bool
+) -> None:
+    file = tmp_path / "report.json"
+    if there:
+        file.touch()
+    output_file.check_writable(file)
+    asked: list[Path] = []
+    monkeypatch.setattr(os, "access", lambda path, _: asked.append(path))
+    with pytest.raises(UsageError, match=r"report\.json cannot be written: Permission denied\."):
+        output_file.check_writable(file)
+    assert asked == [file if there else tmp_path]
+
+
+def test_a_full_disk_behind_a_file_does_not_hide_the_verdict() -> None:
+    command = [str(Path(sys.prefix, "bin/grader")), "check", str(SOLUTION), "--json", "/dev/full"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert "Passed: 100 of 100 points." in done.stdout
+    assert "/dev/full cannot be written: No space left on device." in done.stderr
+    assert done.returncode == 3
