@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import re
 import tokenize
 from collections import Counter
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.common.words import count
+from grader.submission.tokens import tokens
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -56,12 +56,9 @@ def _statements(data: bytes) -> list[int]:
     """Return the line numbers of the statements, up to the line at which Python's tokenizer fails."""
     found: list[int] = []
     begins = True
-    try:
-        for token in tokenize.tokenize(io.BytesIO(data).readline):
-            if begins and token.type not in NOT_CODE:
-                found.append(token.start[0])
-                begins = False
-            begins = begins or token.type == tokenize.NEWLINE
-    except (tokenize.TokenError, SyntaxError):
-        pass
+    for token in tokens(data):
+        if begins and token.type not in NOT_CODE:
+            found.append(token.start[0])
+            begins = False
+        begins = begins or token.type == tokenize.NEWLINE
     return found

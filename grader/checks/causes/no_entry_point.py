@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import io
 import re
 import tokenize
 from typing import TYPE_CHECKING
@@ -15,6 +14,7 @@ from grader.checks.outcome import Finding, failed
 from grader.common.words import nearest, shorten
 from grader.submission.code import module_file, read_code
 from grader.submission.package_xml import line_of
+from grader.submission.tokens import tokens
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -124,13 +124,10 @@ def _unread(evidence: Evidence, setup: SetupPy | None) -> Cause | None:
 
 def _comment(source: bytes, executable: str) -> int | None:
     """Return the line of a comment that names the executable before an = sign, or None."""
-    try:
-        for token in tokenize.tokenize(io.BytesIO(source).readline):
-            words = token.string.lstrip("# \"'").partition("=")
-            if token.type == tokenize.COMMENT and words[1] and words[0].strip() == executable:
-                return token.start[0]
-    except (tokenize.TokenError, SyntaxError):
-        pass
+    for token in tokens(source):
+        words = token.string.lstrip("# \"'").partition("=")
+        if token.type == tokenize.COMMENT and words[1] and words[0].strip() == executable:
+            return token.start[0]
     return None
 
 
