@@ -170,6 +170,28 @@ def test_the_environment_of_the_grader_is_not_in_a_room(monkeypatch: pytest.Monk
             assert b"GRADER_TOKEN" not in Path(f"/proc/{pid}/environ").read_bytes()
 
 
+def test_a_fork_ends_when_nobody_waits_for_it() -> None:
+    with Trial(WALL, with_turtlesim(find_ros()), in_cell=True) as trial:
+        trial.await_ready()
+        conductor, _ = forks(trial)
+        trial._conductor._forks[0].close()  # type: ignore[attr-defined]
+        until_gone(conductor)
+
+
+def test_a_server_keeps_nothing_of_a_trial_and_has_no_terminal() -> None:
+    ros = with_turtlesim(find_ros())
+    observed = []
+    for _ in range(2):
+        run("#!/usr/bin/env python3\n")
+        for server in (fork_client.conductors(ros), fork_client.nodes(ros)):
+            assert server._process is not None
+            pid = server._process.pid
+            assert os.getsid(pid) == pid
+            files = list(Path(f"/proc/{pid}/fd").iterdir()) if os.geteuid() == 0 else []
+            observed.append((len(files), children(pid)))
+    assert observed[:2] == observed[2:]
+
+
 def test_a_server_looks_for_no_files_where_another_user_can_create_them() -> None:
     """Its forks keep its first environment in /proc/PID/environ."""
     with Trial(WALL, with_turtlesim(find_ros()), in_cell=True) as trial:
