@@ -149,11 +149,17 @@ def _ends(loop: ast.While) -> bool:
 
 
 def _only_waits(loop: ast.While) -> bool:
-    """Return whether a loop does nothing but wait, for something other than a server."""
-    if any(isinstance(each, ast.Attribute) and each.attr in ANSWERS for each in ast.walk(loop.test)):
+    """Return whether a loop does nothing but wait, for something other than a server.
+
+    The condition can also be that of an if statement that breaks out of the loop.
+    """
+    breaks = [each for each in loop.body if isinstance(each, ast.If) and isinstance(each.body[0], ast.Break)]
+    tests = [loop.test, *(each.test for each in breaks)]
+    if any(isinstance(each, ast.Attribute) and each.attr in ANSWERS for test in tests for each in ast.walk(test)):
         return False
-    calls = [each.value for each in loop.body if isinstance(each, ast.Expr)]
-    return all(isinstance(each, ast.Pass | ast.Expr) for each in loop.body) and all(
+    others = [each for each in loop.body if each not in breaks]
+    calls = [each.value for each in others if isinstance(each, ast.Expr)]
+    return all(isinstance(each, ast.Pass | ast.Expr) for each in others) and all(
         isinstance(call, ast.Call) and getattr(call.func, "attr", "") == "sleep" for call in calls
     )
 

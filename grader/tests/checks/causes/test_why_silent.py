@@ -75,6 +75,12 @@ def silence(source: str) -> tuple[str, str, int | None] | None:
             "blocks-in-init",
             "If this loop in __init__ does not end, rclpy.spin is never reached.",
         ),
+        (
+            "while True:  # look\n            if self.pose:\n                break\n            time.sleep(0.1)",
+            "pass",
+            "blocks-in-init",
+            "If this loop in __init__ does not end, rclpy.spin is never reached.",
+        ),
     ],
 )
 def test_silence_is_explained_at_its_line(made: str, sent: str, diagnosis: str, words: str) -> None:
@@ -102,6 +108,14 @@ def test_silence_is_explained_at_its_line(made: str, sent: str, diagnosis: str, 
         (f"while True: break\n        {TIMER}", "pass"),
         (f"while not self.client.wait_for_service(1.0): pass\n        {TIMER}", "pass"),
         (f"while not self.client.service_is_ready(): time.sleep(0.1)\n        {TIMER}", "pass"),
+        (
+            f"while True:\n            if self.client.service_is_ready():\n                break\n        {TIMER}",
+            "pass",
+        ),
+        (
+            f"while True:\n            if self.client:\n                break\n            self.find()\n        {TIMER}",
+            "pass",
+        ),
         (f"Thread(target=lambda: rclpy.spin(self)).start()\n        {TIMER}", "pass"),
         ("self.create_timer(0.5, self)\n\n    def __call__(self):\n        self.send()", "pass"),
         ("getattr(self, 'se' + 'nd')()", "pass"),
