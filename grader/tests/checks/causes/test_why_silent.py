@@ -113,7 +113,7 @@ def test_silence_is_explained_at_its_line(made: str, sent: str, diagnosis: str, 
             "pass",
         ),
         (
-            f"while True:\n            if self.client:\n                break\n            self.find()\n        {TIMER}",
+            f"while True:\n            if self.client:\n                break\n            self.do()\n        {TIMER}",
             "pass",
         ),
         (f"Thread(target=lambda: rclpy.spin(self)).start()\n        {TIMER}", "pass"),
