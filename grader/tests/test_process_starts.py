@@ -52,7 +52,7 @@ OTHERS = {
     ("fork_client", "_begin"): "the loader of Python, with a command of interpreter() in the same function",
     ("fork_server", "_fork_supervised"): "a fork that enters a room or a cell",
     ("fork_server", "_next_node"): "a fork that supervises a node",
-    ("fork_server", "_next_request"): "a fork that supervises a conductor or the nodes of a trial",
+    ("fork_server", "_forked"): "a fork that supervises a conductor or the nodes of a trial",
     ("holder", "__init__"): "bubblewrap, with the command of the caller",
     ("launchers", "__init__"): "the command of conductor._launcher",
     ("notebooks", "seconds"): "the command of the nested function `nbgrader`",
