@@ -112,9 +112,9 @@ class Judged:
             "cause named first": self.first,
             "cause named at all": self.at_all,
             "false statements": self.false,
-            "cause named first, by facts": by_fact[0],
-            "cause named at all, by facts": any(by_fact),
-            "false statements, by facts": bool(self.contradicted),
+            "cause named first, checked against facts": by_fact[0],
+            "cause named at all, checked against facts": any(by_fact),
+            "false statements, checked against facts": bool(self.contradicted),
         }
 
 

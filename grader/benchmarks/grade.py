@@ -1,14 +1,14 @@
-"""Measure the cost of grading one submission of a class, relative to F, for several sizes and numbers of Dask workers.
+"""Measure the cost of grading one submission, for several class sizes and several numbers of Dask workers.
 
     python -m grader.benchmarks.grade [--sizes 25,50,100,200] [--workers 1,2,4] [--dask-size 50] [--jobs N]
                                       [--mix right|all] [--times N]
 
-F (see grader.benchmarks.check) is measured before and after the class, in the same run. The class is mixed: out of
-every eight submissions, four are correct, three are wrong in different ways, and one is hostile. With `--mix right`,
-all submissions are correct. Each submission contains a different comment, so that the grader grades every submission.
-In half of the packages, package.xml contains the name of the student, so these packages cannot share a build. The
-benchmark also measures the memory of all processes of the run, including those in sandbox cells. The benchmark samples
-the memory several times per second, and counts shared memory once.
+The cost is relative to F (see grader.benchmarks.check), which is measured before and after the class, in the same run.
+The class is mixed: out of every eight submissions, four are correct, three are wrong in different ways, and one is
+hostile. With `--mix right`, all submissions are correct. Each submission contains a different comment, so that the
+grader grades every submission. In half of the packages, package.xml contains the name of the student, so these packages
+cannot share a build. The benchmark also measures the memory of all processes of the run, including those in sandbox
+cells. The benchmark samples the memory several times per second, and counts shared memory once.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ OF_CATCHING: dict[str, dict[Diagnosis, str]] = {
         "target-unannounced": "an existing turtle is not announced",
         "target-format": "the names in an announcement are separated by something other than spaces",
         "still-announced": "a turtle that was caught, or never existed, is announced",
-        "silent-when-empty": "nothing is announced when no turtle is left",
+        "silent-when-empty": "no message is published when no turtle is left",
         "not-killed": "a turtle that was caught is not removed",
         "killed-uncaught": "a turtle is removed although nobody caught it",
         "loop-variable": "a function created in a loop uses the loop variable, which then has its last value",

@@ -76,7 +76,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "colon-missing": "a colon is missing at the end of a line",
         "comma-missing": "a comma is missing",
         "comma-for-dot": "a comma is written in place of a dot",
-        "trailing-comma": "a comma after a value makes a tuple of it",
+        "trailing-comma": "a trailing comma turns a value into a tuple",
         "bracket-open": "a bracket is never closed",
         "bracket-extra": "there is one closing bracket too many, or it is of the wrong kind",
         "quote-open": "a quotation mark is missing",

@@ -219,7 +219,10 @@ class Evidence:
         return self.build
 
     def place(self, *calls: str) -> Where | None:
-        """Return the place of the first call to one of these functions (in this order), or the node's file, or None."""
+        """Return the place of the first call to the first of these functions that is called at all.
+
+        If none is called, return the node's file, or None.
+        """
         for name in calls:
             found = self.code.calls(name)
             if found:

@@ -124,7 +124,10 @@ def new(
 def install(
     prefix: Annotated[
         Optional[Path],  # noqa: UP045
-        typer.Option(help="Install for the Jupyter in this folder. Default: for the current user.", metavar="DIR"),
+        typer.Option(
+            help="Install the kernel for the Jupyter installation with this prefix. Default: for the current user.",
+            metavar="DIR",
+        ),
     ] = None,
 ) -> None:
     """Install the Jupyter kernel "ROS 2 Jazzy (course)", which needs no sourced ROS 2."""

@@ -173,7 +173,10 @@ async def _follow(socket: WebSocket, hub: Hub) -> None:
 
 
 def _awake(text: str) -> bool | None:
-    """Return whether a message reports that the page is shown or hidden, or None for other messages."""
+    """Return True if the message reports that the page is shown, and False if it reports that the page is hidden.
+
+    For any other message, return None.
+    """
     try:
         said = json.loads(text) if len(text) <= LARGEST else {}
     except (ValueError, RecursionError):

@@ -62,7 +62,7 @@ class Ring:
 
 @dataclass(frozen=True)
 class Arrow:
-    """A narrow triangle at a point (m) that points in the direction theta (rad)."""
+    """An arrowhead at a point (m) that points in the direction theta (rad)."""
 
     role: Role
     at: Point
@@ -71,7 +71,7 @@ class Arrow:
 
     @property
     def corners(self) -> tuple[Point, ...]:
-        """The four corners (m)."""
+        """The four corners of the arrowhead (m): the tip, a side, the notch, and the other side."""
         corners = [(0.0, 1.0), (2.5, 0.6), (math.pi, 0.35), (-2.5, 0.6)]
         return tuple(
             (

@@ -70,7 +70,7 @@ class ConductorProcess(ABC):
 
     @abstractmethod
     def pids(self) -> tuple[int, ...]:
-        """Return process ids. These processes and their descendants are all processes of the trial."""
+        """Return the ids of processes that, together with their descendants, make up the whole trial."""
 
     @abstractmethod
     def wait(self, timeout: float) -> int:

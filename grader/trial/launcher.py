@@ -1,7 +1,7 @@
 """Start a node quickly inside its cell: rclpy is imported while colcon is still building.
 
-The launcher starts before the install tree exists: as a fork (grader.trial.fork_server), or as a separate script
-without a fork server. The launcher reads one line of JSON (`script`,
+The launcher starts before the install tree exists: as a fork of the fork server (grader.trial.fork_server) or, if there
+is no fork server, as a separate script. The launcher reads one line of JSON (`script`,
 `ros_arguments`, `python_path`, `env`, `install`) and then the install tree, a tar stream, from standard input. After
 reading the install tree, the launcher runs the installed script as __main__, as the interpreter in the script's first
 line would.

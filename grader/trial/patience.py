@@ -15,7 +15,7 @@ HANDSHAKE_S = 100.0
 """The maximum wall time until a node waits for its clock (s). A node can reach this limit only on a crowded machine.
 The limit for the whole trial is slightly higher (trial.py)."""
 TICK_CPU_S = 1.0
-"""If a node works longer than this on one frame, it counts as never idle (s of CPU time)."""
+"""The maximum CPU time (s) that a node may use on one frame. Beyond that, the node is considered never idle."""
 TICK_S = 30.0
 SHARED = 0.1
 """If a second thread did at least this share of the work, several threads kept the node from becoming idle."""

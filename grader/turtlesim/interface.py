@@ -39,8 +39,8 @@ class Hooks:
 
     `on_command(topic, data, twist)` is called when a command has arrived, before it moves the turtle.
     `on_publish(topic, type, data)` is called when a pose or a colour is published. `on_intervention(name)` is called
-    when a client calls a service or an action ("spawn", "rotate_absolute") or sets a parameter ("set_background" if
-    only colours are set, or else "set_parameters"). `on_call(service, type, request, response, waited_s)` is called
+    when a client calls a service ("spawn"), sends a goal ("rotate_absolute") or sets a parameter ("set_background" if
+    only colours are set, otherwise "set_parameters"). `on_call(service, type, request, response, waited_s)` is called
     when a call is answered, `waited_s` (s) after it arrived, and `on_goal(event)` for each event of an action goal.
     `late` delays the responses if it is not None.
     """

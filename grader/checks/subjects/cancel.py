@@ -1,4 +1,4 @@
-"""Checks that the node cancels its goal when the trial requests it, and sends no goal afterwards."""
+"""Checks that the node cancels its goal when the trial requests it, and sends no further goals."""
 
 from __future__ import annotations
 

@@ -108,7 +108,7 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
             f"{at:.1f} s after the start."
         )
         wanted = (
-            f"{what.plural} arrive every {period:.2f} s, and each interval is from {params.min_interval_s:.2f} to "
+            f"{what.plural} arrive every {period:.2f} s, and each interval is between {params.min_interval_s:.2f} and "
             f"{params.max_interval_s:.2f} s."
         )
         cause = _uneven_cause(evidence, what)

@@ -64,7 +64,7 @@ def calls_service(evidence: Evidence, params: CallsService) -> Finding:
         if in_order and not too_early:
             return passed(f"The node called {params.service} with {request}.")
         text = f"Send this request in the callback that receives the response from {after}."
-        observed = f"The node called {params.service} with {request}, but not after {after}."
+        observed = f"The node called {params.service} with {request}, but not after it had called {after}."
         if in_order:
             observed = f"The node called {params.service} with {request} before {after} had responded."
         return failed(observed, expected, Cause("service-order", text, evidence.place("call_async")))

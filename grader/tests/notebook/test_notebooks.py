@@ -70,7 +70,7 @@ def test_a_notebook_is_short_and_names_the_lesson(step: str) -> None:
     prose = " ".join("".join(cell["source"]) for cell in cells_of(step) if cell["cell_type"] == "markdown")
     assert 60 <= len(prose.split()) <= 450
     assert "type `%lesson` in a new cell." in prose
-    assert f"In the course, the lesson is the file `course/{step}/lesson.md`" in prose
+    assert f"In the course's repository, the lesson is `course/{step}/lesson.md`" in prose
     # A notebook may be opened from any folder, so a link to a file could lead nowhere.
     assert re.findall(r"\]\((?!https://)", prose) == []
 

@@ -39,7 +39,7 @@ class LookoutNode(Node):
         pass
 
     def goal_accepted(self, future):
-        # TODO 5: keep the handle of the goal, and ask for its result, without waiting.
+        # TODO 5: store the goal handle, and request the result without waiting.
         pass
 
     def feedback_received(self, message):

@@ -31,7 +31,7 @@ class TwoPensNode(Node):
             return  # no subscriber yet: the command would be lost
         msg = Twist()
         # TODO 5: what happens in each state? "begin": request the yellow pen as soon as both services are ready.
-        # "first arc": half a circle to the left in TICKS calls; then ask for the turtle.
+        # "first arc": half a circle to the left in TICKS calls; then request the turtle "painter" from /spawn.
         # "second arc": half a circle to the right. In all other states, stand still.
         self.publisher.publish(msg)
 

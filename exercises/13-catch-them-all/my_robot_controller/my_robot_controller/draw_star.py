@@ -42,7 +42,7 @@ class DrawStarNode(Node):
         self.publisher.publish(msg)
 
     def turn(self):
-        # TODO 11: send the goal for the next side, and ask for its result, as in lookout.py.
+        # TODO 11: send the goal for the next side, and request its result, as in lookout.py.
         pass
 
     # TODO 12: when the goal has succeeded, drive.

@@ -221,7 +221,7 @@ EVEN, UNEVEN = every(0.5, 2.0, 1.0), uneven()
 @pytest.mark.parametrize(
     ("words", "true", "near"),
     [
-        ("Commands arrive every 0.50 s, and each interval is from 0.4", UNEVEN, EVEN),
+        ("Commands arrive every 0.50 s, and each interval is between 0.4", UNEVEN, EVEN),
         ("Commands arrived at uneven intervals: 0.71 s passed between two of them", UNEVEN, EVEN),
         ("Commands arrive every 0.50 s (2.0 Hz).", EVEN, UNEVEN),
         ("The first command arrives within", every(0.5, 2.0, 1.0, first_s=3.7), EVEN),

@@ -77,7 +77,11 @@ OTHERS = "/turtle2/set_pen"
     ("words", "true", "near"),
     [
         ("The node called /spawn with x=2.0.", [asked(1.0, PEN), TWO], [asked(1.0, PEN), ZERO]),
-        ("The node called /spawn with x=2.0, but not after /turtle1/set_pen.", [TWO], [asked(1.0, PEN), TWO]),
+        (
+            "The node called /spawn with x=2.0, but not after it had called /turtle1/set_pen.",
+            [TWO],
+            [asked(1.0, PEN), TWO],
+        ),
         (
             "The node called /spawn with x=2.0 before /turtle1/set_pen had responded.",
             [answered(1.0, PEN, 2.5), TWO],

@@ -37,7 +37,8 @@ class DrawSquareNode(Node):
             self.change_state()
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO c: set the speeds of the state, count the call, and change the state after its last call.
+        # # TODO c: set the speeds for the current state, count this call, and go to the next state after the last call
+        # # in the current one.
         # END STARTER
         self.publisher.publish(msg)
         # BEGIN SOLUTION

@@ -64,7 +64,7 @@ class LookoutNode(Node):
         self.goal.get_result_async().add_done_callback(self.goal_ended)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 5: keep the handle of the goal, and ask for its result, without waiting.
+        # # TODO 5: store the goal handle, and request the result without waiting.
         # pass
         # END STARTER
 

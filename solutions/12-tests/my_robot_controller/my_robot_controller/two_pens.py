@@ -61,7 +61,7 @@ class TwoPensNode(Node):
         # END SOLUTION
         # BEGIN STARTER
         # # TODO 5: what happens in each state? "begin": request the yellow pen as soon as both services are ready.
-        # # "first arc": half a circle to the left in TICKS calls; then ask for the turtle.
+        # # "first arc": half a circle to the left in TICKS calls; then request the turtle "painter" from /spawn.
         # # "second arc": half a circle to the right. In all other states, stand still.
         # END STARTER
         self.publisher.publish(msg)

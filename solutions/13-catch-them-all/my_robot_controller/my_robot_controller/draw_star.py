@@ -71,7 +71,7 @@ class DrawStarNode(Node):
         self.client.send_goal_async(goal).add_done_callback(self.goal_accepted)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 11: send the goal for the next side, and ask for its result, as in lookout.py.
+        # # TODO 11: send the goal for the next side, and request its result, as in lookout.py.
         # pass
         # END STARTER
         # BEGIN SOLUTION
