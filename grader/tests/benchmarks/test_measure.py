@@ -48,4 +48,4 @@ def test_the_cpu_time_of_a_process_counts_also_if_nobody_waits_for_it() -> None:
 
 def test_a_command_that_fails_has_no_cost() -> None:
     done = measured("raise SystemExit(3)")
-    assert "ended with 3" in done.stderr
+    assert "exited with code 3:" in done.stderr
