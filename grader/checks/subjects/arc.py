@@ -146,11 +146,14 @@ def _other_angle(evidence: Evidence, params: Arc, chosen: Steps, angle: float) -
 
 def _not_followed(evidence: Evidence, params: Arc) -> Cause | None:
     """Return the cause if the node accepted a new parameter value but did not change its commands, else None."""
-    accepted = [call.t_s for call in set_calls(evidence) if call.t_s < params.from_s and was_accepted(call)]
+    changes = [call.t_s for call in set_calls(evidence) if was_accepted(call)]
+    accepted = [t_s for t_s in changes if t_s < params.from_s]
     if not accepted:
         return None
+    # The next change can come in the last frame of the arc.
+    until_s = min([params.until_s, *(t_s - FRAME_S for t_s in changes if t_s >= params.from_s)])
     before = [each for each in evidence.commands if each.t_s < accepted[-1] - FRAME_S]
-    after = [each for each in evidence.commands if params.from_s <= each.t_s <= params.until_s]
+    after = [each for each in evidence.commands if params.from_s <= each.t_s <= until_s]
     same = [(each.linear, each.angular) == (before[-1].linear, before[-1].angular) for each in after if before]
     if not (same and all(same)):
         return None

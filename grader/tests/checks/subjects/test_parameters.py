@@ -81,6 +81,13 @@ def test_a_path_that_does_not_follow_a_parameter_is_named(successful: bool, diag
     assert found(ARC, given, radius_m=1.0, from_s=3.4).diagnosis == diagnosis
 
 
+def test_the_next_change_at_the_end_of_an_arc_does_not_hide_the_cause() -> None:
+    commands = [*every(0.1, 2.0, 1.0, until_s=6.0), *every(0.1, 2.0, 2.0, first_s=6.0)]
+    calls = (was_set(1.0, successful=True, reason=""), replace(was_set(1.0, successful=True, reason=""), t_s=6.0))
+    given = evidence(recording(commands, calls=calls))
+    assert found(ARC, given, radius_m=1.0, from_s=3.4, until_s=6.0).diagnosis == "parameter-not-followed"
+
+
 def about_described(call: Call | None, **changes: Any) -> str:  # noqa: ANN401
     made = recording(every(0.5, 2.0, 1.0), calls=() if call is None else (call,), **changes)
     return told(found(DECLARES, evidence(made), parameter="radius", at_least=0.2, at_most=3.0))
