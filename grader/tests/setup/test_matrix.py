@@ -25,7 +25,7 @@ MINORS = range(machine.OLDEST[1], machine.NEWEST[1] + 1)
 ORDINARY = 54321
 """The user id of a user that the system does not have."""
 STAGES = (
-    "Making .venv",
+    "Creating .venv",
     "Installing the installer",
     "Installing ROS 2 Jazzy",
     "Installed ",
