@@ -31,29 +31,34 @@ class Fork:
         self._starting = Lock()
 
     def close(self) -> None:
-        """Stop watching. The fork server then kills the process if it is still running."""
-        self._result.close()
-        if self._process is not None:
-            os.close(self._process)
-            self._process = None
+        """Stop watching. The fork server then kills the process if it is still running. Any thread may call this."""
+        with suppress(OSError):  # the fork server has exited
+            self._result.shutdown(socket.SHUT_RDWR)  # another thread may be waiting for the process
+        with self._starting:
+            self._result.close()
+            if self._process is not None:
+                os.close(self._process)
+                self._process = None
 
     def await_started(self) -> int | None:
-        """Wait until the process exists. Return its process id, or None if it has exited or could not be started."""
+        """Wait until the process exists.
+
+        Return its process id, or None if it has exited, could not be started, or is no longer watched.
+        """
         with self._starting:
-            if self._process is None:
+            if self._process is None and self._result.fileno() >= 0:
                 data, passed, *_ = socket.recv_fds(self._result, 1, 1)
-                if data != STARTED or not passed:
-                    return None
-                self._process = passed[0]
-        with suppress(ProcessLookupError):
-            return entering.pid_of(self._process)
+                if data == STARTED and passed:
+                    self._process = passed[0]
+            with suppress(ProcessLookupError):
+                return None if self._process is None else entering.pid_of(self._process)
         return None
 
     def signal(self, number: int) -> None:
         """Send a signal to the process if it has not exited."""
-        if self.await_started() is not None:
-            assert self._process is not None
-            with suppress(ProcessLookupError):
+        self.await_started()
+        with self._starting, suppress(ProcessLookupError):
+            if self._process is not None:
                 pidfd_send_signal(self._process, number)
 
     def poll(self) -> int | None:

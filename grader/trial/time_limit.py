@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from threading import Timer
+from threading import Lock, Timer
 from typing import TYPE_CHECKING
 
 from grader.sandbox.usage import cpu_s, family
@@ -27,26 +27,44 @@ class TimeLimit:
         self._timer = Timer(0.0, lambda: None)
         self._others = Others()
         self._worked_before_s = self._begun_s = 0.0
+        self._changing = Lock()
+        self._closed = False
         self.starved = False
 
     def start(self, seconds: float) -> None:
-        """Kill the processes after this time (s). A limit that was started earlier no longer applies."""
+        """Kill the processes after this time (s). A limit that was started earlier no longer applies.
+
+        Another thread may close the limit at any time. After that, `start` does nothing.
+        """
         self.cancel()
-        self._others, self._worked_before_s, self._begun_s = Others(), self._worked_s(), time.monotonic()
-        self._timer = Timer(seconds, self._end)
-        self._timer.daemon = True
-        self._timer.start()
+        others, worked_s, now = Others(), self._worked_s(), time.monotonic()
+        with self._changing:
+            if not self._closed:
+                self._others, self._worked_before_s, self._begun_s = others, worked_s, now
+                self._timer = Timer(seconds, self._end)
+                self._timer.daemon = True
+                self._timer.start()
 
     def cancel(self) -> None:
         """Do not kill the processes any more."""
-        self._timer.cancel()
+        with self._changing:
+            self._timer.cancel()
+
+    def close(self) -> None:
+        """Cancel the limit for ever, because the trial is about to end."""
+        with self._changing:
+            self._closed = True
+            self._timer.cancel()
 
     def _end(self) -> None:
-        worked_s = self._worked_s() - self._worked_before_s
-        passed_s = time.monotonic() - self._begun_s
-        others_s = self._others.worked_s(but_s=worked_s)
-        self.starved = others_s >= MOST_BY_OTHERS * len(os.sched_getaffinity(0)) * passed_s
-        self._conductor.kill()
+        with self._changing:
+            if self._closed:
+                return
+            worked_s = self._worked_s() - self._worked_before_s
+            passed_s = time.monotonic() - self._begun_s
+            others_s = self._others.worked_s(but_s=worked_s)
+            self.starved = others_s >= MOST_BY_OTHERS * len(os.sched_getaffinity(0)) * passed_s
+            self._conductor.kill()
 
     def _worked_s(self) -> float:
         return sum(map(cpu_s, family(*self._conductor.pids())))

@@ -218,7 +218,7 @@ class Trial:
         self._time_limit.start(120.0 + 6.0 * self._plan.duration_s)
 
     def _end(self) -> None:
-        self._time_limit.cancel()
+        self._time_limit.close()
         self._conductor.close()
 
     def _send(self, data: bytes) -> None:

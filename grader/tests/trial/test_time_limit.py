@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 from tempfile import TemporaryFile
 from threading import Timer
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -18,6 +19,9 @@ from grader.trial.conductor_process import PlainConductor
 from grader.trial.recording import Pose
 from grader.trial.time_limit import TimeLimit
 from grader.trial.trial import OverwhelmedError, Plan, Trial
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 PROCESSORS = len(os.sched_getaffinity(0))
 HANGS = f"{READY}; exec sleep 300"
@@ -59,6 +63,25 @@ def test_a_trial_that_is_over_is_not_killed(monkeypatch: pytest.MonkeyPatch) -> 
     limit = TimeLimit(conductor)
     limit.start(0.1)
     limit.cancel()
+    assert conductor.wait(HANG_S) == 0
+    conductor.close()
+
+
+def test_a_closed_trial_gets_no_new_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A trial that runs ahead can be closed while another thread is about to start the limit."""
+    conductor = a_conductor(monkeypatch, "exec sleep 0.5")
+    limit = TimeLimit(conductor)
+    begun: list[float] = []
+
+    def timer(seconds: float, end: Callable[[], None]) -> Timer:
+        begun.append(seconds)
+        return Timer(seconds, end)
+
+    monkeypatch.setattr(time_limit, "Timer", timer)
+    limit.close()
+    limit.start(0.0)
+    limit._end()
+    assert begun == []
     assert conductor.wait(HANG_S) == 0
     conductor.close()
 
