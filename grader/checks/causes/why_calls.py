@@ -119,6 +119,9 @@ def why_type(scene: CrashScene) -> Cause | None:
         return published_other(scene, expected["wanted"], expected["got"])
     if (called := NOT_CALLABLE.search(text)) is not None:
         return _not_callable(scene, called["type"])
+    if "'Parameter'" in text:
+        text = "get_parameter returns the parameter itself. The value of the parameter is in .value."
+        return Cause("parameter-itself", text)
     return why_operands(scene) or _by_message(scene, text)
 
 
@@ -144,10 +147,6 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
         return _with_init(scene) or _after_shutdown(scene) or _never_init(scene)
     if "rclpy_resolve_name(): incompatible" in text:
         return Cause("crash", "A topic name must be a string in quotation marks, or a variable that contains a string.")
-    if "'Parameter'" in text:
-        return Cause(
-            "parameter-itself", "get_parameter returns the parameter itself. The value of the parameter is in .value."
-        )
     if "Expected QoSProfile or int" in text:
         quotes = " without quotation marks" if "'str'" in text else ""
         return Cause("queue-size", f"The last argument is the queue size, a whole number{quotes}.")

@@ -28,8 +28,8 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
         return passed("The node uses a timer.")
     if evidence.code.node_file is None:
         return Finding(Status.SKIPPED, "Not judged, because the file of the node is not known yet.")
-    if evidence.code.node_file not in {module.file for module in evidence.code.modules if module.tree is not None}:
-        return Finding(Status.SKIPPED, "Not judged, because the file of the node cannot be read.")
+    if evidence.code.node_file not in {module.file for module in evidence.code.modules if module.body}:
+        return Finding(Status.SKIPPED, "Not judged, because the file of the node cannot be read, or contains no code.")
     cause = "A timer calls a method periodically, at a period that the node chooses."
     if loops(evidence) and not evidence.code.calls("spin_once"):
         cause = "A node that runs its own loop receives no messages. With a timer, rclpy.spin does the waiting."

@@ -140,6 +140,10 @@ def _no_circle(evidence: Evidence, trajectory: Trajectory, expected: str) -> Fin
         crash = crash_of(evidence)
         if crash is not None:
             return crash_finding(evidence, crash, f"The turtle did not move. {end_observed(evidence)}", expected)
+        early = ended_early(evidence)
+        if early and all_zero(evidence) == "":
+            ended = Cause("ended-early", early, evidence.place("publish"))
+            return failed("The turtle did not move.", expected, ended)
         why = why_replaced(evidence) or Cause("not-moving", all_zero(evidence), line_of_values(evidence))
         return failed("The turtle did not move.", expected, why)
     if trajectory.wall.any():

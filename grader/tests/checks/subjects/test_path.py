@@ -49,6 +49,7 @@ def test_a_circle_is_a_circle_whatever_the_rhythm(shape: str) -> None:
         ("turns on the spot", "turns-on-the-spot", "The turtle turned on the spot."),
         ("all zero", "not-moving", "The turtle did not move."),
         ("no messages", "not-moving", "The turtle did not move."),
+        ("ends at once", "ended-early", "The turtle did not move."),
         ("wall", "wall", "The turtle ran into a wall after 1.7 s."),
         ("straight into the wall", "wall", "The turtle ran into a wall after 3.3 s."),
         (
