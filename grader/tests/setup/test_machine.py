@@ -65,6 +65,7 @@ RUNS_FIRST = (
         "setup/compiled_modules.py",
         "setup/installers.py",
         "setup/machine.py",
+        "setup/place.py",
         "setup/provide.py",
         "setup/setup_errors.py",
     ),
