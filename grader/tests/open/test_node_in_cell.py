@@ -9,7 +9,7 @@ import re
 import signal
 import socket
 import subprocess
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,7 +18,7 @@ import pytest
 
 from grader.common.interpreter import interpreter
 from grader.open import programs
-from grader.open.dds_ports import FIRST_OWN, participant_ports
+from grader.open.dds_ports import FIRST_OWN, OTHERS, participant_ports
 from grader.open.linked_cell import linkable
 from grader.sandbox import bubblewrap
 from grader.tests.domains import own_domain
@@ -27,11 +27,13 @@ from grader.tests.ros2.world import environment
 from grader.tests.waiting import HANG_S, until, until_gone
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from grader.common.interpreter import Start
 
 HOSTILE = Path(__file__).with_name("hostile_node.py")
+SENT = b"hostile"
+"""The datagram of the attack."""
 ANSWERING = HOSTILE.with_name("answering_nodes.py")
 ASKING = HOSTILE.with_name("asking_node.py")
 SETTINGS = json.dumps({"step": CIRCLE, "executable": "draw_circle", "workspace": None})
@@ -85,8 +87,13 @@ class Machine:
         for listening in (self.tcp, *self.udp):
             listening.settimeout(0)
             try:
-                _ = listening.accept() if listening is self.tcp else listening.recv(100)
-                found.append(str(listening.type.name))
+                # Nodes of other tests may send to the same ports.
+                if listening is self.tcp:
+                    _ = listening.accept()
+                    found.append(str(listening.type.name))
+                while listening is not self.tcp:
+                    if listening.recv(100) == SENT:
+                        found.append(str(listening.type.name))
             except BlockingIOError:
                 continue
         return found
@@ -95,14 +102,22 @@ class Machine:
 @contextmanager
 def machine(learner: Course, domain: int) -> Iterator[Machine]:
     (learner.home / ".secret").write_text("a secret of the learner")
-    ports = [0, participant_ports(domain + 1, 0)[0], FIRST_OWN + 20]
+    others = (participant_ports(other, 0)[0] for other in range(domain + 1, domain + 50))
     with socket.create_server(("127.0.0.1", 0)) as tcp:
-        udp = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in ports]
-        for each, port in zip(udp, ports, strict=True):
-            each.bind(("127.0.0.1", port))
+        udp = [bound([0]), bound(others), bound(range(FIRST_OWN + 20, FIRST_OWN + OTHERS))]
         yield Machine(learner.home, tcp, udp)
         for each in udp:
             each.close()
+
+
+def bound(ports: Iterable[int]) -> socket.socket:
+    """Return a socket that is bound to the first of these ports that no other program uses."""
+    listening = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    for port in ports:
+        with suppress(OSError):
+            listening.bind(("127.0.0.1", port))
+            return listening
+    raise AssertionError("all of these ports are in use")  # noqa: EM101
 
 
 def hostile(learner: Course, found: Machine, name: str) -> None:
