@@ -34,8 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 READY = b"colcon-is-ready\n"
-"""This line is printed before any part of the submission is read. An error after this line is never the machine's
-fault."""
+"""This line is printed before the submission is read. An error after this line is never the machine's fault."""
 _MOST_OPEN = 4096
 _MOST_REQUEST = 1024 * 1024
 _IGNORE = re.compile(r"ignore:([^:]*)")
