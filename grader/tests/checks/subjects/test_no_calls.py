@@ -153,7 +153,7 @@ def test_a_node_with_a_rate_does_not_fail_for_a_lack_of_messages() -> None:
         ("# later\n", "contains no code"),
     ],
 )
-def test_no_advice_is_given_on_a_file_that_is_not_there_cannot_be_read_or_is_empty(text: str | None, words: str) -> None:
+def test_no_advice_is_given_on_a_file_that_is_missing_unreadable_or_empty(text: str | None, words: str) -> None:
     package = submission({NODE_FILE: text, "setup.py": "setup()\n"})
     finding = found(USES_TIMER, evidence(package=package, build=None))
     assert finding.status is Status.SKIPPED
