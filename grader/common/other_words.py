@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -40,4 +41,4 @@ def with_exercise(command: str, words: Sequence[str]) -> str:
     """
     named = [word for word in words if _STEP.fullmatch(word)]
     others = [word for word in words if word not in named and not word.startswith("-")]
-    return f"{command} {others[0]} --exercise {named[0]}" if len(named) == len(others) == 1 else ""
+    return f"{command} {shlex.quote(others[0])} --exercise {named[0]}" if len(named) == len(others) == 1 else ""

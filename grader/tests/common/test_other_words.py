@@ -54,3 +54,7 @@ def test_a_step_and_a_package_name_the_option_for_the_step(command: str, words: 
 @pytest.mark.parametrize("words", [("mine", "yours"), ("03", "04"), ("03",), ("--seed", "3")])
 def test_other_words_name_no_option(words: tuple[str, ...]) -> None:
     assert other_words.with_exercise("grader check", words) == ""
+
+
+def test_a_suggested_command_can_be_typed_as_it_stands_even_with_spaces_in_the_path() -> None:
+    assert other_words.with_exercise("grader check", ["03", "my work"]) == "grader check 'my work' --exercise 03"
