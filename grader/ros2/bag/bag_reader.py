@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import heapq
+import shlex
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -26,7 +27,7 @@ def open_bag(path: Path) -> Iterator[Reader]:
         files = [file for ending in ("*.mcap", "*.db3") for file in path.glob(ending)]
         text = f"[ERROR] [ros2bag]: No metadata.yaml in '{path}'."
         if files:
-            text += f"\nThe recording was interrupted. Type: ros2 bag reindex {path}"
+            text += f"\nThe recording was interrupted. Type: ros2 bag reindex {shlex.quote(str(path))}"
         raise Ros2Error(text)
     try:
         reader = Reader(path)

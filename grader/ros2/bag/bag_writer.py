@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import sqlite3
 import time
 from typing import TYPE_CHECKING, Literal
@@ -134,7 +135,8 @@ class BagWriter:
         except OSError as failure:
             text = f"[ERROR] [ros2bag]: {self.folder}: {failure.strerror}."
             text += (
-                f"\nThe bag contains the earlier messages. Free disk space, then type: ros2 bag reindex {self.folder}"
+                f"\nThe bag contains the earlier messages. Free disk space, then type: "
+                f"ros2 bag reindex {shlex.quote(str(self.folder))}"
             )
             raise Ros2Error(text) from failure
 
