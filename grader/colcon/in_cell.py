@@ -11,6 +11,7 @@ This file runs as a separate script. Standard input is the submission, a tar str
 
 from __future__ import annotations
 
+import gc
 import importlib.machinery
 import json
 import os
@@ -26,9 +27,13 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass
 from functools import partial
 from importlib import metadata
-from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
+
+# In the cell, the grader consists of this file and the two files that it imports.
+sys.path[0] = str(Path(__file__).parents[2])
+from grader.colcon.entry_points_cache import EntryPoints  # noqa: E402
+from grader.common.quick_exit import QuickExit  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -105,6 +110,7 @@ class Forks:
         if os.fork() == 0:
             self._requests.close()
             _import_commands()
+            gc.freeze()  # a fork would copy the memory that garbage collection writes to
             become(_next_run(theirs))
         theirs.close()
 
@@ -150,6 +156,7 @@ def _next_run(requests: socket.socket) -> Run:
             os._exit(0)
         child = os.fork()
         if child == 0:
+            requests.detach()  # the run may get this number for a file, which the socket must not close
             for number, descriptor in enumerate(received[:3]):
                 os.dup2(descriptor, number)
             os.closerange(3, _MOST_OPEN)
@@ -177,17 +184,22 @@ def become(run: Run) -> NoReturn:
     for beginning in run.ignored:
         warnings.filterwarnings("ignore", re.escape(beginning))
     sys.argv = run.argv
+    QuickExit.kept = frozenset(sys.modules) - {"__main__"}
     main, code = _main_of(run)
     sys.path.insert(0, "" if run.argv[0] == "-c" else run.cwd)
+    gc.enable()
     try:
         exec(compile(code, getattr(main, "__file__", "<string>"), "exec", dont_inherit=True), main.__dict__)
-    except SystemExit:
+    except SystemExit as end:
+        QuickExit.code = 0 if end.code is None else end.code
         raise
     except BaseException as error:
         trace = error.__traceback__
         # The traceback does not contain the frame of this function.
         sys.excepthook(type(error), error.with_traceback(trace and trace.tb_next), error.__traceback__)
+        QuickExit.code = 1
         sys.exit(1)
+    QuickExit.code = 0
     sys.exit()
 
 
@@ -205,46 +217,6 @@ def _main_of(run: Run) -> tuple[types.ModuleType, bytes]:
     main.__file__ = run.code
     main.__loader__ = importlib.machinery.SourceFileLoader("__main__", run.code)
     return main, Path(run.code).read_bytes()
-
-
-class EntryPoints:
-    """`importlib.metadata.entry_points` with a cache.
-
-    The original function reads the metadata of every package on each call, up to fifteen times per run of setup.py.
-    EntryPoints reads the metadata of installed packages a single time. On each call, it reads only the metadata in
-    other folders on sys.path, such as the folder of the submission.
-    """
-
-    def __init__(self) -> None:
-        self._read = metadata.entry_points
-        self._fixed = frozenset(sys.path)
-        self._names = frozenset(name for folder in sys.path for name in _with_metadata(folder))
-        self._all: Any = self._read()
-        self._groups: dict[str, list[metadata.EntryPoint]] = {}
-
-    def __call__(self, **chosen: Any) -> Any:  # noqa: ANN401 - as the original
-        """Return the entry points that have these attributes."""
-        others = {folder: _with_metadata(folder) for folder in sys.path if folder not in self._fixed}
-        group = chosen.pop("group", None)
-        if group is None and not any(others.values()):
-            return self._all.select(**chosen)
-        if group is None or not self._names.isdisjoint(name for names in others.values() for name in names):
-            return self._read(**({"group": group} if group else {}), **chosen)
-        if group not in self._groups:
-            self._groups[group] = list(self._all.select(group=group))
-        folders = [folder for folder, names in others.items() if names]
-        found = [each.entry_points.select(group=group) for each in metadata.distributions(path=folders)]
-        return metadata.EntryPoints([*chain.from_iterable(found), *self._groups[group]]).select(**chosen)
-
-
-def _with_metadata(folder: str) -> list[str]:
-    """Return the names of the packages whose metadata is in the folder."""
-    try:
-        names = [path.name for path in Path(folder).iterdir()]
-    except OSError:
-        return []
-    found = [name for name in names if name.endswith((".dist-info", ".egg-info", ".egg"))]
-    return [re.sub(r"[-_.]+", "_", name.rpartition(".")[0].partition("-")[0]).lower() for name in found]
 
 
 def _entries(env: Mapping[str, str]) -> list[str]:
@@ -279,6 +251,10 @@ def _evaluate_condition(condition: str | None, context: Mapping[str, str]) -> An
 def main() -> None:
     """Unpack the submission into src, and run colcon with the arguments of this process."""
     sys.path.pop(0)
+    for name in [name for name in sys.modules if name.partition(".")[0] == "grader"]:
+        del sys.modules[name]
+    QuickExit.prepare()
+    gc.disable()  # imports leave hardly any garbage
     forks = Forks()
     sys.modules[_CONDITION] = types.SimpleNamespace(evaluate_condition=_evaluate_condition)  # type: ignore[assignment]
     colcon = importlib.import_module("colcon_core.command").main
@@ -293,7 +269,10 @@ def main() -> None:
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     subprocess.Popen = _starting_with(forks)  # type: ignore[assignment,misc]
     sys.argv[0] = "-c"
-    sys.exit(colcon())
+    gc.freeze()
+    gc.enable()
+    QuickExit.code = colcon()
+    sys.exit(QuickExit.code)
 
 
 if __name__ == "__main__":

@@ -34,8 +34,11 @@ if TYPE_CHECKING:
     from grader.submission.package import Submission
 
 MIB = 1024 * 1024
-IN_CELL = Path(__file__).absolute().with_name("in_cell.py")
+_HERE = Path(__file__).absolute()
+IN_CELL = _HERE.with_name("in_cell.py")
 """The script that runs colcon."""
+IMPORTED = (_HERE.with_name("entry_points_cache.py"), _HERE.parents[1] / "common" / "quick_exit.py")
+"""The files of the grader that the script imports."""
 LIMITS = Limits(processes=200, cpu_s=60)
 TIMEOUT_S = 60.0
 MOST_LOG = 256 * 1024
@@ -87,7 +90,7 @@ def build(submission: Submission, ros: installation.Ros, *, in_cell: bool, tell:
         colcon = interpreter(str(IN_CELL), python=str(ros.python), env=env, searches=True)
         argv = ["sh", "-c", _SCRIPT, "sh", *colcon.argv]
         if in_cell:
-            view = bubblewrap.ros_view(ros, IN_CELL)
+            view = bubblewrap.ros_view(ros, IN_CELL, *IMPORTED)
             with call_filter() as filter_fd, control_group(LIMITS) as group, cell_user() as user:
                 command = bubblewrap.lone_cell(argv, view, env=env, limits=LIMITS, user=user, filter_fd=filter_fd)
                 done = _run(group.joined(command), env, submission, () if filter_fd is None else (filter_fd,))

@@ -6,6 +6,7 @@ import os
 import sys
 from typing import TYPE_CHECKING, NoReturn
 
+from grader.common.quick_exit import QuickExit
 from grader.common.system_errors import refusal
 from grader.common.terminal_text import RED, say
 from grader.errors import GraderError
@@ -21,6 +22,7 @@ def run_and_exit(command: Callable[[], object], explain: Callable[[Exception], s
     """
     try:
         _run(command)
+        QuickExit.code = 0
         sys.exit(0)
     except GraderError as error:
         say(f"grader: {error}", style=RED)
@@ -52,9 +54,10 @@ def run_and_exit(command: Callable[[], object], explain: Callable[[Exception], s
 def _run(command: Callable[[], object]) -> None:
     try:
         command()
-    except SystemExit:
+    except SystemExit as end:
         # If the output could not be written, Python would otherwise find out at exit, and exit with code 120.
         sys.stdout.flush()
+        QuickExit.code = end.code
         raise
 
 

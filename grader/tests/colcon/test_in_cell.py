@@ -54,6 +54,23 @@ if "install" in sys.argv:
     except KeyError:
         print(1 / 0)
 """
+LEAVES = """
+class Fish:
+    def __del__(self):
+        print("released", file=sys.stderr)
+
+if "install" in sys.argv:
+    import helper, threading, weakref
+    fish = Fish()
+    weakref.finalize(fish, print, "finalized", file=sys.stderr)
+    threading.Timer(0.05, print, ["from a thread"], {"file": sys.stderr}).start()
+"""
+"""Code that leaves things for the end of the interpreter."""
+HELPER = """
+left_open = [open(f"{number}.log", "a") for number in range(8)]
+for file in left_open:
+    file.write("helped")
+"""
 IN_A_FORK = "sys.stderr.write(f'in a fork: {IN_A_FORK}\\n')"
 
 
@@ -76,7 +93,7 @@ def with_depend(attribute: str) -> str:
 
 
 def build(ros: Ros, workspace: Path, files: dict[str, str], *, forks: bool) -> tuple[int, str, dict[str, bytes]]:
-    """Build the files, with forks or with plain colcon. Return the exit code, the log, and the installed files."""
+    """Build the files, with forks or with plain colcon. Return the exit code, the log, and the files."""
     shutil.rmtree(workspace, ignore_errors=True)
     (workspace / "src").mkdir(parents=True)
     packed = io.BytesIO()
@@ -98,18 +115,23 @@ def build(ros: Ros, workspace: Path, files: dict[str, str], *, forks: bool) -> t
         check=False,
     )
     log = re.sub(r"\d+\.\d+s", "TIME", done.stdout.decode().removeprefix("colcon-is-ready\n"))
-    installed = {str(path): path.read_bytes() for path in sorted((workspace / "install").rglob("*")) if path.is_file()}
-    return done.returncode, log, {path: data for path, data in installed.items() if not path.endswith(".pyc")}
+    made = [*sorted((workspace / "install").rglob("*")), *sorted((workspace / "src").rglob("*.log"))]
+    contents = {str(path): path.read_bytes() for path in made if path.is_file()}
+    return done.returncode, log, {path: data for path, data in contents.items() if not path.endswith(".pyc")}
 
 
 @pytest.mark.parametrize(
     "files",
     [
         pytest.param(package(before=TELLS), id="tells"),
+        pytest.param(package(after=LEAVES, more={"helper.py": HELPER}), id="leaves"),
         pytest.param(package(more={"package.xml": with_depend('condition="$ROS_VERSION == 1"')}), id="condition"),
         pytest.param(package(more={"package.xml": with_depend('condition="1 =="')}), id="no condition"),
         pytest.param(package(before=FAILS), id="fails"),
         pytest.param(package(after="sys.exit('install' in sys.argv and 3)"), id="exits", marks=pytest.mark.exhaustive),
+        pytest.param(package(after="sys.exit('no')"), id="exits with words", marks=pytest.mark.exhaustive),
+        pytest.param(package(after="sys.exit(2**40)"), id="exits oddly", marks=pytest.mark.exhaustive),
+        pytest.param(package(after="sys.stdout.close()"), id="closes its output", marks=pytest.mark.exhaustive),
         pytest.param(package(after="os.kill(os.getpid(), 9)"), id="killed", marks=pytest.mark.exhaustive),
         pytest.param(package(before="def"), id="syntax", marks=pytest.mark.exhaustive),
         pytest.param(package(before="os.close(1)"), id="closes", marks=pytest.mark.exhaustive),

@@ -147,11 +147,15 @@ grader.sandbox.bubblewrap.room = lambda *_, **__: ['sh', '-c', 'echo no namespac
         ),
         (
             """
-import pathlib, tempfile, grader.colcon.runner as runner
-script = pathlib.Path(tempfile.mkdtemp()) / "in_cell.py"
+import pathlib, shutil, tempfile, grader.colcon.runner as runner
+root = pathlib.Path(tempfile.mkdtemp())
+copies = [root / path.relative_to(runner.IN_CELL.parents[2]) for path in (runner.IN_CELL, *runner.IMPORTED)]
+for path, copy in zip((runner.IN_CELL, *runner.IMPORTED), copies):
+    copy.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy(path, copy)
 future = "from __future__ import annotations\\n"
-script.write_text(runner.IN_CELL.read_text().replace(future, future + "import sys; sys.modules['em'] = None\\n"))
-runner.IN_CELL = script
+copies[0].write_text(copies[0].read_text().replace(future, future + "import sys; sys.modules['em'] = None\\n"))
+runner.IN_CELL, *runner.IMPORTED = copies
 """,
             "The build could not be started: ModuleNotFoundError",
         ),

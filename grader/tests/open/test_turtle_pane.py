@@ -92,7 +92,7 @@ def test_a_second_turtlesim_is_not_started_beside_one_in_a_terminal(
             assert terminal.stderr is not None
             while "Spawning turtle" not in terminal.stderr.readline():
                 assert terminal.poll() is None
-            page = learner.opened(browser)
+            page = learner.opened(browser, f"{CIRCLE}/index.html")
             page.get_by_role("button", name="Turtle", exact=True).click()
             page.get_by_role("button", name="Start turtlesim").click()
             page.get_by_text("A turtlesim is already running in a terminal.").wait_for()
@@ -106,7 +106,7 @@ def test_a_second_turtlesim_is_not_started_beside_one_in_a_terminal(
 
 
 def drive(learner: Course, browser: Browser) -> None:
-    page = learner.opened(browser)
+    page = learner.opened(browser, f"{CIRCLE}/index.html")
     problems: list[str] = []
     page.on("pageerror", lambda error: problems.append(str(error)))
     page.get_by_role("button", name="Turtle", exact=True).click()

@@ -1,0 +1,53 @@
+"""End a process without clearing all of its modules, which takes up to 30 ms of CPU time."""
+
+from __future__ import annotations
+
+import atexit
+import gc
+import io
+import os
+import sys
+from contextlib import suppress
+
+_MOST_BITS = 31
+
+
+class QuickExit:
+    """The end of this process, once its exit code is known.
+
+    All functions that are registered with atexit still run. Objects in modules that were imported later than those in
+    `kept` are finalized, so that a file that a submission left open is written.
+    """
+
+    code: object = None
+    """The exit code. If it is not a number, the process ends as usual."""
+    kept: frozenset[str] | None = None
+    """The names of the modules that are not cleared, or None if no module is cleared."""
+
+    @classmethod
+    def prepare(cls) -> None:
+        """Register the end. Call this function first, because Python calls the functions of atexit in reverse order."""
+        atexit.register(cls._end)
+
+    @classmethod
+    def _end(cls) -> None:
+        if not isinstance(cls.code, int) or cls.code.bit_length() > _MOST_BITS:
+            return
+        if cls.kept is not None:
+            gc.disable()  # until all files are written
+            for name in set(sys.modules) - cls.kept:
+                del sys.modules[name]
+            _flush_files()
+            gc.collect()
+        with suppress(OSError, ValueError, AttributeError):  # Python itself reports a stream that is closed
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(cls.code & 0xFF)
+
+
+def _flush_files() -> None:
+    """Write what is buffered. The garbage collector may close a file before it writes the buffer."""
+    for each in gc.get_objects():
+        if isinstance(each, io.TextIOWrapper | io.BufferedWriter | io.BufferedRandom):
+            with suppress(OSError, ValueError):
+                each.flush()
