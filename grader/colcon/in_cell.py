@@ -271,8 +271,9 @@ def main() -> None:
     sys.argv[0] = "-c"
     gc.freeze()
     gc.enable()
-    QuickExit.code = colcon()
-    sys.exit(QuickExit.code)
+    code = colcon()
+    QuickExit.code = code
+    sys.exit(code)
 
 
 if __name__ == "__main__":
