@@ -175,7 +175,7 @@ def class_page(
         typer.Option(help="The page to write. Default: index.html in the folder.", metavar="FILE.html"),
     ] = None,
 ) -> None:
-    """Make a page of a class: points, the most frequent failures, and what to teach again."""
+    """Make a page about a class: points, the most frequent failures, and what to teach again."""
     from grader.report.html_class import PAGE, save_class_page
 
     file = out or folder / PAGE

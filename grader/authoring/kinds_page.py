@@ -108,7 +108,7 @@ def _section(kind: Kind[Any], step: str, spec: CheckSpec) -> str:
             default = _default(defaults[name]) if name in defaults else "required"
             lines.append(f"| `{name}` | {unit_of(name)} | {default} | {allowed.words} | {allowed.about} |")
     else:
-        lines.append("It has no parameters.")
+        lines.append("This kind has no parameters.")
     lines += ["", f"From [{step}](../course/{step}/lesson.md):", "", "```toml", *_check(kind, spec), "```", ""]
     return "\n".join(lines)
 
@@ -124,7 +124,7 @@ def unit_of(parameter: str) -> str:
 
 
 def _check(kind: Kind[Any], spec: CheckSpec) -> Iterable[str]:
-    """Yield the lines of exercise.toml that define the check. Parameters with their default values are omitted."""
+    """Yield the lines of exercise.toml that define the check. Parameters that have their default values are omitted."""
     yield "[[check]]"
     yield f"id = {_toml(spec.id)}"
     yield f"kind = {_toml(spec.kind)}"

@@ -65,7 +65,7 @@ def released(solution: Path) -> dict[str, ReleasedFile]:
 
 
 def release(solution: Path, to: Path) -> None:
-    """Make the content of the folder `to` equal to `released`."""
+    """Write the files that students start from to the folder `to`, and delete all other files in it."""
     wanted = released(solution)
     present = _read(to) if to.is_dir() else tree.Tree()
     for path in present.files.keys() - wanted.keys():
@@ -134,7 +134,7 @@ def release_file(data: bytes, path: str, name: str) -> bytes | None:
         if MEANT.search(data.decode("utf-8", "replace")):
             message = (
                 f"{name}: a file of an unknown type contains a marker. "
-                "The known types are in grader/exercise/markers.py."
+                "grader/exercise/markers.py lists the known types."
             )
             raise UsageError(message)
         return data

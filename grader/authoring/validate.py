@@ -41,7 +41,7 @@ def validate(
     or installation.
 
     Raises:
-        UsageError: no exercise has this name.
+        UsageError: `names` contains a name that no exercise has.
     """
     course = course or course_folder()
     files = catalogue(course)
@@ -125,7 +125,7 @@ def _starting_point(exercise: Exercise, report: Report) -> Iterator[str]:
         yield f"exercises/{exercise.id} could not be judged: {_in_words(outcome)}"
     if not exercise.unsolved:
         yield (
-            f"course/{exercise.id}/exercise.toml does not list the checks that the starting point fails. It fails: "
+            f"course/{exercise.id}/exercise.toml does not list the checks that the starting point fails. Add: "
             f"starting_point_fails = {list(failed)}"
         )
         return

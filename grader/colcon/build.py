@@ -1,4 +1,4 @@
-"""Build: the result of `colcon build`."""
+"""The data that the grader keeps about a build."""
 
 from __future__ import annotations
 

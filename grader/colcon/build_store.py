@@ -1,7 +1,7 @@
 """A store on disk for the builds of a learner's package, so that the next `grader check` need not run colcon again.
 
 The store keeps the most recent builds in the user's cache folder. A file in the store that cannot be read, or is
-damaged, is ignored. The store is never used for marks.
+damaged, is ignored. A build that counts for marks never comes from the store.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def key_of(package: Submission, ros: Ros) -> str:
 
 @cache
 def _tools() -> tuple[str, ...]:
-    """Return strings that change with Python, with its installed packages, and with the grader's code for builds."""
+    """Return strings that change when Python, its installed packages or the grader's code for builds changes."""
     colcon = find_spec("colcon_core")
     installed = Path(colcon.origin).parents[1] if colcon is not None and colcon.origin is not None else Path(sys.prefix)
     own = hashlib.sha256(b"".join(Path(file).read_bytes() for file in (runner.__file__, runner.IN_CELL)))

@@ -3,8 +3,8 @@
 colcon runs the setup.py of a package three times, each time in a new interpreter that imports setuptools and reads the
 metadata of all installed packages again. These imports take most of the CPU time of a build. So one process imports the
 modules once, before the submission arrives, and forks for each run of setup.py. The fork gets the folder, environment,
-arguments and streams of the process that colcon started, which only waits for the exit code of the fork. If a fork
-might behave differently from a new interpreter, no fork is used (`Run.of`).
+arguments and streams of the process that colcon started. That process only waits for the exit code of the fork. If a
+fork might behave differently from a new interpreter, no fork is used (`Run.of`).
 
 This file runs as a separate script. Standard input is the submission, a tar stream that is unpacked into src.
 """
@@ -241,7 +241,7 @@ def _starting_with(forks: Forks) -> type[subprocess.Popen[Any]]:
 
 
 def _evaluate_condition(condition: str | None, context: Mapping[str, str]) -> Any:  # noqa: ANN401 - catkin_pkg's
-    """Do what catkin_pkg does, but import its slow parser only if a package.xml has a condition."""
+    """Replace this function of catkin_pkg, and import its slow parser only if a package.xml has a condition."""
     if condition is None:
         return True
     sys.modules.pop(_CONDITION)

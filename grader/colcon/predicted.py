@@ -36,7 +36,7 @@ _OTHER_BUILDS = frozenset({"pyproject.toml", "CMakeLists.txt", "COLCON_IGNORE", 
 """Files that make colcon or setuptools install other files, or no files."""
 _TEMPLATE = re.compile(r'r"""\n([ \t]*# EASY-INSTALL-ENTRY-SCRIPT: %\(spec\)r.*?)"""', re.DOTALL)
 _SHEBANG = re.compile(r"/[\w./-]{1,100}")
-"""Matches paths of an interpreter that setuptools writes without quotes into the first line of a script."""
+"""Matches the interpreter paths that setuptools writes without quotes into the first line of a script."""
 _IMPORTED = frozenset(
     {
         *("rclpy", "action_msgs", "builtin_interfaces", "example_interfaces", "geometry_msgs", "nav_msgs"),

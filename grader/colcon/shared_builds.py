@@ -117,7 +117,10 @@ class SharedBuilds:
 
 
 def build_for(*, marks: bool) -> Callable[..., runner.Built]:
-    """Return the function that builds a single submission. A build for marks never depends on an earlier build."""
+    """Return the function that builds a single submission.
+
+    A build that counts for marks never depends on an earlier build.
+    """
     return runner.build if marks else SharedBuilds(store=build_store())
 
 

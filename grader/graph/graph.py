@@ -41,11 +41,11 @@ class Show:
     """The parts of a graph to show, like the check boxes of the real rqt_graph."""
 
     debug: bool = False
-    """Debug topics (/rosout, /parameter_events, /clock) and the nodes that belong to tools."""
+    """Whether to show debug topics (such as /rosout and /clock) and the nodes that belong to tools."""
     hidden: bool = False
-    """Names with a part that begins with "_", such as the topics of actions and the nodes of tools."""
+    """Whether to show names with a part that begins with "_", such as the topics of actions."""
     dead_ends: bool = True
-    """Topics that have no subscribers or no publishers."""
+    """Whether to show topics that have no subscribers or no publishers."""
 
 
 @dataclass(frozen=True)

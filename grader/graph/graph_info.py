@@ -8,7 +8,7 @@ from typing import Any
 from grader.graph.names import hidden
 
 Named = tuple[str, tuple[str, ...]]
-"""A name and its types. There is more than one type if nodes use different types for the topic."""
+"""A name and its types. There is more than one type if nodes use different types for the same name."""
 
 
 @dataclass(frozen=True)
@@ -54,22 +54,22 @@ class Look:
     actions: tuple[Named, ...] = ()
 
     def node_names(self, *, all_of_them: bool = False) -> list[str]:
-        """The full names of all nodes, sorted.
+        """Return the full names of the nodes, sorted. Hidden nodes are included only with `all_of_them`.
 
         If several nodes have the same name, the list contains this name several times.
         """
         return [node.name for node in self.nodes if all_of_them or not _hidden_node(node.name)]
 
     def topic_names(self, *, all_of_them: bool = False) -> list[str]:
-        """The names of all topics, sorted."""
+        """Return the names of the topics, sorted. Hidden names are included only with `all_of_them`."""
         return [name for name, _ in shown(self.topics, all_of_them=all_of_them)]
 
     def service_names(self, *, all_of_them: bool = False) -> list[str]:
-        """The names of all services, sorted."""
+        """Return the names of the services, sorted. Hidden names are included only with `all_of_them`."""
         return [name for name, _ in shown(self.services, all_of_them=all_of_them)]
 
     def ends(self, topic: str, *, publishes: bool) -> list[EndpointLook]:
-        """The publishers of a topic, or its subscriptions."""
+        """Return the publishers of a topic, or its subscriptions."""
         return [end for end in self.endpoints if end.topic == topic and end.publishes == publishes]
 
     def to_dict(self) -> dict[str, Any]:
@@ -88,7 +88,7 @@ def types_of(found: tuple[Named, ...], name: str) -> tuple[str, ...]:
 
 
 def from_dict(data: dict[str, Any]) -> Look:
-    """Return the snapshot that `to_dict` converted to data."""
+    """Return the snapshot from data that `to_dict` returned."""
     return Look(
         nodes=tuple(
             NodeLook(node.pop("name"), **{key: _named(value) for key, value in node.items()}) for node in data["nodes"]

@@ -36,7 +36,9 @@ def render(dot: str, kind: Format) -> bytes:
                 start.argv, input=dot.encode(), capture_output=True, env=start.env, timeout=_HANG_S, check=False
             )
         except subprocess.TimeoutExpired as error:
-            message = f"Graphviz did not draw the graph within {_HANG_S:.0f} s; --output graph.dot needs no drawing."
+            message = (
+                f"Graphviz did not draw the graph within {_HANG_S:.0f} s; --output graph.dot works without Graphviz."
+            )
             raise MachineError(message) from error
     if done.returncode != 0:
         last = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]

@@ -27,7 +27,7 @@ def shown(found: Iterable[tuple[str, list[str]]], *, all_of_them: bool) -> list[
 
 
 def nodes(node: Node, *, all_of_them: bool = False) -> list[str]:
-    """Return the full names of all nodes, sorted.
+    """Return the full names of the nodes, sorted. Hidden nodes are included only with `all_of_them`.
 
     If several nodes have the same name, the list contains this name several times.
     """

@@ -107,7 +107,7 @@ def solution(
     ],
     workspace: Workspace = None,
 ) -> None:
-    """Show the solution of a step next to your files, after the step has passed."""
+    """Show the solution of a step next to your files, once you have passed the step."""
     from rich.console import Console
 
     from grader.learner.compare import print_solution

@@ -1,8 +1,8 @@
-"""The bench: run a student's tests on the correct node several times and on each broken node once, in random order.
+"""Run a student's tests on the correct node several times and on each broken node once, in random order.
 
-The student's process reports whether the tests passed, and this process could lie. The process that runs the tests does
-not know which node it tests, so a false report gains nothing: tests that always pass, always fail, or pass by chance
-get no points.
+The student's process reports whether the tests passed, and this process could lie. This process does not know which
+node it tests, so a false report gains little: tests that always pass or always fail get no points for broken nodes, and
+tests that pass by chance get few (docs/security.md).
 """
 
 from __future__ import annotations
@@ -33,9 +33,12 @@ MOST_LANES = 4
 MOST_HANGS = 2
 """If this many runs on broken nodes did not finish in time, no further run on a broken node is started."""
 RIGHT_S = 5.0
-"""The time for each test on the correct node (s). On a broken node, a test may wait longer for a missing message."""
+"""The time limit for each test on the correct node (s).
+
+On a broken node, a test may wait longer for a missing message.
+"""
 DOUBT_S = 1.0
-"""The time for each test on a broken node (s) before the tests have passed on the correct node."""
+"""The time limit for each test on a broken node (s) until a run on the correct node has ended."""
 
 
 class Bench:
@@ -108,7 +111,7 @@ class Bench:
 
 @dataclass(frozen=True)
 class _Next:
-    """A run: the id of a broken node or "", how the node behaves, and the time for each test (s)."""
+    """A run: the id of a broken node (or ""), how the node behaves, and the time limit for each test (s)."""
 
     node: str
     behaviour: Behaviour
@@ -126,21 +129,21 @@ class _Queue:
         self._lock = Lock()
         self._closed = False
         self._doubts = False
-        """Whether a run on a broken node exceeded its time, so that the tests may hang on the correct node, too."""
+        """Whether a run exceeded its time limit. The tests may then also hang on the correct node."""
         self.ended: list[Ended] = []
 
     @property
     def is_settled(self) -> bool:
-        """Whether the tests did not finish on the correct node, so that no other run can change a verdict."""
+        """Whether a run on the correct node exceeded its time limit. No other run can then change a verdict."""
         return any(each.over and not each.node for each in self.ended)
 
     def take(self) -> _Next | None:
         """Return the next run, or None if no further run is needed.
 
-        If the tests rejected the correct node, they earn no points for rejecting broken nodes. After the tests have
-        rejected the correct node, all remaining runs use the correct node. If the tests may hang on the correct node,
-        the next run is an additional run on the correct node. Otherwise, tests could choose when one of the other runs
-        on the correct node takes place.
+        After the tests have rejected the correct node, only the remaining runs on the correct node are started, since
+        the tests then earn no points for rejecting broken nodes. If the tests may hang on the correct node and no run
+        on it has ended, the next run is an additional run on the correct node. Otherwise, tests could choose when one
+        of the other runs on the correct node takes place.
         """
         with self._lock:
             rights = [each for each in self.ended if not each.node]
@@ -157,7 +160,10 @@ class _Queue:
             return replace(next_, test_s=self._spec.duration_s if rights else DOUBT_S) if next_.node else next_
 
     def put(self, run: _Next, ended: Ended) -> None:
-        """Store the result of a run. A run that exceeded the short time limit `DOUBT_S` is repeated later."""
+        """Store the result of a run.
+
+        A run that exceeded the short time limit `DOUBT_S` without being stuck is repeated later instead.
+        """
         with self._lock:
             if self._closed or self.is_settled:
                 return

@@ -38,7 +38,7 @@ class _State:
     clock_ns: int | None = None
 
     def happens(self, now_ns: int) -> None:
-        """Store the time of the node's clock (ns) at an event."""
+        """Record that an event occurred at this time of the node's clock (ns)."""
         self.first_ns = now_ns if self.first_ns is None else self.first_ns
         self.clock_ns = now_ns
 
@@ -52,7 +52,7 @@ class Brain:
         self._states: list[_State] = []
 
     def create(self) -> dict[str, Any]:
-        """Return the description of a new node."""
+        """Add a node, and return its name, its number, its topics, its message type and its timer period."""
         if len(self._states) < MOST_NODES:
             self._states.append(_State())
         of = self._behaviour

@@ -1,4 +1,4 @@
-"""The conversation with one run of the tests: answer the requests of its nodes, and receive its result."""
+"""The conversation with one run of the tests: respond to the requests of its nodes, and receive its result."""
 
 from __future__ import annotations
 
@@ -22,7 +22,10 @@ if TYPE_CHECKING:
     from grader.testbench.patience import WorkedS
 
 MOST_QUESTIONS = 100_000
-"""The maximum number of requests that are answered in one run. A normal test makes only a few hundred requests."""
+"""The maximum number of requests to which the grader responds in one run.
+
+A normal test makes only a few hundred requests.
+"""
 MOST_REPORT = 64 * 1024
 LATEST = 4.0
 """The maximum wall time of a run, as a multiple of its time limit. This limit also applies on a busy machine."""
@@ -82,7 +85,7 @@ class Conversation:
         self._childs.close()
 
     def result(self) -> Ended:
-        """Answer the requests of the run until it ends, or until its time is over."""
+        """Respond to the requests of the run until the run ends, or until its time is over."""
         begun, over = time.monotonic(), False
         until = begun + LATEST * self._run_s + END_S
         with selectors.DefaultSelector() as selector:
@@ -118,7 +121,7 @@ class Conversation:
         return bool(data or passed)
 
     def _answer_all(self) -> bool:
-        """Answer the requests that have arrived. Return False if no more requests will be answered."""
+        """Respond to the requests that have arrived. Return False if there will be no further responses."""
         data = os.read(self._asks, 4096)
         self._rest += data
         while len(self._rest) >= _QUESTION.size and self._asked < MOST_QUESTIONS:
@@ -152,6 +155,6 @@ class Conversation:
 
 
 def _pid_of(process: int) -> int:
-    """Return the pid, in the namespace of this process, of the process to which a pidfd refers."""
+    """Return the pid of the process to which a pidfd refers, as this process sees it in its own namespace."""
     lines = Path(f"/proc/self/fdinfo/{process}").read_text("ascii").splitlines()
     return next(int(line.split()[1]) for line in lines if line.startswith("Pid:"))

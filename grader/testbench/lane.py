@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 SESSION = Path(__file__).absolute().with_name("session.py")
 START_S = 120.0
-"""The maximum time for the imports, on a crowded machine (s)."""
+"""The maximum time for the imports (s), which is long enough for a busy machine."""
 READY = b"ready\n"
 """The session writes this line when it is ready to run tests (see session.py)."""
 FILTER, ASKS, ANSWERS = 100, 3, 4

@@ -1,9 +1,9 @@
 """The time that one run of the tests may take. A busy machine does not make a run exceed this time.
 
-Wall time counts, except for the time for which the threads of the run, or the thread that answers their requests, have
-waited for a processor. The CPU time of all processes of the run together has the same limit, so that a run gains no
-time by keeping the processors busy itself. A run that can never continue is recognized earlier: each of its threads
-waits, without a time limit, for another thread of the same process.
+The limits apply to wall time. They do not include the time for which the threads of the run, or the thread that
+responds to their requests, waited for a processor. The CPU time of all processes of the run together has the same
+limit, so that a run gains no time by keeping the processors busy itself. A run that can never continue is recognized
+earlier: each of its threads waits, without a time limit, for another thread of the same process.
 """
 
 from __future__ import annotations
@@ -27,14 +27,15 @@ if TYPE_CHECKING:
     """The CPU time (s) that all processes of the run used between two times of CLOCK_MONOTONIC."""
 
 LOOK_S = 0.5
-"""A run that sends no request is examined each time this many seconds have passed."""
+"""The interval (s) at which a run is examined while it sends no requests."""
 _CALLER = "/proc/thread-self/schedstat"
 
 
 class Patience:
     """Watches one run. `test_s` is the maximum time for each test (s), and `run_s` for the whole run (s).
 
-    The thread that creates this object answers the requests of the run. `worked_s` measures the processes of the run.
+    The thread that creates this object must also respond to the requests of the run. `worked_s` returns the CPU time of
+    the run's processes.
     """
 
     def __init__(self, pid: int, test_s: float, run_s: float, worked_s: WorkedS) -> None:
@@ -59,7 +60,7 @@ class Patience:
         self._waited_before_s = self._waited_s()
 
     def answered(self) -> None:
-        """Record that requests have been answered. Call this method after each answer."""
+        """Record that a response has been sent. Call this method after each response."""
         self._moved, self._seen = time.monotonic(), None
         now_ns = self._callers_waited_ns()
         self._callers_waits_ns += now_ns - self._callers_last_ns
@@ -108,7 +109,7 @@ class Patience:
                 self._waits_ns[int(task.name)] = int((task / "schedstat").read_bytes().split()[1])
 
     def _waited_s(self) -> float:
-        """Return for how long the run and its requests are known to have waited for a processor (s)."""
+        """Return the known time (s) for which the run and the caller have waited for a processor."""
         return (sum(self._waits_ns.values()) + self._callers_waits_ns) / 1e9
 
     def _callers_waited_ns(self) -> int:
@@ -116,7 +117,10 @@ class Patience:
 
 
 def _has_log(pid: int) -> bool:
-    """Return whether rclpy is initialized. If it is, a thread writes the log regularly, but wakes no other thread."""
+    """Return whether rclpy is initialized.
+
+    If it is, one thread runs regularly to write the log, but it wakes no other thread.
+    """
     threads = Threads(pid, of_dds)
     try:
         return bool(threads.look().runs)

@@ -29,9 +29,9 @@ class NodeEvents:
     commands: int = 0
     """The number of commands that the node published."""
     first_s: float | None = None
-    """The time (s) of the node's clock when something happened first, at most LATEST_S. None if nothing happened."""
+    """The time (s) of the node's clock at the first event, at most LATEST_S. None if there was no event."""
     clock_s: float | None = None
-    """The time (s) of the node's clock when something happened last, at most LATEST_S. None if nothing happened."""
+    """The time (s) of the node's clock at the last event, at most LATEST_S. None if there was no event."""
     all_calls: int = 0
     """The number of times that the callbacks of the timers ran, in all nodes of the run together."""
 
@@ -65,7 +65,7 @@ class NodeRun:
 
     @property
     def accepted(self) -> bool:
-        """Whether all tests passed. A run without a passed test does not accept the node."""
+        """Whether pytest ended with exit code 0: it found tests, and none of them failed."""
         return self.exit_code == 0
 
 

@@ -52,14 +52,14 @@ STARTED = b"s"
 FILTER = 100
 """The descriptor of the call filter in the command line of a cell."""
 ASKS, ANSWERS = 3, 4
-"""The descriptors of a run: its requests to the grader, and the grader's answers."""
+"""The descriptors of a run: its requests to the grader, and the grader's responses."""
 _TEST_ENDED = struct.pack("<cHqdd", b"d", 0, 0, 0.0, 0.0)
-"""A message that needs no answer. See lane.py."""
+"""The message that a test has ended. It needs no response. See conversation.py."""
 _MOST_REPORT = 64 * 1024
 
 
 class _Watcher:
-    """A pytest plugin that stores the results of the tests, and tells the grader that a test has ended."""
+    """A pytest plugin that stores the results of the tests, and tells the grader whenever a test has ended."""
 
     def __init__(self) -> None:
         self.collected = 0
@@ -79,7 +79,7 @@ class _Watcher:
             os.write(ASKS, _TEST_ENDED)
 
     def report(self) -> bytes:
-        """Return the report as JSON: the number of tests that were found, and the tests that ran."""
+        """Return the report as JSON: the number of tests that were found, and the results of the last tests."""
         return json.dumps({"collected": self.collected, "cases": self.cases[-50:]}).encode()
 
 
@@ -215,7 +215,7 @@ def _report(file: Path) -> bytes:
 
 
 def _end_group(group: int) -> None:
-    """Without a cell, kill the processes of a run that have not left its process group."""
+    """Kill the processes of a run without a cell, except those that have left its process group."""
     try:
         os.killpg(group, signal.SIGKILL)
     except ProcessLookupError:

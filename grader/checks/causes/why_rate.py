@@ -140,7 +140,7 @@ def _rate_without_spin(evidence: Evidence) -> Cause | None:
         if dotted(sleep.node.func) not in (None, "sleep", "time.sleep"):
             text = (
                 "The method sleep of a Rate returns only while another thread spins the node, and this program has no "
-                "other thread. A timer needs no thread."
+                "other thread. A timer does not need an additional thread."
             )
             return Cause("no-spin", text, sleep.where)
     return None

@@ -30,13 +30,16 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
         return Finding(Status.SKIPPED, "Not judged, because the file of the node is not known yet.")
     if evidence.code.node_file not in {module.file for module in evidence.code.modules if module.body}:
         return Finding(Status.SKIPPED, "Not judged, because the file of the node cannot be read, or contains no code.")
-    cause = "A timer calls a method periodically, at a period that the node chooses."
+    cause = "A timer calls a method periodically, with a period that the node chooses."
     if loops(evidence) and not evidence.code.calls("spin_once"):
         cause = "A node that runs its own loop receives no messages. With a timer, rclpy.spin does the waiting."
     if evidence.code.calls("create_rate"):
-        cause = "A rate from create_rate works only while another thread spins the node. A timer needs no thread."
+        cause = (
+            "A rate from create_rate works only while another thread spins the node. A timer does not need an "
+            "additional thread."
+        )
     if evidence.code.calls("create_timer"):
-        observed = "The node has a timer, but a loop that sleeps sends its messages."
+        observed = "The node has a timer, but it sends its messages in a loop that sleeps."
         return failed(observed, EXPECTED, Cause("no-timer", cause, loop))
     return failed(
         "The node does not use a timer.",
@@ -68,5 +71,5 @@ USES_TIMER = Kind(
     uses_timer,
     advice=True,
     about="Advises the student to use `create_timer` if the submission never calls it, "
-    "or if a loop that sleeps sends its messages.",
+    "or if it sends its messages in a loop that sleeps.",
 )

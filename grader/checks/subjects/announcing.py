@@ -27,13 +27,13 @@ if TYPE_CHECKING:
     from grader.evidence.targets import Announcement
 
 LATE_S = 1.05
-"""The maximum delay of an announcement (s): two periods of the topic."""
+"""The maximum time (s) until a message shows a change: slightly more than two periods of the topic."""
 AT_ONCE_S = 0.1
-"""The maximum time between the last announcement of a turtle and its removal (s)."""
-EMPTY = "At this time, no target was left. Even then, the node must publish a message, with an empty string."
+"""If a turtle appears or disappears within this time (s) after a message, the message may contain its name or not."""
+EMPTY = "At this time, no target was left. Even then, the node must publish a message with an empty string."
 NOT_IN_NAMES = re.compile(r"\W")
 OFTEN = 3
-"""The maximum number of messages per timer call. A node may also publish after each change."""
+"""The maximum number of messages per period. A node may also publish after each change."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,7 +132,7 @@ def _wrong_names(evidence: Evidence, message: Announcement, heard: list[Announce
 
 
 def _not_there(evidence: Evidence, message: Announcement, strange: list[str], expected: str) -> Finding:
-    """Return the finding about a message that contains a turtle that does not exist, not yet or no longer."""
+    """Return the finding about a message with the name of a turtle that does not exist yet, or no longer exists."""
     at = f"The message at {message.t_s:.1f} s"
     begin_s = {track.turtle: track.rows[0][0] for track in evidence.recording.tracks}.get(strange[0])
     where = evidence.place("publish")
@@ -140,8 +140,10 @@ def _not_there(evidence: Evidence, message: Announcement, strange: list[str], ex
         observed = f"{at} contains {a_list([shorten(name) for name in strange])}, but no such turtle exists."
         text = "Remove a name when its turtle is caught, and add a name when the response from /spawn arrives."
     elif begin_s > message.t_s:
-        observed = f"{at} contains {shorten(strange[0])}, which existed only from {begin_s:.1f} s on."
-        text = "A turtle exists when the response from /spawn arrives. Add its name then, and not with the request."
+        observed = f"{at} contains {shorten(strange[0])}, which did not exist before {begin_s:.1f} s."
+        text = (
+            "A turtle exists when the response from /spawn arrives. Add its name then, not when you send the request."
+        )
         where = evidence.place("append", "publish")
     else:
         observed = f"{at} contains {shorten(strange[0])}, which no longer exists."

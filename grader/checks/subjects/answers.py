@@ -46,7 +46,7 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
     named = set(found.given) | found.unusable
     other = sorted(named - questions)
     if other:
-        observed = f"{FILE} answers {a_list([shorten(name) for name in other])}, but no question has that name."
+        observed = f"{FILE} contains {a_list([shorten(name) for name in other])}, but no question has that name."
         left = sorted(questions - named)
         names = a_list(left or sorted(questions), most=len(questions))
         intro = "These questions are not answered yet:" if left else "The names of the questions are"
@@ -64,7 +64,7 @@ class OneOf:
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
     accepts: tuple[str, ...] = strings(
-        about="The right answers. Upper and lower case and additional spaces do not matter."
+        about="The accepted answers. Upper and lower case and additional spaces do not matter."
     )
     cause: str = string("a reason", default=" ", about="The reason that the student reads if the answer is wrong.")
 
@@ -99,8 +99,8 @@ def answer_list(evidence: Evidence, params: AllOf) -> Finding:
 class GraphQuestion:
     """A question about the topics, types or nodes in the ROS graph. Only endpoints that match all parameters count.
 
-    If `connected_to` is set, a topic counts only if the node with that name has an endpoint of the opposite direction
-    on the topic.
+    If `connected_to` is set, a topic counts only if the node with that name has an endpoint of the opposite kind on
+    the topic.
     """
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")

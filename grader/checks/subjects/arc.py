@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     Steps = npt.NDArray[np.bool_]
 
 SHORT_M = 0.05
-"""A piece of the trajectory that is shorter than this is not an arc."""
+"""A piece of the trajectory that is shorter than this (m) is not an arc."""
 FEW = 5
 SAME_ARC = 0.02
 """Two frames are on the same arc if their turns per metre differ by at most this fraction."""
@@ -52,10 +52,13 @@ class Arc:
     from_s: float = number(0.0, at_least=0, about="Only the movement after this time counts.")
     until_s: float = number(600.0, above=0, about="Only the movement before this time counts.")
     red: float = number(
-        -1.0, at_least=-1, at_most=255, about="The colour of the pen; without this key, any colour counts."
+        -1.0,
+        at_least=-1,
+        at_most=255,
+        about="The red component of the pen's colour. Without this key, any colour is accepted.",
     )
-    green: float = number(-1.0, at_least=-1, at_most=255, about="The green component of the colour.")
-    blue: float = number(-1.0, at_least=-1, at_most=255, about="The blue component of the colour.")
+    green: float = number(-1.0, at_least=-1, at_most=255, about="The green component of the pen's colour.")
+    blue: float = number(-1.0, at_least=-1, at_most=255, about="The blue component of the pen's colour.")
 
     @property
     def color(self) -> tuple[int, int, int] | None:
@@ -101,7 +104,7 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
         text = "The command or the pen changes during this part of the path."
         cause = Cause("not-round", text, where)
         return failed(
-            f"This part of the path is not one arc: {off}.", expected, cause, near_edge=round_.near(fitted.rms)
+            f"This part of the path is not a single arc: {off}.", expected, cause, near_edge=round_.near(fitted.rms)
         )
     near = round_.near(fitted.rms) or size.near(fitted.radius)
     if not size.holds(fitted.radius):
@@ -140,7 +143,7 @@ def _other_angle(evidence: Evidence, params: Arc, chosen: Steps, angle: float) -
         cause = Cause("not-in-colour", text, evidence.place("publish"))
         return "A part of this arc was drawn in a different colour.", cause
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
-    text = "The angle is angular.z times the time: the number of timer calls times the timer period."
+    text = "The angle is angular.z times the time, which is the number of timer calls times the timer period."
     return f"This arc has an angle of {angle:.0f} degrees.", Cause("wrong-angle", text, where)
 
 

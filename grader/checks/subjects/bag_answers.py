@@ -79,9 +79,10 @@ def bag_answer(evidence: Evidence, params: BagAnswer) -> Finding:
     total = sum(evidence.bag(params.bag).counts.values())
     if params.quantity == "messages" and value == total:
         counts = Cause("all-messages", "Only the messages of the topic with the poses count.", where)
-        return failed(observed, "The value in your bag.", counts)
+        return failed(observed, "The answer is the value in your bag.", counts)
     count = len(evidence.bag(params.bag).poses.get(params.topic, Poses()).t_s)
-    return failed(observed, "The value in your bag.", _why(params.quantity, value, truth, count).at(where))
+    why = _why(params.quantity, value, truth, count)
+    return failed(observed, "The answer is the value in your bag.", why.at(where))
 
 
 def _truth(evidence: Evidence, params: BagAnswer) -> float:

@@ -89,7 +89,8 @@ def _goes_on(evidence: Evidence, params: CancelsGoal, goal: Goal, took_s: float,
         )
     text = "cancel_goal_async of the goal handle requests the cancellation."
     cause = waits_in_callback(evidence) or Cause("goal-goes-on", text, where)
-    return failed(f"After the call to {params.service}, the turtle continued to its goal.", expected, cause)
+    observed = f"After the call to {params.service}, the turtle continued to turn towards its goal."
+    return failed(observed, expected, cause)
 
 
 def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
@@ -99,7 +100,7 @@ def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
     goals = goals_of(evidence)
     found = _stopped(goals, calls)
     if found is None:
-        return Finding(Status.SKIPPED, "Not judged, because no goal was stopped.")
+        return Finding(Status.SKIPPED, "Not judged, because no goal was active when the service was called.")
     if len(evidence.recording.goals) >= MOST_GOALS:
         observed = f"The node sent {MOST_GOALS} goals or more, and the recording does not contain all of them."
         return failed(observed, expected, Cause("goal-after-cancel", "", evidence.place("send_goal_async")))

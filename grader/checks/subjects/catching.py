@@ -41,7 +41,7 @@ is late."""
 
 @dataclass(frozen=True, kw_only=True)
 class Catches:
-    """Requires that all targets, and at least this many, are caught.
+    """Requires that all targets are caught, and that there are at least `turtles` targets.
 
     `service` is the service that catches one target.
     """
@@ -225,7 +225,7 @@ def _near(away_m: float, params: WithinReach) -> bool:
 
 
 def waits_for_pose(evidence: Evidence, _: NoParams) -> Finding:
-    """The node sent turtle1 no velocity command before the first pose of turtle1."""
+    """Before the first pose of turtle1, the node sent no velocity command except zeros."""
     first_s = evidence.trial.scenario.pose_from_s
     expected = "Until the first pose of turtle1 arrives, the turtle stands still."
     early = next((c for c in activity.commands(evidence.recording) if c.t_s < first_s and any(c.values)), None)
@@ -267,6 +267,6 @@ WAITS_FOR_POSE = Kind(
     "The node waits for the first pose",
     NoParams,
     waits_for_pose,
-    about="The node sends turtle1 no velocity command before the first pose of turtle1, which the simulator publishes "
-    "at `pose_from_s`.",
+    about="Before the first pose of turtle1, which the simulator publishes at `pose_from_s`, the node sends turtle1 no "
+    "velocity command except zeros.",
 )

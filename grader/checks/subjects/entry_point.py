@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
 
 OTHER_ENDINGS = ("", ".txt", ".py.txt", ".PY", ".python")
-"""The endings of a file name if .py was forgotten, or if an editor or a browser has added something."""
+"""The endings that a file name has if .py was forgotten, or if an editor or a browser has added an ending."""
 DATA = (ast.Constant, ast.List, ast.Tuple, ast.Dict, ast.Set, ast.JoinedStr)
 """Expressions whose value is not callable."""
 
@@ -168,7 +168,7 @@ def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
     functions = [node for node in module.nodes if isinstance(node, ast.FunctionDef)]
     at_top = next((node for node in module.nodes if isinstance(node, ast.Call) and _is_top_level(module, node)), None)
     if at_top is not None and not any(node.name == name for node in functions):
-        cause = "The program is at the top level of the file. Move the program into a function with that name."
+        cause = "The program's code is at the top level of the file. Move the code into a function with that name."
         return failed(observed, expected, Cause("top-level-code", cause, Where(module.file, at_top.lineno)))
     inside = indented(module, name)
     if inside is not None:

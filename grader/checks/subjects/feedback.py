@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from grader.trial.observed import Goal
 
 BEGIN_S = 0.1
-"""For this time after a new goal is accepted, a log line may still be about the previous goal (s)."""
+"""The time (s) after the acceptance of a new goal during which a log line may still be about the previous goal."""
 FRAME_S = 0.016
 LONG = 2.0
 """A goal counts if it lasts at least this many periods. A goal that lasts for a shorter time can end between two log
@@ -89,7 +89,7 @@ def _unheard(evidence: Evidence) -> Cause | None:
     sends = evidence.code.calls("send_goal_async")
     if not sends or any(call.argument(1, "feedback_callback") is not None for call in sends):
         return None
-    text = "Nothing in the node receives the feedback. send_goal_async takes a feedback_callback."
+    text = "Nothing in the node receives the feedback. send_goal_async has an argument feedback_callback."
     return Cause("feedback-not-logged", text, sends[0].where)
 
 

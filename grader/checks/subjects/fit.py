@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 IN_MODULE = ", in <module>"
 """The end of a traceback entry for code outside of functions."""
 SIGMAS = 6.0
-"""The maximum error of a right answer in addition to rounding, in standard deviations of the best fit."""
+"""The maximum error of a correct result, in standard deviations of the best fit. Rounding errors are added to it."""
 
 
 @dataclass(frozen=True, kw_only=True)

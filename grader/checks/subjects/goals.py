@@ -29,7 +29,7 @@ SAME_RAD = 0.02
 HALF_TURN_S = 3.2
 """The longest time that the turtle needs to reach a goal: it turns by at most pi rad, at 1 rad/s."""
 STILL_DRIVES_S = 0.5
-"""If the node still drove during this last part of the trial (s), it has not ended its drive."""
+"""If the node drives the turtle within this time (s) before the end of the trial, its drive has not ended."""
 LARGE_RAD = 7.0
 """A larger angle than this is more than a full turn, so it may be in degrees."""
 
@@ -106,7 +106,7 @@ def _not_reached(evidence: Evidence, goal: Goal, expected: str) -> Finding:
     if goal.status == "canceled":
         text = "The node itself cancelled the goal."
     elif not ended and goal.t_s > activity.end_s(evidence.recording) - HALF_TURN_S:
-        text = "The node starts too late."
+        text = "The node sent this goal too late."
     cause = Cause("goal-not-reached", text, evidence.place(*SENDS))
     return failed(f"{ended} {observed}".strip(), expected, cause)
 
@@ -188,7 +188,7 @@ def _other_heading(
 
 
 def awaits_result(evidence: Evidence, _: NoParams) -> Finding:
-    """The node requested the result of each goal that was reached. If no goal was reached, each goal counts."""
+    """The node requested the result of each goal that was reached. If no goal was reached, all goals are judged."""
     expected = "The node asks for the result of each goal."
     goals = goals_of(evidence)
     if not goals:

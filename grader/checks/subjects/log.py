@@ -101,11 +101,7 @@ def _silent(evidence: Evidence, expected: str, when: str) -> Finding:
     why = why_nothing(evidence, LEVELS) or compared_condition(evidence)
     if why is not None:
         return failed(observed, expected, why)
-    cause = (
-        "create_timer is never called."
-        if not code.calls("create_timer")
-        else "The line that logs may never be reached."
-    )
+    cause = "create_timer is never called." if not code.calls("create_timer") else "The line that logs may never run."
     return failed(observed, expected, Cause("never-logs", cause, evidence.place(*LEVELS)))
 
 
@@ -119,7 +115,7 @@ def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expe
         where = evidence.place(*LEVELS)
         why = Cause("log-numbers", text, where).fixed_by(at(where, '("', '(f"'))
     elif re.search(r"%[-+.\d]*[dfsi]|\{\}", line):
-        text = "A placeholder such as {} or %d is still in the line, so no value was put in its place."
+        text = "A placeholder such as {} or %d is still in the line, so it was not replaced with a value."
         why = Cause("log-numbers", text)
     elif re.fullmatch(pattern.pattern, line, re.IGNORECASE | re.ASCII):
         why = Cause("log-capitals", "Upper and lower case matter.")
@@ -232,7 +228,7 @@ def _set_again(evidence: Evidence) -> Cause | None:
 
 
 def _starts(evidence: Evidence) -> Iterator[tuple[float, Where]]:
-    """Yield each number that the source assigns to a name that it also increases, as for a counter, with its place."""
+    """Yield the first values of counters, with their places: numbers assigned to a name that is also increased."""
     for module in evidence.code.modules:
         increased = {ast.unparse(node.target) for node in module.nodes if isinstance(node, ast.AugAssign)}
         for node in module.nodes:

@@ -25,8 +25,10 @@ if TYPE_CHECKING:
     from grader.trial.recording import Floats, Recording
 
 EARLY_S = 0.02
-"""This time (s) is slightly more than one frame, because the frame and the log line get their timestamps at different
-moments."""
+"""A log line can describe a frame that is up to this much (s) later, since the timestamps are not exactly simultaneous.
+
+The time is slightly more than one frame.
+"""
 FEWEST = 3
 LENGTHS = ("hypot", "sqrt", "dist")
 """Functions that compute the length of a step."""
@@ -141,8 +143,8 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
         return failed(observed, expected, Cause("distance-from-zero", cause, where))
     if _is_chords(logged, numbers):
         cause = (
-            "The node adds one straight line from each logged position to the next. On a curve, the turtle drives "
-            "further than the straight line. Add a step each time a pose arrives."
+            "The node adds one straight line from each logged position to the next. On a curve, the path "
+            "is longer than the straight line. Add a step each time a pose arrives."
         )
         return failed(observed, expected, Cause("distance-by-chords", cause, where))
     cause = (
@@ -189,7 +191,7 @@ def _overwritten(evidence: Evidence) -> Cause | None:
 
 
 def _reads(step: ast.BinOp, begin: str) -> bool:
-    """Return whether a subtraction uses the attribute `begin`, or an attribute of it if `begin` ends with a dot."""
+    """Return whether a subtraction uses the attribute `begin`, or one of its attributes if `begin` ends with a dot."""
     names = [dotted(node) or "" for node in ast.walk(step) if isinstance(node, ast.Attribute)]
     return any(name.startswith(begin) if begin.endswith(".") else name == begin for name in names)
 

@@ -29,7 +29,7 @@ BUILD_TYPE = "ament_python"
 EXPECTED_BUILD_TYPE = f"A Python package has the build type {BUILD_TYPE}."
 CATKIN = "catkin"
 KNOWN = frozenset({module.partition(".")[0] for module in MODULE_OF.values()} | {"rclpy", "sensor_msgs", "nav_msgs"})
-"""ROS 2 packages whose names are often misspelt."""
+"""Common ROS 2 packages. A name that is almost one of these names is a typo."""
 
 
 def _line(evidence: Evidence, *patterns: str) -> Where:
@@ -79,7 +79,7 @@ class Dependencies:
 
 
 def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
-    """package.xml declares these packages, and those that the nodes import, as <depend> or <exec_depend>."""
+    """package.xml declares these packages, and if required all imported ones, as <depend> or <exec_depend>."""
     manifest = evidence.manifest
     imported = _imported(evidence) if params.imports == "declared" else {}
     needed = tuple(dict.fromkeys((*params.packages, *imported)))
@@ -111,7 +111,7 @@ def _class_declared(evidence: Evidence, declared: Iterable[str], expected: str) 
         return None
     package = MODULE_OF[found[0]].partition(".")[0]
     observed = f"{FILE} also declares {found[0]}, which is not a package."
-    cause = f"{found[0]} is a class in the package {package}. Only packages are declared."
+    cause = f"{found[0]} is a class in the package {package}. Declare only packages."
     where = _line(evidence, rf">\s*{re.escape(found[0])}\s*<")
     return failed(observed, expected, Cause("depend-on-class", cause, where))
 
@@ -148,7 +148,7 @@ def _has_none_of_these(code: Code, package: str) -> bool:
 def _why_not_declared(
     evidence: Evidence, manifest: Manifest, missing: Sequence[str], needed: Sequence[str], imported: Mapping[str, Where]
 ) -> Cause:
-    """Return the reason why package.xml does not declare the packages in `missing` at all."""
+    """Return the cause of a missing dependency: package.xml does not declare the packages in `missing` at all."""
     name = missing[0]
     guess = nearest(name, [each for each in manifest.run_depends if each not in needed and not _used(evidence, each)])
     if guess is not None:
@@ -235,5 +235,5 @@ NAME = Kind(
     "The package name is the same everywhere",
     NoParams,
     name,
-    about="package.xml, setup.py and the folder of the modules use the name from `package` in `[exercise]`.",
+    about="package.xml, setup.py and the folder of the modules have the package name from `[exercise]`.",
 )

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Pose
 
 MOVED_M = 0.05
-"""A turtle with a shorter trajectory than this did not move."""
+"""A turtle with a shorter trajectory than this (m) did not move."""
 TURNED_RAD = 0.1
 STRAIGHT_RADIUS_M = 50.0
 """A circle with a larger radius than this (m) looks straight on an 11 m canvas."""
@@ -203,7 +203,7 @@ def _not_round(
                 "The turtle drove in a straight line.", expected, Cause("straight-line", where=line_of_values(evidence))
             )
         observed = f"The trajectory has {trajectory.sides} straight sides with corners; {off}."
-        cause = "To drive a circle, every command must move forward and turn at the same time."
+        cause = "For a circle, every command must move the turtle forward and turn it at the same time."
         return failed(observed, expected, Cause("polygon", cause, line_of_values(evidence)), near_edge=near_edge)
     changed = len({(command.linear, command.angular) for command in evidence.commands}) > 1
     cause = "The commands change. A circle needs the same command all the time." if changed else ended_early(evidence)

@@ -103,7 +103,7 @@ def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
     printed = (called.stderr.strip() or called.stdout.strip()).splitlines()
     if not printed:
         observed = f"For a bag without poses, {name} printed no message ({called.ended})."
-        cause = "If you call sys.exit with a string, it prints the string."
+        cause = "If you call sys.exit with a string, Python prints the string."
         return failed(observed, expected, Cause("exit-code", cause, evidence.place("exit")))
     return passed(f'{name} printed "{shorten(printed[-1], 80)}"')
 

@@ -33,10 +33,10 @@ if TYPE_CHECKING:
 FEWEST = 3
 """With fewer commands there is at most one interval, which is not enough for a rate."""
 TRUSTED = 0.5
-"""If the machine stalled in a trial in wall time, the intervals without a stall are judged if they are at least this
-fraction of all intervals."""
+"""If the machine stalled in a trial in wall time, only the intervals without a stall are judged, and only if they are
+at least this fraction of all intervals."""
 POSES_HZ = 1.0 / FRAME_S
-"""turtlesim publishes one pose per frame."""
+"""The rate at which turtlesim publishes poses: one pose per frame."""
 
 FASTEST_HZ = 40.0
 """Simulated time advances in steps of 16 ms, so a higher rate than this appears lower than it is."""
@@ -131,7 +131,7 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
 
 
 def _follows_poses(evidence: Evidence, mean_hz: float) -> bool:
-    """Return whether the node acts once per pose, which gives the same rate in simulated time and in wall time."""
+    """Return whether the node sends one message per pose. Then the rate is the same in simulated time and wall time."""
     return abs(mean_hz - POSES_HZ) <= 0.5 and not evidence.code.calls("create_timer")
 
 

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 BAG = "The folder of the bag in the package."
 STILL_M = 0.05
-"""A turtle that never leaves a square with this side has not moved."""
+"""A turtle that never leaves a square with sides of this length (m) has not moved."""
 MOVES_M = 1e-4
-"""The minimum distance between two poses of a turtle that moves."""
+"""The minimum distance (m) between two successive poses of a turtle that moves."""
 FASTEST_HZ = 110.0
 """One turtlesim publishes 62.5 poses per second.
 
@@ -31,7 +31,7 @@ If the rate of the poses is higher than this, more than one turtlesim published 
 """
 SHORTEST_S = 2.0
 ROUND_M = 0.05
-"""The maximum deviation of the poses from the circle (root mean square)."""
+"""The maximum deviation of the poses from the circle (m, root mean square)."""
 
 
 @dataclass(frozen=True, kw_only=True)

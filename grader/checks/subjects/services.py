@@ -175,8 +175,8 @@ def _missing(evidence: Evidence, service: str, type_: str, expected: str) -> Fin
         )
         if guess.endswith(service):
             text = (
-                "A name without a slash at the beginning is in the node's namespace. A name with ~ is below the "
-                "node's name."
+                "A name without a slash at the beginning is in the node's namespace. ROS 2 replaces ~ with the name "
+                "of the node."
             )
         return failed(observed, expected, Cause("service-name", text, where))
     stuck = waits_in_callback(evidence)

@@ -146,8 +146,8 @@ def _at(place: tuple[float, float]) -> str:
 def removes(evidence: Evidence, params: Removes) -> Finding:
     """Exactly the turtles that the trial caught were removed. Calls with unknown names changed nothing."""
     expected = (
-        f"When {params.service} is called, the node removes the turtle with the name in the request, and no "
-        "other turtle, with /kill."
+        f"When {params.service} is called, the node calls /kill to remove the turtle whose name is in the request, and "
+        "no other turtle."
     )
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     recording = evidence.recording

@@ -31,7 +31,7 @@ STRAIGHT_RAD_M = 0.2
 CURVED_SHARE = 0.1
 """If more than this fraction of the trajectory is curved, the trajectory is not a square."""
 SHORT_M = 0.05
-"""A straight part that is shorter than this is not a side."""
+"""A straight part that is shorter than this (m) is not a side."""
 
 
 @dataclass(frozen=True, kw_only=True)

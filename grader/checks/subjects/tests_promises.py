@@ -1,4 +1,4 @@
-"""Check that the tests use the node's topics and clock only, not the methods and attributes of its class."""
+"""Check that the tests use only the node's topics and clock, not the methods and attributes of its class."""
 
 from __future__ import annotations
 
@@ -84,7 +84,10 @@ def _sets_own(node: ast.Attribute) -> bool:
 
 
 def _names_of_nodes(module: Module, name: str) -> Iterator[str]:
-    """Yield the last part of each name that refers to an object of this class, and each fixture for such an object."""
+    """Yield the names that refer to an object of this class.
+
+    They are the last parts of names to which such an object is assigned, and the names of functions that return one.
+    """
     known: set[str] = set()
     for node in module.nodes:
         if isinstance(node, ast.Assign) and _creates(node.value, name):

@@ -68,7 +68,7 @@ def pass_(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def _numbers(evidence: Evidence) -> str:
-    """Return the student's own numbers in words, or an empty string if the exercise has none."""
+    """Return the student's own numbers as text, or an empty string if the exercise has none."""
     drawn = drawn_numbers(evidence) if evidence.exercise.numbers is not None else None
     if not isinstance(drawn, OwnNumbers):
         return ""
@@ -139,7 +139,7 @@ def _why_not_called(evidence: Evidence, broken: str, code: TestCode) -> Cause | 
 
 
 def _is_silent(evidence: Evidence, broken: str) -> bool:
-    """Return whether the broken node sends nothing on the command topic."""
+    """Return whether the tests receive no commands from the broken node."""
     spec = evidence.trial.tests
     assert spec is not None
     behaviours: dict[str, Behaviour] = {each.id: each.behaviour for each in spec.broken}

@@ -26,7 +26,7 @@ TEST_DEPEND = "python3-pytest"
 READERS = frozenset(
     {"open", "read_text", "read_bytes", "getsource", "getsourcelines", "getsourcefile", "find_spec", "get_data"}
 )
-"""Functions that read a module's file."""
+"""Functions that can read the file of a module."""
 SOURCE_MODULES = frozenset({"ast", "inspect", "dis", "linecache", "tokenize", "marshal", "py_compile", "pkgutil"})
 """Modules whose purpose is to look at source or compiled code."""
 CODE_ATTRIBUTES = frozenset({"__code__", "co_code", "co_consts", "co_names"})
@@ -50,7 +50,7 @@ def declared(evidence: Evidence, _: NoParams) -> Finding:
         old = setup.tests_require_line
         cause = "Without this entry, colcon test runs unittest, which does not find pytest's test functions."
         if old is not None:
-            cause = "setuptools ignores tests_require since version 72, and colcon test then runs unittest."
+            cause = "setuptools 72 and later ignore tests_require, so colcon test runs unittest."
         observed = f'setup.py does not list "{PYTEST}" in extras_require.'
         where = Where("setup.py", old or setup.setup_line)
         return failed(observed, expected, Cause("tests-require" if old else "pytest-undeclared", cause, where))
@@ -115,7 +115,7 @@ def _is_of_code(node: ast.AST) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class Steady:
-    """The names of functions that make a test depend on chance."""
+    """The names of functions that make a test depend on chance or on the speed of the machine."""
 
     names: tuple[str, ...] = strings(about="Functions that wait for a fixed time, such as `sleep`.")
     random: tuple[str, ...] = strings(about="Functions that return a different result each time, such as `randint`.")

@@ -129,7 +129,7 @@ def _why_silent(evidence: Evidence) -> Cause:
     why = why_qos(evidence) or why_nothing(evidence, ("publish",)) or compared_condition(evidence)
     if why is not None:
         return why.at(code.start)
-    text = "The line that publishes may never be reached, or it may run only at the start, before anything subscribes."
+    text = "The line that publishes may never run, or it may run only at the start, before anything subscribes."
     if not any(code.calls(name) for name in WAKES) and not loops(evidence):
         text = "create_timer is never called, and there is no loop, so nothing publishes repeatedly."
     known = returns_before(evidence, "publish") or hidden_error(evidence, "publish")
@@ -137,7 +137,10 @@ def _why_silent(evidence: Evidence) -> Cause:
 
 
 def _publisher_line(evidence: Evidence, topic: str) -> Where | None:
-    """Return the line that creates the publisher of this topic, or any publisher, or else the node's file, or None."""
+    """Return the line that creates the publisher of this topic.
+
+    If there is no such line, return the line that creates the first publisher, the node's file, or None.
+    """
     calls = evidence.code.calls("create_publisher")
     for call in calls:
         value = evaluate(call.argument(1, "topic"), call.module.names)

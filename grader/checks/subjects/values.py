@@ -47,13 +47,13 @@ class Values:
 
     @property
     def wanted(self) -> Six:
-        """The six values."""
+        """The six required values."""
         linear = (self.linear_x_m_s, self.linear_y_m_s, self.linear_z_m_s)
         return (*linear, self.angular_x_rad_s, self.angular_y_rad_s, self.angular_z_rad_s)
 
     @property
     def bands(self) -> tuple[Band, ...]:
-        """The six tolerances."""
+        """The allowed range of each of the six values."""
         tolerances = [self.linear_tolerance_m_s] * 3 + [self.angular_tolerance_rad_s] * 3
         return tuple(Band.around(nominal, width) for nominal, width in zip(self.wanted, tolerances, strict=True))
 
@@ -106,7 +106,7 @@ def _all_hold(bands: tuple[Band, ...], six: Six) -> bool:
 
 
 def _right_values(evidence: Evidence, wanted: Six, off: list[int]) -> tuple[Edit, ...]:
-    """Return the edits that assign the right value to each wrong field, if its assignment is on a line of its own."""
+    """Return the edits that correct the wrong fields: they change assignments on separate lines, or add them."""
     edits: list[Edit] = []
     sets: list[tuple[Where, str]] = []
     for index, field in enumerate(FIELDS):
@@ -175,7 +175,7 @@ def _why(six: Six, wanted: Six, off: list[int]) -> tuple[Cause, str]:
 
 
 OF_A_NUMBER = frozenset({"wrong-value", "wrong-sign", "degrees", "values-swapped"})
-"""Diagnoses of a wrong number, which must be changed where the number is written, for example in a function call."""
+"""Diagnoses for which the student must change the number where it is written, for example in a function call."""
 MEANING = "linear.x is the forward speed, and angular.z is how fast the turtle turns to the left."
 
 

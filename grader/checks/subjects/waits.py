@@ -43,7 +43,7 @@ def _early(evidence: Evidence, _: NoParams) -> Finding | None:
 
 
 def _certain(evidence: Evidence, waits: list[Wait]) -> Finding | None:
-    """Return a failed finding if the source alone shows a callback that waits too long, or None."""
+    """Return a failed finding if the source alone shows that a callback waits where it must not, or None."""
     threads = has_threads(evidence)
     first = next((wait for wait in waits if not (threads and wait.deadlock)), None)
     if first is not None:

@@ -59,9 +59,9 @@ def test_a_turtle_that_does_not_exist_yet_is_not_announced() -> None:
     messages = tuple(said(0.25 + 0.5 * number, names_at(0.25 + 0.5 * number)) for number in range(20))
     finding = of_announces(given(messages=messages))
     assert finding.diagnosis == "still-announced"
-    assert finding.observed == "The message at 0.2 s contains target1, which existed only from 0.5 s on."
+    assert finding.observed == "The message at 0.2 s contains target1, which did not exist before 0.5 s."
     assert "A turtle exists when the response from /spawn arrives." in told(finding)
-    assert "which existed only from" not in told(of_announces(given()))
+    assert "which did not exist before" not in told(of_announces(given()))
 
 
 def test_a_node_that_has_ended_is_not_blamed_for_its_timer() -> None:
@@ -91,7 +91,7 @@ def test_a_node_is_silent_when_no_target_is_left(gone_s: float, diagnosed: str) 
     early = tuple(said(1.0 + 0.5 * number, " ".join(PLACES)) for number in range(7))
     finding = of_announces(given(calls=[catch()], gone=dict.fromkeys(PLACES, gone_s), messages=early))
     assert diagnosis(finding) == diagnosed
-    words = "At this time, no target was left. Even then, the node must publish a message, with an empty string."
+    words = "At this time, no target was left. Even then, the node must publish a message with an empty string."
     assert (words in told(finding)) == (diagnosed == "silent-when-empty")
 
 

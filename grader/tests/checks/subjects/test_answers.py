@@ -58,7 +58,7 @@ def test_the_file_is_looked_at_before_its_answers(answers: str | None, diagnosis
     finding = found(ANSWERS, given(answers, exercise=exercise))
     assert (finding.status, finding.diagnosis) == (Status.FAILED, diagnosis)
     if diagnosis == "unknown-answer":
-        assert finding.observed == "answers.toml answers nade, but no question has that name."
+        assert finding.observed == "answers.toml contains nade, but no question has that name."
     line = {"unknown-answer": "answers.toml:3", "answers-unreadable": "answers.toml:2", "no-answers": "None"}.get(
         str(diagnosis), "answers.toml"
     )

@@ -114,7 +114,7 @@ def test_an_arc_in_two_colours_is_told_from_two_arcs(
 @pytest.mark.parametrize(
     ("words", "true", "near"),
     [
-        ("This part of the path is not one arc: it deviates by", WIDER, CIRCLE),
+        ("This part of the path is not a single arc: it deviates by", WIDER, CIRCLE),
         ("The command or the pen changes during this part of the path.", WIDER, WIDE),
         ("The turtle ran into a wall after ", WIDE, WIDER),
         ("The radius of this arc is 1.00 m.", every(0.1, 1.0, 1.0), CIRCLE),

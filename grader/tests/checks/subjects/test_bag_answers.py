@@ -56,7 +56,7 @@ def about(check: str, answer: str) -> str:
         ("A number needs its unit.", "duration", '"11.1"', '"11.1 m"'),
         ("The unit is s.", "duration", '"11.1 m"', '"11.1"'),
         ("A count has no unit.", "messages", '"696 m"', '"696"'),
-        ("The value in your bag.", "duration", '"13 s"', '"11.1 s"'),
+        ("The answer is the value in your bag.", "duration", '"13 s"', '"11.1 s"'),
         ("Time stamps in a bag are in nanoseconds.", "duration", '"11123267399 s"', '"1112326739 s"'),
         ("This is the period, the time between two messages", "rate", '"0.016 Hz"', '"0.032 Hz"'),
         ("This is the number of messages divided by the duration.", "rate", '"62.57 Hz"', '"62.7 Hz"'),

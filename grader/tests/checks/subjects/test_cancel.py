@@ -97,7 +97,7 @@ def about(*goals: Goal) -> str:
             goal(1.0, 80.0, 3.9, "canceled", cancel_asked_s=3.8),
             goal(1.0, 80.0, 3.9),
         ),
-        ("After the call to /stop, the turtle continued to its goal.", goal(1.0, 80.0, 3.9), ACTIVE),
+        ("After the call to /stop, the turtle continued to turn towards its goal.", goal(1.0, 80.0, 3.9), ACTIVE),
         ("The turtle was not following a goal when /stop was called.", goal(1.0, 80.0, 2.9), goal(1.0, 80.0, 3.9)),
         ("Until the service is called, the node sends the next goal", goal(1.0, 80.0, 2.9), goal(1.0, 80.0, 3.9)),
         ("The goal sent at 1.0 s was aborted. The node did not cancel the goal.", ABORTED, goal(1.0, 80.0, 3.1)),
@@ -121,7 +121,11 @@ def after(*goals: Goal) -> str:
         ("The node sent another goal 0.5 s after the call.", [ACTIVE, goal(3.5, 0.0, 5.0)], [ACTIVE]),
         ("A cancelled goal also has a result", [ACTIVE, goal(3.5, 0.0, 5.0)], [ACTIVE]),
         ("After a call to /stop, the node sends no more goals.", [ACTIVE, goal(3.5, 0.0, 5.0)], [ACTIVE]),
-        ("Not judged, because no goal was stopped.", [goal(3.5, 0.0, 5.0)], [ACTIVE, goal(3.5, 0.0, 5.0)]),
+        (
+            "Not judged, because no goal was active when the service was called.",
+            [goal(3.5, 0.0, 5.0)],
+            [ACTIVE, goal(3.5, 0.0, 5.0)],
+        ),
     ],
 )
 def test_a_sentence_about_the_goals_after_a_call_is_true(words: str, true: list[Goal], near: list[Goal]) -> None:

@@ -106,7 +106,7 @@ UNASKED = goal(1.0, 80.0, 2.4, result_asked_s=None)
             [FIRST, goal(3.0, 110.0, None, "executing")],
         ),
         (
-            "The node starts too late.",
+            "The node sent this goal too late.",
             [FIRST, goal(9.7, 110.0, None, "executing")],
             [FIRST, goal(3.0, 110.0, None, "executing")],
         ),
@@ -154,7 +154,7 @@ def test_a_goal_that_the_end_of_the_node_cut_short_did_not_start_too_late() -> N
     goals = (FIRST, goal(9.7, 110.0, None, "executing"))
     ended = about(*goals, end=ProcessEnd(by="itself", exit_code=0, t_s=9.8, stop_s=None))
     assert "The node exited on its own after 9.8 s. The goal sent at 9.7 s was not reached by the end" in ended
-    assert "The node starts too late." not in ended
+    assert "The node sent this goal too late." not in ended
     assert "exited" not in about(*goals)
 
 

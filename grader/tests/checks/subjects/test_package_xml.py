@@ -286,4 +286,4 @@ def test_a_class_that_is_declared_like_a_package_is_told(name: str, *, found: bo
     added = xml("  <depend>rclpy</depend>", f"  <depend>{name}</depend>\n  <depend>rclpy</depend>")
     reported = told(of("dependencies", added))
     assert ("package.xml also declares Twist, which is not a package." in reported) == found
-    assert ("Twist is a class in the package geometry_msgs. Only packages are declared." in reported) == found
+    assert ("Twist is a class in the package geometry_msgs. Declare only packages." in reported) == found

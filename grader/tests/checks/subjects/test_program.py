@@ -123,7 +123,7 @@ CRASH = raised("no-poses", "IndexError: list index out of range")
             ended("exit 1"),
             ended("exit 1", stdout="a"),
         ),
-        ("If you call sys.exit with a string, it prints the string.", ended("exit 1"), ended("signal 9")),
+        ("If you call sys.exit with a string, Python prints the string.", ended("exit 1"), ended("signal 9")),
         (
             "For a bag without poses, bag_report did not exit by itself (signal 9).",
             ended("signal 9", stderr="no poses\n"),

@@ -146,7 +146,7 @@ Gone = dict[str, float]
         ("A call to /catch removes the turtle.", ([catch(), kill()], CAUGHT), ([], {})),
         ("had ended before the call.", ([], {}), ([catch()], {})),
         (
-            "When /catch is called, the node removes the turtle with the name in the request, and no other turtle",
+            "the node calls /kill to remove the turtle whose name is in the request, and no other turtle",
             ([catch()], {}),
             ([catch(), kill()], CAUGHT),
         ),

@@ -141,7 +141,7 @@ def about_declaration(extra: str, depend: str) -> str:
         ),
         ('setup.py does not list "pytest" in extras_require.', ("", DEPEND), (PYTEST, DEPEND)),
         ("Without this entry, colcon test runs unittest, which does not find", ("", DEPEND), (OLD, DEPEND)),
-        ("setuptools ignores tests_require since version 72, and colcon test then runs", (OLD, DEPEND), ("", DEPEND)),
+        ("setuptools 72 and later ignore tests_require, so colcon test runs", (OLD, DEPEND), ("", DEPEND)),
         ("package.xml does not declare python3-pytest.", (PYTEST, ""), (PYTEST, DEPEND)),
         ("On another computer, rosdep installs only the packages that", (PYTEST, ""), ("", "")),
     ],
