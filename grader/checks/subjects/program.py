@@ -198,7 +198,7 @@ PRINTS = Kind(
     "The program prints the content of the bag",
     Printed,
     prints,
-    about="When the executable gets the name of a `[[trial.bag]]` as its argument, it prints a line in the given "
+    about="The argument of the executable is the name of a `[[trial.bag]]`. The executable prints a line in the given "
     "format with the right numbers for the poses in the bag, and ends with exit code 0.",
 )
 ENDS = Kind(
@@ -207,6 +207,6 @@ ENDS = Kind(
     "The program reports what is missing",
     OneCall,
     ends_with_message,
-    about="When the executable gets the name of a `[[trial.bag]]` without poses as its argument, it prints a sentence "
-    "and ends with an exit code other than 0, without a traceback.",
+    about="The argument of the executable is the name of a `[[trial.bag]]` without poses. The executable prints a "
+    "sentence and ends with an exit code other than 0, without a traceback.",
 )

@@ -93,7 +93,7 @@ def _measured(evidence: Evidence, params: Star, sides: Sides, expected: str) -> 
             )
         if length < params.side_m and _is_cut(evidence):
             text = (
-                "The command with zeros arrives together with the last command of the side, so that command has no "
+                "The command with zeros arrives together with the last command of the side, so the latter has no "
                 "effect. Send the zeros when the timer fires the next time."
             )
         return failed(observed, expected, Cause("side-length", text, where), near_edge=near)

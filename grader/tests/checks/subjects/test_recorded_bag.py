@@ -56,7 +56,7 @@ CUT = made_bag.poses(drive_s=5.0, begin_s=0.0)
         ("The turtle stopped before the turn was complete.", SHORT, CUT),
         ("The recording began too late, or ended too early.", CUT, SHORT),
         ("The bag shows 1.1 turns on a circle with a radius of 1.10 m.", WHOLE, SHORT),
-        ("The turtle stands still in the whole bag.", made_bag.poses(drive_s=0.0), made_bag.commands()),
+        ("In the bag, the turtle never moves.", made_bag.poses(drive_s=0.0), made_bag.commands()),
         ("The bag contains fewer than two poses on /turtle1/pose.", made_bag.commands(), made_bag.poses(drive_s=0.0)),
         ("Nothing moved the turtle during the recording.", made_bag.poses(drive_s=0.0), SHORT),
         ("/turtle1/pose has 125 poses per second in the bag.", TWO, WHOLE),
