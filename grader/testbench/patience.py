@@ -109,7 +109,7 @@ class Patience:
                 self._waits_ns[int(task.name)] = int((task / "schedstat").read_bytes().split()[1])
 
     def _waited_s(self) -> float:
-        """Return the known time (s) for which the run and the caller have waited for a processor."""
+        """Return the time (s) for which the run and the responding thread waited for a processor, as last read."""
         return (sum(self._waits_ns.values()) + self._callers_waits_ns) / 1e9
 
     def _callers_waited_ns(self) -> int:

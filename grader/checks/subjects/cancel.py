@@ -44,7 +44,7 @@ class SaysWhetherActive:
 
 @dataclass(frozen=True, kw_only=True)
 class NoGoalAfter:
-    """The service that the trial calls, after which the node must send no goal."""
+    """The service that the trial calls. After the call, the node must not send any more goals."""
 
     service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
 

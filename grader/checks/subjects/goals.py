@@ -129,7 +129,7 @@ def _no_more(evidence: Evidence, goals: list[Goal], expected: str) -> Finding:
     text = "The callback that receives the result must send the next goal."
     drove_s = _drove_until_s(evidence, goals[-1])
     if drove_s is not None:
-        text = "The node drove after this goal. When the drive has ended, the node must send the next goal."
+        text = "The node drove the turtle after this goal. When the drive has ended, the node must send the next goal."
         if drove_s > activity.end_s(evidence.recording) - STILL_DRIVES_S:
             text = "After this goal, the node drove until the end of the trial. Which condition ends the drive?"
     cause = (

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 EARLY_S = 0.02
 """A log line can describe a frame that is up to this much (s) later, since the timestamps are not exactly simultaneous.
 
-The time is slightly more than one frame.
+This time is slightly longer than one frame.
 """
 FEWEST = 3
 LENGTHS = ("hypot", "sqrt", "dist")

@@ -42,7 +42,7 @@ class InBag:
 
 
 def readable(evidence: Evidence, params: InBag) -> Finding:
-    """The bag exists, was closed properly, and contains messages."""
+    """The bag exists, can be read, and contains messages."""
     bag, where = evidence.bag(params.bag), Where(params.bag)
     expected = f"The folder {params.bag} next to package.xml contains a bag with at least one message."
     if bag.problem == "missing":
@@ -178,8 +178,8 @@ READABLE = Kind(
     "The bag can be read",
     InBag,
     readable,
-    about="A folder of the package contains a bag (MCAP) with at least one message, and its recording was ended "
-    "properly.",
+    about="A folder of the package contains a bag (MCAP) that can be read, with at least one message and "
+    "`metadata.yaml`.",
 )
 TOPIC = Kind(
     "bag_topic",
@@ -195,5 +195,5 @@ CIRCLE = Kind(
     "The bag shows a circle",
     CircleInBag,
     circle_in_bag,
-    about="The poses in the bag lie on one whole circle with the given radius.",
+    about="The poses in the bag lie on a circle with the given radius, and make at least the given number of turns.",
 )

@@ -32,7 +32,7 @@ NUMBERS = (
 
 
 def promises(evidence: Evidence, _: NoParams) -> Finding:
-    """The tests do not use the methods and attributes that the class of the node defines."""
+    """The tests use neither the methods and attributes of the node's class, nor the constants of its module."""
     expected = "The tests use only the topics and the clock of the node, as another node would."
     spec = next((trial.tests for trial in evidence.exercise.trials if trial.tests is not None), None)
     if spec is None:
@@ -115,5 +115,6 @@ PROMISES = Kind(
     "The tests use only what the node promises",
     NoParams,
     promises,
-    about="The test files do not use the methods and attributes that the class under test defines.",
+    about="The test files do not use the methods and attributes that the class under test defines, and do not import "
+    "constants from its module.",
 )

@@ -135,7 +135,7 @@ def test_a_sentence_about_goals_is_true(words: str, true: list[Goal], near: list
 
 
 RESULT = "The callback that receives the result must send the next goal."
-SIDE = "The node drove after this goal. When the drive has ended, the node must send the next goal."
+SIDE = "The node drove the turtle after this goal. When the drive has ended, the node must send the next goal."
 ON = "After this goal, the node drove until the end of the trial. Which condition ends the drive?"
 
 
