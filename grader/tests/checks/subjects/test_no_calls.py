@@ -176,8 +176,10 @@ SPINNING_LOOP = "\nwhile True:\n    rclpy.spin_once(node)\n"
             NODE.replace(TIMER, "None") + SPINNING_LOOP,
         ),
         (
-            "A rate from create_rate works only while another thread spins the node. A timer does not need an "
-            "additional thread.",
+            (
+                "A rate from create_rate works only while another thread spins the node. A timer does not need an "
+                "additional thread."
+            ),
             NODE.replace(TIMER, "self.create_rate(2)"),
             NODE.replace(TIMER, "None"),
         ),
