@@ -107,7 +107,7 @@ def test_a_silent_log_is_explained_by_the_source(node: str, stdout: str, diagnos
             "but it printed lines. | print only writes",
         ),
         (NODE.replace("self.publisher.publish(msg)", "print(1)"), "", "never called."),
-        (LOGS.replace("def send(self):", "def send(self):\n        print(1)"), "1.000\n", "may never be reached."),
+        (LOGS.replace("def send(self):", "def send(self):\n        print(1)"), "1.000\n", "may never run."),
         (NODE, "from a library\n", "never called."),
     ],
 )
