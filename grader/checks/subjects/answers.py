@@ -1,4 +1,4 @@
-"""Checks of answers.toml: compare the student's answers with the recorded ROS graph."""
+"""Checks of answers.toml: compare the student's answers with given answers, or with the recorded graph and rates."""
 
 from __future__ import annotations
 
@@ -151,7 +151,7 @@ def _right_answers(recording: Recording, params: GraphQuestion) -> tuple[str, ..
 
 
 def _all(recording: Recording, find: str) -> set[str]:
-    """Return every topic, type or node of the graph."""
+    """Return all topics, types or nodes of the graph, as `find` says."""
     return {getattr(end, find) for graph in recording.graphs for end in graph.endpoints}
 
 

@@ -35,8 +35,7 @@ A smaller difference does not count, because the turtle moves while the node dec
 SLACK_M = 0.1
 """The additional distance that is allowed because a pose is slightly old when the node decides (m)."""
 OFTEN = 3
-"""A node that calls the service this often for one target has made too many calls. A node may call twice if a response
-is late."""
+"""The maximum number of calls to the service for one target. A node may call again if a response is late."""
 
 
 @dataclass(frozen=True, kw_only=True)

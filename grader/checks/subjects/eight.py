@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 NAMES = ("first", "second")
 SMALL_RAD = 0.3
-"""A turn by a smaller angle than this does not count as a lobe."""
+"""A turn by a smaller angle than this (rad) does not count as a lobe."""
 
 
 @dataclass(frozen=True, kw_only=True)

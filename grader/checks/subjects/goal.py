@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 STROKE_M = 0.3
-"""The length of each of the four lines that point to a goal in a drawing."""
+"""The length (m) of each of the four lines that point to a goal in a drawing."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -31,7 +31,7 @@ HALF_TURN_S = 3.2
 STILL_DRIVES_S = 0.5
 """If the node drives the turtle within this time (s) before the end of the trial, its drive has not ended."""
 LARGE_RAD = 7.0
-"""A larger angle than this is more than a full turn, so it may be in degrees."""
+"""A larger angle than this (rad) is more than a full turn, so it may be in degrees."""
 
 
 @dataclass(frozen=True, kw_only=True)

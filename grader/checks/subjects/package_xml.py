@@ -105,7 +105,7 @@ def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
 
 
 def _class_declared(evidence: Evidence, declared: Iterable[str], expected: str) -> Finding | None:
-    """Return the failed finding if a class such as Twist is declared like a package, or else None."""
+    """Return the failed finding if a class such as Twist is declared as if it were a package, else None."""
     found = [name for name in declared if name in MODULE_OF and name not in SHARED_NAMES and name[0].isupper()]
     if not found:
         return None

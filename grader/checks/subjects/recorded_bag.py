@@ -114,7 +114,7 @@ class CircleInBag(InBag):
 
 
 def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:
-    """The poses in the bag show a whole circle with the required radius and speed."""
+    """The poses in the bag make the required number of turns on a circle with the required radius and speed."""
     poses, where = evidence.bag(params.bag).poses.get(params.topic, Poses()), Where(params.bag)
     expected = f"The poses show at least {params.turns:g} turn on a circle with a radius of {params.radius_m:g} m."
     x, y = np.array(poses.x), np.array(poses.y)

@@ -66,7 +66,7 @@ class Removes:
 
 
 def spawns(evidence: Evidence, params: Spawns) -> Finding:
-    """The node spawned this many turtles with the right names, in different places on the field."""
+    """The node spawned the required number of turtles with the right names, in different places on the field."""
     wanted = [f"{params.name}{index + 1}" for index in range(int(params.turtles))]
     expected = (
         f"The node spawns {count(len(wanted), 'turtle')}, {wanted[0]} to {wanted[-1]}, in random places. "
