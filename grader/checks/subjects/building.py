@@ -38,7 +38,7 @@ IGNORED = (
     "Delete the file, so that colcon finds the package."
 )
 EXPECTED = "`colcon build` succeeds and installs the package."
-OTHER_TYPE = "The build type in package.xml tells colcon how to build the package, and it is not ament_python."
+OTHER_TYPE = "colcon decides from the build type in package.xml how to build a package. This type is not ament_python."
 
 
 def plain_files(evidence: Evidence, _: NoParams) -> Finding:
