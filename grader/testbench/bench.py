@@ -1,6 +1,6 @@
 """Run a student's tests on the correct node several times and on each broken node once, in random order.
 
-The student's process reports whether the tests passed, and this process could lie. This process does not know which
+The student's process reports whether the tests passed, and its report could be false. This process does not know which
 node it tests, so a false report gains little. Tests that always pass or always fail get no points for broken nodes, and
 tests that pass by chance get few points (docs/security.md).
 """

@@ -228,7 +228,7 @@ def _set_again(evidence: Evidence) -> Cause | None:
 
 
 def _starts(evidence: Evidence) -> Iterator[tuple[float, Where]]:
-    """Yield the first values of counters, with their places: numbers assigned to a name that is also increased."""
+    """Yield the first value of each counter, with its place: a number assigned to a name that is also increased."""
     for module in evidence.code.modules:
         increased = {ast.unparse(node.target) for node in module.nodes if isinstance(node, ast.AugAssign)}
         for node in module.nodes:
