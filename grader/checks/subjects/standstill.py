@@ -38,7 +38,7 @@ def no_standstill(evidence: Evidence, expected: str) -> Finding | None:
 
 
 def silent_while_moving(evidence: Evidence) -> bool:
-    """Return whether the last command moves the turtle, and the trial goes on for at least one second after it."""
+    """Return whether the last command moves the turtle, and the trial continues for at least one second after it."""
     last = evidence.commands[-1] if evidence.commands else None
     if last is None or max(abs(last.linear[0]), abs(last.angular[2])) <= STILL:
         return False
