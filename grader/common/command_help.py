@@ -6,8 +6,12 @@ terminal of 40 columns leaves 8 columns for the text.
 
 from __future__ import annotations
 
+import importlib
 import shutil
+import sys
 import textwrap
+from contextlib import contextmanager
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -78,9 +82,30 @@ def _format_help(
 ) -> None:
     width = shutil.get_terminal_size().columns
     if width >= WIDE:
+        with _without("rich.markdown", "Markdown"), _without("rich.traceback", "Traceback"):
+            importlib.import_module("typer.rich_utils")
         wide(context, formatter)
     else:
         formatter.write("\n".join(_narrow(command, context, width)))
+
+
+@contextmanager
+def _without(module: str, name: str) -> Iterator[None]:
+    """Let other modules import `name` from a module without importing the module, unless it is imported already.
+
+    typer imports these names and does not use them for a help text. Importing their modules takes longer than printing
+    the text.
+    """
+    stand_in = ModuleType(module)
+    setattr(stand_in, name, None)
+    if module in sys.modules:
+        yield
+        return
+    sys.modules[module] = stand_in
+    try:
+        yield
+    finally:
+        del sys.modules[module]
 
 
 def _narrow(command: TyperCommand | TyperGroup, context: Any, width: int) -> Iterator[str]:  # noqa: ANN401 - as above

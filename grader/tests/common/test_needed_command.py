@@ -12,10 +12,10 @@ from grader.common.needed_command import needed_command
 if TYPE_CHECKING:
     from pathlib import Path
 
-STATUS = """
+COMMAND = """
 import sys
 from grader.cli import main
-sys.argv = ["grader", "status"]
+sys.argv = ["grader", "{}"]
 try:
     main()
 finally:
@@ -44,9 +44,16 @@ def test_without_the_name_of_a_command_all_are_created(words: list[str]) -> None
     assert set(needed_command(two_and_a_group(), words).commands) == {"first-one", "second", "more"}
 
 
-def test_status_imports_neither_the_checks_nor_the_set_up(tmp_path: Path) -> None:
-    start = interpreter("-c", STATUS, env={"HOME": str(tmp_path), "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"})
+@pytest.mark.parametrize(
+    ("word", "shown", "modules"),
+    [
+        ("status", "Draw a circle", {"grader.checks.kinds", "grader.setup.bootstrap", "rich.markdown"}),
+        ("--help", "check", {"grader.checks.kinds", "rich.markdown", "markdown_it", "rich.traceback", "pygments"}),
+    ],
+)
+def test_a_command_imports_only_what_it_needs(tmp_path: Path, word: str, shown: str, modules: set[str]) -> None:
+    start = interpreter("-c", COMMAND.format(word), env={"HOME": str(tmp_path), "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"})
     done = subprocess.run(start.argv, env=start.env, capture_output=True, text=True, check=True)
     printed, _, imported = done.stdout.partition("imported:")
-    assert "Draw a circle" in printed
-    assert not {"grader.checks.kinds", "grader.setup.bootstrap", "rich.markdown"} & set(imported.split())
+    assert shown in printed
+    assert not modules & set(imported.split())
