@@ -21,7 +21,10 @@ _COLCON = "import sys; from colcon_core.command import main; sys.exit(main())"
 
 
 def new_package(submission: Path, folder: Path) -> Path:
-    """Write a copy of the submission for which no earlier build can be reused. Return the folder of the copy."""
+    """Write a copy of the submission, and return the folder of the copy.
+
+    The copy differs from all earlier copies, so that no earlier build can be reused.
+    """
     opened = open_submission(submission)
     manifest = opened.files[_MANIFEST] + f"<!-- {uuid.uuid4()} -->\n".encode()
     write_copy(replace(opened, files={**opened.files, _MANIFEST: manifest}), folder)
@@ -29,7 +32,7 @@ def new_package(submission: Path, folder: Path) -> Path:
 
 
 def bare_costs(submission: Path, folder: Path) -> dict[str, Cost]:
-    """Measure a build and a node without the grader, in an empty folder. F is the sum of the two wall times."""
+    """Measure a build and a node in an empty folder, without the grader. F is the sum of the two wall times."""
     ros = with_turtlesim(find_ros())
     env = environment(ros, home=folder)
     opened = open_submission(submission)

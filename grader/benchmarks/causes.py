@@ -77,7 +77,7 @@ class Judged:
 
     @property
     def failed(self) -> list[Outcome]:
-        """The failed checks in the order of the report, without advice."""
+        """The failed checks in the order of the report, except checks that only give advice."""
         return [each for each in self.outcomes if each.status is Status.FAILED and not each.advice]
 
     @property
@@ -106,7 +106,7 @@ class Judged:
         return [sentence for outcome in self.failed for sentence in false_sentences(self.facts, outcome)]
 
     def marks(self) -> dict[str, bool]:
-        """Return whether each of the statements that the benchmark counts is true for this package."""
+        """Return, for each statement that the benchmark counts, whether the statement is true for this package."""
         by_fact = [self.facts.names(outcome) for outcome in self.failed]
         return {
             "cause named first": self.first,
@@ -183,7 +183,7 @@ def again(kept: Path) -> Judged:
 
 
 def cost_of_explain(mades: Iterable[Made], folder: Path) -> float:
-    """Return the CPU time of `grader check --explain` divided by the CPU time of `grader check` for these packages."""
+    """Return the CPU time of `grader check --explain` for these packages, divided by the CPU time of `grader check`."""
     with_s = without_s = 0.0
     for made in mades:
         check = [str(GRADER), "check", str(written(made, folder)), "--exercise", made.exercise, "--clock", "simulated"]
@@ -235,13 +235,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--count", type=int, default=200, help="number of wrong packages to create")
     parser.add_argument("--seed", type=int, default=1, help="seed for the choice of packages and mistakes")
-    parser.add_argument("--only", nargs="*", default=[], help="names of operators (default: all)")
+    parser.add_argument("--only", nargs="*", default=[], help="names of the operators to use (default: all)")
     parser.add_argument("--keep", type=Path, help="keep the recordings in this folder")
     parser.add_argument("--all", action="store_true", help="list all packages, not only those with a missed cause")
     parser.add_argument(
         "--again", type=Path, help="judge the recordings in this folder again, without running packages"
     )
-    parser.add_argument("--explained", type=int, default=8, help="packages used to measure the cost of testing causes")
+    parser.add_argument(
+        "--explained", type=int, default=8, help="number of packages for measuring the cost of --explain"
+    )
     parser.add_argument("--workers", type=int, default=2, help="number of packages judged in parallel")
     wanted = parser.parse_args()
     operators = [operator for operator in OPERATORS if not wanted.only or operator.name in wanted.only]

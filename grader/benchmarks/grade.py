@@ -57,7 +57,11 @@ def main() -> None:
     """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--sizes", default="25,50,100,200", help="class sizes to measure (default: 25,50,100,200)")
-    parser.add_argument("--workers", default="1,2,4", help="numbers of Dask workers (default: 1,2,4); empty for none")
+    parser.add_argument(
+        "--workers",
+        default="1,2,4",
+        help="numbers of Dask workers to measure (default: 1,2,4); empty: do not measure Dask",
+    )
     parser.add_argument("--dask-size", type=int, default=50, help="class size for Dask (default: 50)")
     parser.add_argument(
         "--jobs", type=int, help="number of submissions graded in parallel (default: as in `grader grade`)"
@@ -273,7 +277,7 @@ def _print(f_s: float, times: int, rows: list[tuple[str, ClassCost]]) -> None:
     for name, one in rows:
         figures = (one.wall_s, one.wall_s / f_s, one.cpu_s, one.cpu_s / f_s)
         print(f"{name:18}" + "".join(f"{figure:8.2f}" for figure in figures) + f"{one.peak_mb:9.0f}")
-    print(f"\ntarget: at most {AIM_F:.1f} F wall per submission with two processors, for any size of the class")
+    print(f"\ntarget: at most {AIM_F:.1f} F wall per submission with two processors, for any class size")
 
 
 if __name__ == "__main__":

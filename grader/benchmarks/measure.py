@@ -84,6 +84,6 @@ def _peak_mb(pid: int) -> float:
 
 
 def cpu_s(pid: int) -> float:
-    """Return the CPU time that a running process has used, without its children (s)."""
+    """Return the CPU time that a running process has used, excluding its children (s)."""
     fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")

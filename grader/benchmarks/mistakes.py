@@ -5,8 +5,8 @@
 F is the cost of the same work without the grader: a colcon build of the package, and a process with one rclpy node for
 each node that the exercise runs (benchmarks/bare.py). Each part is the median of three measurements. For example,
 04-package-files runs two nodes, and 07-challenges runs four. The speed of a machine varies during the minutes that this
-benchmark takes, so F is measured again after every few cases. A case that seems to exceed the target is measured three
-more times, each time immediately after F, and the median is used.
+benchmark takes, so F is measured again after every few cases. A case that exceeds the target in the first measurement
+is measured three more times, each time immediately after F. The median of these three measurements is used.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
 def _beside_f(case: Case, folder: Path) -> float:
     """Return the time of a check divided by F, or infinity if the check needed wall time.
 
-    The time F is measured immediately before the check.
+    F is measured immediately before the check.
     """
     bare = _bare_s(folder / "bare")
     seconds = _whole_s(case, folder / "whole")
@@ -108,7 +108,7 @@ def _exercise(case: Case) -> Exercise:
 
 
 def _static_s(case: Case, folder: Path) -> float:
-    """Return the time from opening the folder to the findings about its files (s)."""
+    """Return the time for opening the submission and judging its files (s)."""
     given = make_submission(case, folder)
     exercise = _exercise(case)
     begun = time.monotonic()

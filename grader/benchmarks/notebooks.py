@@ -65,7 +65,7 @@ c.GenerateAssignment.force = True
 
 
 def make_empty(root: Path) -> None:
-    """Create a class that uses only nbgrader, and empty the cells of the notebook."""
+    """Create a class that uses nbgrader without the grader, and remove the code from the cells of its notebook."""
     make_class(root, None)
     (root / "course" / "nbgrader_config.py").write_text(PLAIN.format(root=str(root)))
     file = root / "solutions" / STEP / f"{STEP}.ipynb"

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from grader.tests.open.course import Course
 
 AIM_MORE_S = 0.1
-"""The target for the additional time of the page over `grader watch` (s)."""
+"""The target for the time that the page needs in addition to the time of `grader watch` (s)."""
 AIM_SIZE = 600_000
 AIM_READY_S = 1.0
 AIM_IDLE = 0.01
@@ -126,7 +126,7 @@ def _screen(learner: Course) -> Iterator[pexpect.spawn[str]]:
 
 
 def _rest() -> None:
-    """Wait until all descendants of this process are idle, that is, until nothing is prepared or tested any more.
+    """Wait until all descendants of this process are idle: no trial is being prepared or run.
 
     The pause is realistic, because a learner also needs some seconds between two saves.
     """

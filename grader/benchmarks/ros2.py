@@ -1,4 +1,4 @@
-"""Measure `ros2` commands and their completion while turtlesim runs, relative to a process with one rclpy node.
+"""Measure `ros2` commands and their completion while turtlesim is running, relative to a process with one rclpy node.
 
     python -m grader.benchmarks.ros2 [--times N]
 
@@ -98,7 +98,7 @@ def _measure(runs: dict[str, tuple[list[str], dict[str, str]]], times: int) -> N
         aim = f"{AIMS[name]:10.2f}" if name in AIMS else f"{AIM_TAB_S:8.2f} s" if name == "Tab" else ""
         print(f"{name:24}{middle:10.3f}{max(seconds):11.3f}{middle / bare_s:13.2f}{aim}")
     for name, count in complete.items():
-        print(f"`{name}` was complete {count} times of {times}.")
+        print(f"The list from `{name}` was complete in {count} of {times} runs.")
 
 
 if __name__ == "__main__":

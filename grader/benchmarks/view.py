@@ -106,7 +106,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     print(f"                     longest: {1000 * latencies[-1]:6.0f} ms")
     print(f"\n{'% of one core':24}{'simulator':>10}{'view':>8}{'both':>8}")
     print(f"{'without a view':24}{100 * without:10.1f}")
-    for name, cost in (("with one, no page", none), ("one page", one), ("ten pages", ten)):
+    for name, cost in (("a view, no page", none), ("one page", one), ("ten pages", ten)):
         print(f"{name:24}{100 * cost.simulator:10.1f}{100 * cost.view:8.1f}{100 * (cost.simulator + cost.view):8.1f}")
     print(f"(target: one page below {100 * AIM_CPU:.0f})")
 

@@ -1,6 +1,6 @@
 """Unpack a student's archive into a temporary folder.
 
-The process that reads students' files reads the archive (unpack.py), and this module writes the result.
+The archive is read in the process that reads students' files (unpack.py). This module writes the result to the folder.
 """
 
 from __future__ import annotations

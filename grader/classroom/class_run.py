@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from grader.classroom.task import Done
 
 TRIES = 2
-"""The number of times that a submission may kill its worker or end with an `error` before its result is final."""
+"""How many times a submission may kill its worker or end with an `error` before its result is final."""
 LOOK_S = 0.5
 """The maximum time to wait for events of the engine (s)."""
 

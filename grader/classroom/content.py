@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from grader.exercise.model import Exercise
 
 MOST_DEEP = 4
-"""The maximum depth of nested folders above answers.toml, if each of them contains nothing else."""
+"""answers.toml may be at most this many folders deep, if each of these folders contains nothing but the next one."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ def _folder(found: Found) -> Iterator[Path]:
 
 
 def _archive(path: Path) -> Path | None:
-    """Return the archive: the path itself or, as in Moodle, the only file in the folder. Return None for a folder."""
+    """Return the archive: the path itself or, as in Moodle, the only file in the folder. Otherwise, return None."""
     try:
         if not path.is_dir():
             return path

@@ -3,7 +3,7 @@
 The machines need only this project, and receive submissions as bytes. Each thread of a Dask worker runs one of our
 worker processes (worker.py), so a submission that kills that process does not kill the Dask worker. This module decides
 which Dask worker gets which submission. Each thread gets one submission at a time, without a queue. Therefore, the
-engine knows which submissions were lost with a machine, and does not blame a submission that is not at fault.
+engine knows which submissions were running on a machine that was lost, and does not blame other submissions.
 """
 
 from __future__ import annotations
@@ -102,7 +102,10 @@ class DaskEngine:
             self._client.close(timeout=5)
 
     def has_room(self) -> bool:
-        """Return whether a task can be started: a thread is idle, and the maximum number of tasks is not reached."""
+        """Return whether a task can be started.
+
+        This is the case if a thread is idle and fewer than the maximum number of tasks are running.
+        """
         return (self._most is None or len(self._running) < self._most) and self._free() is not None
 
     def start(self, task: Task) -> None:

@@ -47,8 +47,8 @@ class Found:
     student: str
     exercise: str
     path: Path
-    """An absolute path without links. If a path contains a link, a student has replaced a folder with this link, so the
-    path is not read."""
+    """An absolute path whose links were resolved. If the path contains a link when it is read, a student has replaced a
+    folder with this link, so the path is not read."""
     refused: str = ""
     """The reason why the submission cannot be graded, if the reason is already known."""
 
@@ -110,7 +110,7 @@ def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
 def _one_of(alike: Sequence[Found]) -> Found:
     """Return a student's only submission for an exercise.
 
-    If the student handed in several submissions, return a submission that states why none of the submissions is graded.
+    If the student handed in several submissions, return one of them with the reason why none of them is graded.
     """
     if len(alike) == 1:
         return alike[0]
@@ -148,7 +148,7 @@ def _entries(folder: Path) -> list[Path]:
 def _same(one: Path, other: Path) -> bool:
     """Return whether the two paths lead to the same file or folder. A loop of symbolic links is not an error.
 
-    If `one` is a link to `other`, they are different: a student may have created the link to avoid being graded.
+    If `one` is a link to `other`, the result is False: a student may have created the link to avoid being graded.
     """
     if os.path.islink(one):
         return _without_links_above(one) == _without_links_above(other)
@@ -207,7 +207,7 @@ def _is_one_alone(folder: Path) -> bool:
 
 
 def _student(entry: Path) -> str | None:
-    """Return the name of the student to whom an entry belongs, or None for entries such as hidden files and lists."""
+    """Return the name of the student to whom an entry belongs, or None for other entries, such as links and rosters."""
     if entry.name.startswith(".") or entry.name == "__MACOSX":
         return None
     try:

@@ -107,7 +107,7 @@ def grade_found(
         left = folder.others({result.page for result in ordered})
     say(summary(ordered))
     if left:
-        say(f"{count(left, 'result')} of other submissions in {request.out}/{results.REPORTS} stay unchanged.")
+        say(f"Not changed: {count(left, 'result')} of other submissions in {request.out}/{results.REPORTS}.")
     return ordered
 
 

@@ -47,7 +47,7 @@ def plain(text: str) -> str:
 
 
 def estimate(done: int, of: int, seconds: float) -> str:
-    """Return an estimate of the remaining time, based on the average speed so far, or an empty string."""
+    """Return an estimate of the remaining time, based on the average speed so far ("" if there is no estimate)."""
     if not done or done >= of:
         return ""
     left_s = seconds / done * (of - done)

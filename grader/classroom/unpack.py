@@ -1,4 +1,4 @@
-"""Read an archive that a student handed in, in the process that reads students' files (submission/reader.py).
+"""Read a student's archive, in the process that reads students' files (submission/reader.py).
 
 The result contains only plain files and folders, with checked paths, within the limits that this module defines.
 archives.py writes the result to the disk.
@@ -69,7 +69,7 @@ class Capped(io.RawIOBase):
 
 
 def _too_much() -> str:
-    return f"unpacks to more than the {MOST_BYTES // 1024 // 1024} MiB that a submission may have"
+    return f"is larger than the allowed {MOST_BYTES // 1024 // 1024} MiB after unpacking"
 
 
 def read_archive(archive: Path) -> tuple[Member, ...]:

@@ -1,7 +1,7 @@
 """The help of the command `grader`, and its error messages for words that are not commands.
 
-On narrow terminals, the help has one column without boxes instead of typer's tables. In a table with four columns, a
-terminal of 40 columns leaves 8 columns for the text.
+On narrow terminals, the help has one column without boxes instead of typer's tables. On a terminal that is 40
+characters wide, a table with four columns would leave only 8 characters for the text.
 """
 
 from __future__ import annotations

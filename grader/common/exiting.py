@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 def run_and_exit(command: Callable[[], object], explain: Callable[[Exception], str | None]) -> NoReturn:
     """Run the command, and exit. Decision 9 in docs/design.md lists the exit codes.
 
-    `explain` returns a sentence for an error that is neither an error of the grader nor a system error, or None.
+    `explain` is called for an error that is not one of the grader's own errors. It returns a sentence for the user, or
+    None if it does not know the error.
     """
     try:
         _run(command)

@@ -1,9 +1,9 @@
 """Command lines for Python that never import a module from the current folder, which may belong to a student.
 
-`python -m` and `python -c` put the current folder first on sys.path, and an empty or relative entry of PYTHONPATH
-refers to the current folder, too. A `numpy.py` or a package `grader` in the folder where a user typed a command would
-run with that user's rights. Therefore, this module builds every command line for an interpreter, and a test fails if
-another module builds such a command line.
+`python -m` and `python -c` put the current folder first on sys.path, and empty or relative entries in PYTHONPATH also
+refer to the current folder or a folder below it. A `numpy.py` or a package `grader` in the folder where a user typed a
+command would run with that user's rights. Therefore, this module builds every command line for an interpreter, and a
+test fails if another module builds such a command line.
 
 Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
 of Python 3.6.
@@ -72,7 +72,7 @@ def interpreter(
 
 
 def clean(env: Mapping[str, str]) -> Dict[str, str]:
-    """Return the environment without empty or relative entries in search paths: these refer to the current folder."""
+    """Return the environment without empty or relative entries in search paths, which depend on the current folder."""
     cleaned = dict(env)
     for name in SEARCHED:
         if name in cleaned:

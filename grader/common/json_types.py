@@ -6,7 +6,7 @@ from typing import TypeVar
 
 T = TypeVar("T")
 MOST = 1e9
-"""The largest absolute value of any number that the grader writes in a report."""
+"""No number in a report of the grader has a larger absolute value than this."""
 
 
 def text(value: object) -> str:

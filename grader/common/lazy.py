@@ -67,7 +67,7 @@ def _why_not_imported(name: str, error: ImportError) -> str:
 
 
 class _LazyCatkin(_Lazy):
-    """The module catkin_pkg.package, without the parser of conditions until a package.xml has a condition.
+    """The module catkin_pkg.package, whose parser of conditions is imported only when a package.xml has a condition.
 
     The import of this parser takes longer than all other imports of catkin_pkg.
     """

@@ -17,7 +17,7 @@ from pathlib import Path
 F_OFD_SETLK: int = getattr(fcntl, "F_OFD_SETLK", 37)
 """The command of fcntl(2) that locks a part of a file for an open file description. (Value: asm-generic/fcntl.h.)"""
 _PIDFD_SEND_SIGNAL, _PIDFD_OPEN, _CLOSE_RANGE = 424, 434, 436
-"""The numbers of the system calls, the same on x86-64 and on arm64."""
+"""The numbers of the system calls, which are the same on x86-64 and on arm64."""
 
 
 def pidfd_open(pid: int) -> int:

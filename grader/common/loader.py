@@ -1,4 +1,4 @@
-"""Start a program in such a way that /proc/PID/exe does not lead to the file of the program.
+"""Start a program in such a way that the link /proc/PID/exe does not lead to the file of the program.
 
 /proc/PID/exe leads to the file that a process executes. The read-only mounts of a sandbox do not protect a file that is
 opened in this way. If the file belonged to the user of the sandbox (for example, a Python that this user has

@@ -1,4 +1,4 @@
-"""Output that no continuous integration (CI) system executes: a log can contain text from a submission.
+"""Output without commands to a continuous integration (CI) system: a log can contain text from a submission.
 
 CI systems execute commands that they find in the log of a job. GitHub Actions executes `::command::` at the beginning
 of a line, and the older `##[command]` anywhere (`ActionCommand.TryParseV2` and `TryParse` in actions/runner). Azure

@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 def needed_command(app: typer.Typer, words: Sequence[str]) -> TyperGroup:
-    """Return the application with only the command that is given in `words`, or with all commands if there is none.
+    """Return the application with only the command that is given in `words`, or with all commands if none is given.
 
     To create a command, typer evaluates the annotations of all its options. Evaluating the annotations of all commands
-    would take longer than most commands need.
+    would take longer than running most commands.
     """
     word = next((word for word in words if not word.startswith("-")), "")
     named = [command for command in app.registered_commands if _name(command) == word]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def new_folder(folder: Path, mode: int = 0o777) -> Iterator[None]:
-    """Create a folder, or use an empty folder. If the `with` block fails, the folder is as it was before.
+    """Create a folder, or use an empty folder. If the `with` block fails, the folder is restored to its previous state.
 
     Raises:
         UsageError: the folder is not empty.

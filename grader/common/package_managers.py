@@ -22,7 +22,7 @@ class Need(NamedTuple):
     what: str
     package: str
     lost: str = ""
-    """The functions that do not work without this program. Empty if nothing works without this program."""
+    """What does not work without this program. Empty if the program is required."""
 
 
 class Manager(NamedTuple):
@@ -41,7 +41,7 @@ class Manager(NamedTuple):
     or 312 (`joined`)."""
     headers: str = ""
     newer: str = ""
-    """Debian's name for a newer Python, which is installed if the default Python is too old."""
+    """Debian's name for the package of a newer Python, which is installed if the default Python is too old."""
 
     def packages(self, needs: Iterable[Need]) -> List[str]:
         """Return this package manager's names for the packages that are needed."""

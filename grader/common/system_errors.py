@@ -18,7 +18,7 @@ _SCARCE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, err
 _NOT_ALLOWED = "see the output of `grader doctor`"
 
 _NO_TEMPORARY_FOLDER = (
-    "No folder for temporary files can be written to: free some space in /tmp, or set another folder with TMPDIR."
+    "No folder for temporary files is writable: free some space in /tmp, or set another folder with TMPDIR."
 )
 
 

@@ -35,7 +35,7 @@ def has_colours(stream: TextIO) -> bool:
 
 
 def columns(stream: TextIO) -> Optional[int]:
-    """Return the number of columns of a terminal, or None for a file or a pipe, in which lines have no limit."""
+    """Return the number of columns of a terminal, or None for a file or a pipe, in which lines may have any length."""
     try:
         if not stream.isatty():
             return None
@@ -49,8 +49,8 @@ def columns(stream: TextIO) -> Optional[int]:
 def wrapped(text: str, width: Optional[int]) -> str:
     """Return the text with line breaks between words, so that its lines have at most `width` columns.
 
-    What users copy is not broken: long words such as paths, commands, and indented lines, which contain commands or
-    code. The terminal itself breaks them, and joins them again when they are copied.
+    Text that users may copy is not broken: long words such as paths, commands, and indented lines, which contain
+    commands or code. The terminal itself breaks such text, and joins it again when it is copied.
     """
     return "\n".join(line if line[:1].isspace() else hanging(line, width) for line in text.split("\n"))
 

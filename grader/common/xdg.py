@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 def home(env: Mapping[str, str] = os.environ) -> Path:
     """Return the user's home. HOME may be unset, empty or relative, as in a cron job or a container.
 
-    In this case, the home is that of the user database, or "/" if the database does not contain the user.
+    In this case, the home is taken from the user database, or is "/" if the database does not contain the user.
     """
     named = env.get("HOME", "")
     if named.startswith("/"):

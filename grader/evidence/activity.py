@@ -19,7 +19,7 @@ TRACEBACK = "Traceback (most recent call last)"
 IN_CONSTRUCTOR = ", in __init__"
 """The end of a traceback entry for the code of a constructor."""
 START_S = 0.2
-"""The length of the initial period (s), in which the node's publisher may not have been discovered yet."""
+"""The length of the initial period (s). In this period, the node's publisher may not have been discovered yet."""
 
 
 def end_s(recording: Recording) -> float:

@@ -1,4 +1,7 @@
-"""Arrivals of repeated messages: the intervals between them, except those changed by a stall of the machine."""
+"""Arrivals of repeated messages, and the intervals between them.
+
+Intervals that were changed by a stall of the machine are left out.
+"""
 
 from __future__ import annotations
 

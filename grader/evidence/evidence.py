@@ -48,7 +48,7 @@ class Run:
 
     recording: Recording | None = None
     overwhelmed: str | None = None
-    """A description of how the node made the simulator fail twice. There is no recording in that case."""
+    """How the node made the simulator fail twice. There is no recording in that case."""
     called: tuple[Called, ...] | None = None
     """The results of the calls in a trial without a simulator. There is no recording in that case."""
     bench: BenchResult | None = None
@@ -99,7 +99,7 @@ class Evidence:
         return self if id_ == self.trial.id else self._views[id_]
 
     def views(self) -> tuple[Evidence, ...]:
-        """Return one view of the evidence for the first trial, and one for each other trial that was run."""
+        """Return a view of the evidence for the first trial, and a view for each other trial that was run."""
         ids = [trial.id for trial in self.exercise.trials]
         return tuple(self.from_trial(id_) for id_ in ids if id_ in self.runs or id_ == ids[0])
 
@@ -219,7 +219,7 @@ class Evidence:
         return self.build
 
     def place(self, *calls: str) -> Where | None:
-        """Return the place of the first call to the first of these functions that is called at all.
+        """Return the place of a call: the first call to the first of these functions that the code calls.
 
         If none is called, return the node's file, or None.
         """

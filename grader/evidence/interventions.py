@@ -1,8 +1,8 @@
 """Find out from the movement itself whether something other than velocity commands moved the turtle.
 
-turtlesim moves a turtle in each frame by its velocities alone, up to the walls. A frame shows a teleport, a reset or a
-rotate_absolute goal if the turtle moved in any other way, if it turned while it followed a goal, or if no command had
-set its turning speed.
+turtlesim moves a turtle in each frame by its velocities alone, up to the walls. Something else (a teleport, a reset or
+a goal of rotate_absolute) moved the turtle if the turtle moved in any other way, turned while it followed a goal, or
+turned at a speed that no command had set.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ KEPT_S = 1.1
 
 
 def moved_by(recording: Recording, *, from_start: bool, others_removed: bool = False) -> str | None:
-    """Return the call that moved the turtle or could have influenced its movement, or None.
+    """Return the call that moved the turtle or may have influenced its movement, or None if there is no such call.
 
     Without `others_removed`, a call that removes a turtle or sets a parameter always counts. With `others_removed`, the
     node may make such calls, but it must not remove turtle1 and spawn it at another place. With `from_start`, movements

@@ -1,6 +1,6 @@
 """A node that crashed, but whose process took so long to exit that Ctrl-C was sent first.
 
-On a busy machine, a process may need longer to exit after an uncaught exception than a trial in simulated time lasts.
+On a busy machine, a trial in simulated time may end before a process with an uncaught exception has exited.
 The same submission must always get the same outcomes. Therefore, the outcome depends on the exception, and not on
 whether the process exited before or after Ctrl-C.
 """

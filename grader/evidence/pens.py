@@ -1,4 +1,4 @@
-"""The pens that the turtles had, and the period in which a turtle had each pen."""
+"""The pens of a turtle, and the period in which the turtle had each pen."""
 
 from __future__ import annotations
 

@@ -72,7 +72,7 @@ class Trajectory:
 
     @cached_property
     def circle(self) -> Circle | None:
-        """The circle that fits the points best, or None for a straight trajectory."""
+        """The circle that fits the points best, or None if there is no such circle, as for a straight trajectory."""
         return fit_circle(*self.points)
 
     @property
@@ -118,12 +118,12 @@ def driven_from(recording: Recording) -> Pose:
 
 
 def _before_driving(recording: Recording) -> int:
-    """Return the number of frames before the first command, or 0 if no earlier call can have moved the turtle."""
+    """Return the number of frames before the first command, or 0 if no call can have moved the turtle before."""
     return first_driven(recording) if MOVING & set(recording.interventions) else 0
 
 
 def trajectory_of(recording: Recording) -> Trajectory:
-    """Return the trajectory of the turtle up to SIGINT, which begins at the pose that `driven_from` returns."""
+    """Return the trajectory of the turtle from the pose that `driven_from` returns until SIGINT."""
     frames, start = recording.frames, driven_from(recording)
     until = frames.t_s <= activity.end_s(recording)
     until[: _before_driving(recording)] = False

@@ -1,4 +1,4 @@
-"""Try: the result of changing a copy of a submission at the place to which a failed check points."""
+"""Try: a change in a copy of a submission, made where a failed check points, and the result of this change."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ OF_NUMBERS = "own_"
 FIELD = Allowed(
     "a number, a string, true or false", lambda value: value if isinstance(value, str | int | float) else None, ""
 )
-"""The allowed values of a field in a parameter that is a table, in words."""
+"""A description of the allowed values of a field, for a parameter that is a table."""
 
 
 def parse_exercise(data: bytes, name: str, folder: Path, kinds: Mapping[str, KindSpec]) -> Exercise:

@@ -11,7 +11,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 Param = str | float | int | bool | Own | tuple[Any, ...]
-"""The possible types of a check's parameter. A tuple contains strings, or the name and value of each field."""
+"""The possible types of a check's parameter. A tuple contains strings, or pairs of the name and the value of a
+field."""
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ SYNTAX = {
     **dict.fromkeys((".xml", ".md", ".html"), ANGLE),
 }
 MEANT = re.compile(r"(?:begin|end)[ _-]*(?:solution|starter)", re.IGNORECASE)
-"""Matches lines that look like a marker. If this pattern did not find a typo in a marker, students could get the
+"""Matches lines that look like a marker. If this pattern did not match a marker with a typo, students could get the
 solution."""
 
 

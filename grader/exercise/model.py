@@ -21,9 +21,9 @@ FILE_NAME = "exercise.toml"
 
 @dataclass(frozen=True)
 class CheckSpec:
-    """One `[[check]]`. The names of the parameters `params` contain their units (`rate_hz`, `radius_m`).
+    """One `[[check]]`. The names of the parameters in `params` include their units, as in `rate_hz` and `radius_m`.
 
-    `trial` is the id of the trial that the check judges.
+    `trial` is the id of the trial that the check is about.
     """
 
     id: str
@@ -173,7 +173,7 @@ def course_folder() -> Path:
 
 
 def catalogue(course: Path | None = None) -> dict[str, Path]:
-    """Map the id of each exercise of the course to its exercise.toml, in the order of the lessons.
+    """Return a mapping from the id of each exercise to its exercise.toml, in the order of the lessons.
 
     No file is parsed.
     """

@@ -30,7 +30,7 @@ class Behaviour:
     listens: str = "/turtle1/pose"
     period_s: float = 0.1
     speed_m_s: float = 1.0
-    """The speed where no wall is near."""
+    """The speed when no wall is near."""
     slow_m_s: float = 0.5
     """The speed near a wall."""
     turn_rad_s: float = 1.5

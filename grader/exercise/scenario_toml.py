@@ -31,7 +31,8 @@ CALLS = ("function", "points", "bag")
 """The keys of a `[[trial]]` that runs without a simulator."""
 MAX_DURATION_S = 600.0
 MOST_TARGETS = 5
-"""The maximum number of targets. With more targets, the order on the canvas would be ambiguous (target_places.py)."""
+"""The maximum number of targets. For more targets, target_places.py may find no places for which the nearest-first
+order is unambiguous."""
 MAX_SPEED = 10.0
 """The maximum speed (m/s, rad/s)."""
 

@@ -47,7 +47,7 @@ class Table:
     def _get(self, key: str, allowed: str, good: Callable[[object], bool], *, default: Any) -> Any:  # noqa: ANN401 (any value that `good` accepts)
         """Return the value of the key if `good(value)` is true.
 
-        If the value is not good, record the mistake and return the default.
+        Otherwise, record the mistake and return the default.
         """
         self.known.append(key)
         if key not in self.values:

@@ -2,7 +2,7 @@
 
 nbgrader keeps every message in memory: as text, as Python objects, and in the notebook that it writes. Therefore, the
 budget limits the number of messages, their size in bytes, and the number of values in their JSON. For example,
-`[[],[],[]]` takes 30 times as much space in memory as in the message.
+`[[],[],[]]` needs 30 times as many bytes in memory as in the message.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ class Account:
             if self._values > self.budget.values:
                 _refuse(f"more than {self.budget.values} values in all its messages")
             if depth > self.budget.depth:
-                _refuse(f"a message with more than {self.budget.depth} nested objects")
+                _refuse(f"a message with objects nested more than {self.budget.depth} levels deep")
             if isinstance(value, str) and not _writable(value):
                 _refuse()
 
@@ -115,7 +115,7 @@ def _refuse(what: str = "data that is not a message of a kernel") -> NoReturn:
 
 
 def _writable(text: str) -> bool:
-    """Return whether the text can be encoded, which is not possible for half of a surrogate pair."""
+    """Return whether the text can be encoded. Half of a surrogate pair cannot be encoded."""
     try:
         text.encode()
     except UnicodeEncodeError:

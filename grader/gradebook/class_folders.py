@@ -26,7 +26,7 @@ RESULTS = "results"
 GRADEBOOK = "gradebook.db"
 """nbgrader's database, inside the folder of the class."""
 HANDED_IN = "handed-in"
-"""The folder of submissions with the files from their notebooks added, inside the folder of the class."""
+"""The folder of the submissions that were completed with files from their notebooks, inside the folder of the class."""
 
 
 @dataclass(frozen=True)

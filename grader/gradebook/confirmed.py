@@ -111,7 +111,7 @@ def submissions_of(gradebook: Any, steps: Collection[str]) -> Iterator[tuple[str
 def provisional_grades(submission: Any) -> list[Any]:  # noqa: ANN401 - nbgrader's SubmittedAssignment
     """Return the grades that autograde reads from the output of a kernel: the grades of code cells without solutions.
 
-    The grades of the exercise's own notebook come first.
+    The grades for the exercise's own notebook come first.
     """
     step = submission.assignment.name
     grades = []

@@ -61,7 +61,10 @@ class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]
 
 
 def _rows(gradebook: Any, steps: Collection[str], students: Collection[str]) -> Iterator[list[str]]:  # noqa: ANN401
-    """Yield a line for each assignment and student. If `steps` or `students` is empty, nothing is left out."""
+    """Yield a line for each of the assignments `steps` and each of the `students`.
+
+    If `steps` is empty, all assignments are used. If `students` is empty, all students are used.
+    """
     for assignment in gradebook.assignments:
         submissions = {each.student.id: each for each in assignment.submissions}
         for student in gradebook.students:

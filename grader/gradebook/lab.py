@@ -1,4 +1,4 @@
-"""A Jupyter server extension that hides nbgrader's tools for instructors from learners.
+"""A Jupyter server extension that hides from learners the tools that nbgrader has for instructors.
 
 Jupyter finds the extension through jupyter_server.json, which the set-up copies to a folder in etc/jupyter.
 """

@@ -84,7 +84,7 @@ def _require_small(read: object) -> None:
             message = f"the notebook has more than {MOST_VALUES} values"
             raise TooLargeError(message)
         if depth > MOST_DEPTH:
-            message = f"the notebook has more than {MOST_DEPTH} nested objects"
+            message = f"the notebook has objects nested more than {MOST_DEPTH} levels deep"
             raise TooLargeError(message)
 
 

@@ -40,7 +40,7 @@ ORDER_FILE, WHY_FILE = "order.json", "why"
 MOST_MEMORY = 1024 * MIB
 """The limit on the relay's address space (bytes)."""
 MOST_WAITING = MIB
-"""While this number of bytes or more is pending for the kernel, the relay does not read from nbgrader."""
+"""While at least this number of bytes is pending for the kernel, the relay does not read from nbgrader."""
 LINGER_MS = 1000
 _IOPUB = CHANNELS.index("iopub")
 

@@ -3,7 +3,8 @@
 nbgrader trusts the metadata of a submission, and stops if the metadata is invalid. From the metadata of a submitted
 notebook, this step uses only the id of each cell. The gradebook determines the points and whether the cell is locked.
 Missing locked cells are added again. If a cell exists several times, for example because the student copied it, the
-last one counts, and the others become plain cells. Otherwise, nbgrader would stop grading the whole class.
+last one counts, and the others become plain cells. Without these repairs, one invalid notebook would stop nbgrader from
+grading the whole class.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Synced:
-    """The result of a sync: how many submissions and changed scores there are, and the work that was not judged."""
+    """The result of a sync: the numbers of submissions and of changed scores, and the work that was not judged."""
 
     submissions: int
     changed: int
@@ -60,7 +60,7 @@ class Difference:
     """A check on which the kernel and the grader disagree.
 
     `kernel` is None if the notebook has no score for the check. `grader` is None if the grader has not confirmed a
-    score. If the grader has not confirmed a score, the check is worth 0 points, for the reason `why`.
+    score. In this case, the check is worth 0 points, and `why` is the reason.
     """
 
     student: str

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
     """Return the next hint of a step (by default, of the current step) or of a part of the step.
 
-    After all hints have been shown, the last hint is repeated. A single letter in `step` means this part of the current
-    step.
+    After all hints have been shown, the last hint for a failed check is repeated, or the last hint if no check failed.
+    A single letter in `step` means this part of the current step.
 
     Raises:
         UsageError: no step was started, or the step does not have the part.
@@ -91,7 +91,7 @@ def _part(exercise: Exercise, part: str) -> str:
 
 
 def _next(exercise: Exercise, wanted: list[int], known: StepProgress) -> int | None:
-    """Return the index of the next hint, or None if the work that the hints help with is done."""
+    """Return the index of the next hint, or None if all work for which there are hints is done."""
     open_ = [index for index in wanted if not _is_done(exercise, exercise.hints[index], known)]
     if known.passed and not known.failed:
         open_ = []

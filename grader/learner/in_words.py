@@ -20,7 +20,7 @@ def difference(theirs: str, ours: str, path: str) -> str:
     sentences = [
         _sentence("The code is the same in", same),
         _sentence("The code is different in", other),
-        _sentence("Only you have", [name for name in mine if name not in solution]),
+        _sentence("Only your file has", [name for name in mine if name not in solution]),
         _sentence("Only the solution has", [name for name in solution if name not in mine]),
     ]
     if len(same) == len(solution) == len(mine):

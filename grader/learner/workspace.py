@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 APART = "apart"
-"""The folder in a workspace for separate workspaces, which colcon must not build together with this workspace."""
+"""The folder in a workspace for separate workspaces. colcon must not build them together with this workspace."""
 _PACKAGE_FILES = ("package.xml", "setup.py", "setup.cfg")
 """Package files to which later steps add lines."""
 _ENTRY_POINT = re.compile(r"[\"'](?P<name>[\w.-]+) = [\w.]+:\w+[\"'],?")
@@ -170,7 +170,7 @@ def open_tasks(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, tupl
 
 
 def _package_files(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, Path]:
-    """Return the package files of the starting point, by path, except those that the learner does not have."""
+    """Return the package files of the starting point that the learner also has, by path."""
     if not exercise.package or exercise.apart:
         return {}
     source = starting_point(exercise) / exercise.package

@@ -36,7 +36,7 @@ class Bridge:
     """The sockets of a kernel, and the messages that wait until the kernel is listening."""
 
     def __init__(self, folder: Path, key: dict[str, Any]) -> None:
-        """Create the sockets in `folder`. `key` is the part of the connection file about signatures."""
+        """Create the sockets in `folder`. `key` contains the settings for signatures from the connection file."""
         self.connection_file = folder / "kernel.json"
         info = {"transport": "ipc", "ip": str(folder / "socket"), "kernel_name": "", **key}
         self._context = zmq.Context()

@@ -131,7 +131,7 @@ def _end(worker: subprocess.Popen[bytes]) -> None:
 
 
 class _Progress:
-    """A line below the cell with the current stage, which is cleared at the end.
+    """A line below the cell that shows the current stage. The line is cleared at the end.
 
     Nothing is shown when nbgrader executes the notebook.
     """

@@ -74,7 +74,7 @@ def without_hidden_tests(source: str, name: str) -> str:
 
 
 def _syntax(source: str, cell_type: str) -> Syntax:
-    """Return the comment syntax of a cell, which depends on the file that the cell writes or else on the cell type."""
+    """Return the comment syntax of a cell: that of the file that the cell writes, or else that of the cell type."""
     match = _FILE_CELL.fullmatch(source.partition("\n")[0])
     if cell_type != "code":
         return ANGLE

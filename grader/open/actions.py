@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 class Actions:
     """The actions of a page. Each action returns data for JSON, or raises GraderError with a message for the page.
 
-    `tell` sends a command that grading.py defines to the process that grades. `digest` returns the digest of the
+    `tell` sends a command (see grading.py) to the grading process. `digest` returns the digest of the
     learner's code.
     """
 

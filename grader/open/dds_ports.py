@@ -21,7 +21,7 @@ PARTICIPANTS = 32
 """The number of participants to which a new node announces itself (maxInitialPeersRange in graph/loopback.xml)."""
 FIRST_OWN = 7000
 OTHERS = 64
-"""From FIRST_OWN on, this number of ports is reserved for the other nodes of this machine."""
+"""This number of ports, beginning with FIRST_OWN, is reserved for the other nodes of this machine."""
 _TRIED = 64
 OWN = 4
 """The number of participants in a cell that other nodes can reach. A program has one participant for each context, and

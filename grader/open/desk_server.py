@@ -1,7 +1,8 @@
 """The server of the page: lessons, verdict, updates and actions, protected by grader.view.guard.
 
-Lessons are public. A request for the learner's data must contain the token: in a header, which no other site can send,
-or in the address of the connection for updates, whose Origin the guard checks.
+Lessons are public. A request for the learner's data must contain the token in a header, which pages of other sites
+cannot send. The connection for updates has the token in its address, and the guard checks the Origin of this
+connection.
 """
 
 from __future__ import annotations

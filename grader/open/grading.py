@@ -44,7 +44,7 @@ def run(desk: Desk, events: Events, workspace: Path | None) -> None:
 
 
 def _await_step(events: Events) -> bool:
-    """Wait for an event that can mean that a step was started. Return False when there are no more events."""
+    """Wait for an event after which a step may have been started. Return False when there are no more events."""
     return any(happened.key == STEP for happened in events)
 
 
@@ -78,7 +78,7 @@ def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
 
 
 def lacking(exercise: Exercise, files: Mapping[str, bytes]) -> list[dict[str, object]]:
-    """Return the lines that the step needs, and the tasks of the step, that the learner's package files do not have."""
+    """Return the lines and the tasks of the step that are missing from the learner's package files."""
     try:
         lines, tasks = lacking_lines(exercise, files), open_tasks(exercise, files)
     except (OSError, MachineError):

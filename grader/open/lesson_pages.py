@@ -33,7 +33,7 @@ class LessonPages:
         self._assets |= {f"{FOLDER}/{file.name}": file for file in [*shared, *own]}
 
     def find(self, path: str) -> str | Path | None:
-        """Return the text of a page, or a file, or None if the path is unknown."""
+        """Return the text of a page, the path of a file, or None if the path is unknown."""
         if path in self._assets:
             return self._assets[path]
         among = self._lessons()

@@ -63,7 +63,7 @@ class Program:
 
         `says` is a line that precedes the program's output.
 
-        If the program is `held`, its standard input is a pipe that closes when this process ends for any reason.
+        With `held`, the program's standard input is a pipe that closes when this process ends for any reason.
         """
         if self.running:
             return
@@ -139,7 +139,7 @@ class Programs:
         return remembered("turtlesim")
 
     async def beside_another(self) -> bool:
-        """Return whether a turtlesim is running that this object has not started.
+        """Return whether a turtlesim that this object has not started is running.
 
         A second turtlesim would get the same commands.
         """

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 OTHER = "/other"
-"""A visible node's name, the default of `did_you_mean`, which then does not say that no node is running."""
+"""The name of a visible node. With this default, `did_you_mean` does not say that no node is running."""
 
 
 class Ros2Error(GraderError):
@@ -25,8 +25,8 @@ class Ros2Error(GraderError):
 def did_you_mean(name: str, candidates: Iterable[str], text: str = "", nodes: Iterable[str] = (OTHER,)) -> str:
     """Return `text`, followed by a line that suggests the most similar candidate if one is similar enough.
 
-    If `nodes`, the names of the running nodes, contains only hidden nodes, such as that of the command, the line says
-    that no node is running. In this case, the node that the user named has not been started, or it runs in another
+    If `nodes`, the names of the running nodes, contains only hidden nodes, such as the node of this command, the line
+    says that no node is running. In this case, the node that the user named has not been started, or it runs in another
     domain.
     """
     others = [candidate for candidate in candidates if candidate != name]

@@ -219,7 +219,7 @@ def who_hears(env: Mapping[str, str]) -> str:
 
 
 def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str:
-    """Return a search path that starts with the user's entries, without those of another ROS 2 or an older underlay."""
+    """Return a search path that starts with the user's entries, except those of another ROS 2 or an older underlay."""
     ours = [entry for entry in needed.get(name, "").split(os.pathsep) if entry]
     prefixes = [Path(entry) for entry in env.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
     current = needed["AMENT_PREFIX_PATH"].split(os.pathsep)
@@ -263,7 +263,7 @@ def _sourced(env: Mapping[str, str]) -> Ros | None:
 
 
 def _this_python(started: Path) -> Path:
-    """Return this interpreter as `python3`, although it may have been started as `python`.
+    """Return the path of this interpreter with the name `python3`, even if it was started as `python`.
 
     The path is a part of the underlay's key, so without this function, the underlay would be built once for each name.
     """

@@ -31,7 +31,8 @@ SOURCES = Path(__file__).parents[1] / "turtlesim/package"
 _TEMPORARY = ".building-"
 _LOG_LINES = 15
 _FULL = 1 << 20
-"""If fewer bytes are free after a build has failed, the disk was full. CMake and compilers do not always say so."""
+"""If fewer bytes are free after a build has failed, a full disk is considered to be the reason. CMake and compilers do
+not always say so."""
 
 
 def _report_nothing(_: str) -> None:

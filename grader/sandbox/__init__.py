@@ -1,1 +1,1 @@
-"""The sandbox: cells, which contain student code, rooms, which contain the simulator, and their limits."""
+"""The sandbox: cells (for student code), rooms (for the simulator), and their limits."""

@@ -48,7 +48,7 @@ _passing = Lock()
 
 
 def why_impossible() -> str | None:
-    """Return the reason why this kernel does not let processes enter a room or cell, or None if it does.
+    """Return the reason why processes cannot enter a room or cell on this kernel, or None if they can.
 
     setns(2) with a pidfd needs Linux 5.8.
     """
@@ -71,8 +71,8 @@ def enter(holder: int, *, cell: bool) -> None:
     belongs to root, it also leaves all supplementary groups. Afterwards, other processes of the user cannot inspect it.
 
     Only a conductor knows the holder of a cell, and a conductor can be under the control of a node. Therefore, if
-    `cell` is true, the process must have namespaces of its own, which no process of a room has. The namespaces may
-    still be a trap: after this call, do not trust any file. Even an import or a traceback can run code from these
+    `cell` is true, the process with this descriptor must have namespaces that no process of a room has. The namespaces
+    may still be a trap: after this call, do not trust any file. Even an import or a traceback can run code from these
     mounts.
 
     Raises:
@@ -134,7 +134,7 @@ def confine(limits: Iterable[tuple[int, int]], *, user: int | None, call_filter:
 
     `limits` are pairs of a constant of the module `resource` and a value. `user` is the user id to switch to if this
     process runs as root, or None. `call_filter` comes from system_calls.program(). With an empty filter, all system
-    calls remain possible. This process ends with its parent.
+    calls remain possible. The kernel kills this process when its parent exits.
 
     Raises:
         OSError: the kernel refused.
@@ -170,5 +170,5 @@ def allow_inspection(*, allow: bool) -> None:
 
 
 def sacrifice() -> None:
-    """Let the kernel kill this process first if memory runs out. Needs an earlier `allow_inspection(allow=True)`."""
+    """Let the kernel kill this process first if memory runs out. Call `allow_inspection(allow=True)` before."""
     Path("/proc/self/oom_score_adj").write_text("1000", "ascii")

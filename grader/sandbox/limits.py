@@ -19,7 +19,7 @@ NO_CORE_DUMP = 1
 """The limit on core dumps (bytes). With the limit 0, the kernel would still pass core dumps to another program; see
 core(5)."""
 MOST_OTHERS = 4096
-"""Without cells, the limit on processes is higher by this number, for the user's other processes and threads."""
+"""Without cells, this number is added to the limit on processes, because the user's other processes also count."""
 
 
 @dataclass(frozen=True)

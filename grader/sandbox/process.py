@@ -90,7 +90,7 @@ class _Pump:
         return len(self.stdout) > self._most
 
     def serve(self, left: Callable[[], float], stopped: Callable[[], bool]) -> bool:
-        """Serve until the child closes its pipes or writes too much, the time is over, or `stopped` returns True.
+        """Serve until the child closes its pipes or writes too much, no time is left, or `stopped` returns True.
 
         Return False in the last two cases. `left` returns the remaining time (s). `left` and
         `stopped` are called several times per second.

@@ -84,7 +84,7 @@ def _end(member: Member) -> int:
 
 
 def _number(field: bytes) -> int | None:
-    """Return the value of an octal field, or None if it is not octal, such as the binary form of large numbers."""
+    """Return the value of an octal field, or None if it is not octal: large numbers have a binary form."""
     digits = field.strip(b" \0")
     return int(digits, 8) if digits and not digits.strip(b"01234567") else None
 

@@ -24,7 +24,7 @@ EVERY_S = 0.1
 LAUNCHERS = 16
 """The number of processes that may exist in addition to the student's processes, such as those of bubblewrap.
 
-In a cell, the kernel counts processes too and refuses new ones before this number is reached.
+In a cell, the kernel also counts processes, and refuses new processes before this number is reached.
 """
 _DISKS = ("ws", "tmp", "dev/shm")
 _SOCKETS = {"udp": "", "udp6": "", "tcp": "sockstat", "tcp6": "sockstat6"}
@@ -35,7 +35,8 @@ _IN_USE = re.compile(rb"^TCP6?: inuse (\d+)", re.MULTILINE)
 _MOST_LISTED = 4 * 1024 * 1024
 """A list of sockets that is longer than this (bytes) has more than 25,000 lines, which happens only in an attack."""
 _MEMORY = re.compile(r"^(?:RssAnon|RssShmem|VmSwap|VmPTE):\s*(\d+) kB", re.MULTILINE)
-"""The memory of a process in /proc/PID/status without mapped files: its own pages, shared pages and page tables."""
+"""The lines of /proc/PID/status about the memory of a process, except mapped files: its own pages, shared pages and
+page tables."""
 _THREADS = re.compile(r"^Threads:\s*(\d+)", re.MULTILINE)
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 

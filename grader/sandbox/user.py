@@ -1,10 +1,10 @@
 """Choose a different user for each sandbox room or cell when root grades.
 
-The kernel limits some resources per user: pipe pages, inotify instances, pending signals and timers, and sockets in
-transit. One cell could use up these resources, so that none would be left for other cells of the same user. Therefore,
-each room or cell gets a user id from a range that nothing else uses, and keeps the user id until it ends. To reserve an
-id, the grader locks the byte whose position in a file is the id. All graders on a machine respect the lock, which is
-released when the grader exits.
+The kernel limits some resources per user: pipe pages, inotify instances, pending signals and timers, and file
+descriptors in transit. One cell could use up these resources, so that none would be left for other cells of the same
+user. Therefore, each room or cell gets a user id from a range that nothing else uses, and keeps the user id until it
+ends. To reserve an id, the grader locks the byte whose position in a file is the id. All graders on a machine respect
+the lock, which is released when the grader exits.
 """
 
 from __future__ import annotations

@@ -225,7 +225,7 @@ def look_at_ros(ros: Ros, env: Mapping[str, str]) -> Line:
 
 
 def look_at_sandbox() -> Line:
-    """Create a sandbox cell like the one in which a student's process runs.
+    """Return a line on whether this machine can create sandbox cells, in which students' processes run.
 
     Sandbox cells are optional for users who check only their own code.
     """

@@ -35,7 +35,7 @@ def environment(env: Mapping[str, str]) -> Dict[str, str]:
 
 
 def of_configuration(env: Mapping[str, str]) -> Dict[str, str]:
-    """Return environment variables with those settings in pip's configuration files that the installers may use.
+    """Return, as environment variables, the settings in pip's configuration files that the installers may use.
 
     With PIP_CONFIG_FILE=/dev/null, pip ignores its files, which can also contain the settings that `environment`
     removes.

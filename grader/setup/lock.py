@@ -112,7 +112,7 @@ def split(entries: Iterable[Entry], needs: Mapping[str, Collection[str]]) -> str
     If a package has several versions for different Pythons, a part contains all these versions.
 
     Raises:
-        MachineError: the packages of all parts are not exactly those in `entries`.
+        MachineError: the packages of all parts together differ from those in `entries`.
     """
     sections: dict[tuple[str, ...], list[str]] = {(part,): [] for part in PARTS}
     rest = set().union(*needs.values())

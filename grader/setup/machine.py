@@ -270,7 +270,7 @@ def missing_of_python(
 def lack_message(
     needs: Sequence[Need], manager: Optional[package_managers.Manager], *, root: bool, why: str = ""
 ) -> str:
-    """Return a message with the missing programs, the command that installs them, and `why` this was not done."""
+    """Return a message with the missing programs, the command that installs them, and `why` they were not installed."""
     whats = [f"  - {what}" for what in dict.fromkeys(need.what for need in needs)]
     lines = ["The course needs the following, which this system does not have:", *whats]
     lines += [f"The missing parts were not installed: {why}."] if why else []

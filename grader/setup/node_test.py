@@ -59,7 +59,7 @@ def why_not_heard(ros: Ros, *, confined: bool) -> str | None:
                 command, capture_output=True, text=True, timeout=60, check=False, stdin=subprocess.DEVNULL, env=env
             )
         except subprocess.TimeoutExpired:
-            return "no answer within 60 s"
+            return "no response within 60 s"
     if done.returncode == 0:
         return None
     return (done.stderr.strip().splitlines()[-1:] or [f"exit code {done.returncode}"])[0]

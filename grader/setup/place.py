@@ -1,6 +1,7 @@
 """The folder of the course: whether its path is one with which all programs of the set-up work.
 
-Like machine.py, this module runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
+Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
+of Python 3.6.
 """
 
 import os

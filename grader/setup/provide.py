@@ -20,7 +20,7 @@ _ERROR = re.compile(r"(E:|W:|Err:|error|problem|fatal|no package|nothing provide
 def provide(needs: Sequence[package_managers.Need], env: Mapping[str, str], say: Callable[[str], None]) -> str:
     """Print a line with `say`, and then install the packages that are needed.
 
-    Return the reason why something could not be installed.
+    Return the reason why something could not be installed, or an empty string if everything was installed.
 
     The required packages are installed first, in one command. Each optional package is installed separately, so that a
     missing package does not prevent the installation of other packages.

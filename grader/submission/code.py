@@ -64,7 +64,7 @@ class Module:
 
 
 ALIKE = {"create_lifecycle_publisher": "create_publisher"}
-"""Methods of a lifecycle node with the arguments of a method that each node has."""
+"""Maps a method of lifecycle nodes to the method of all nodes that has the same arguments."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ class Code:
 
     @property
     def start(self) -> Where | None:
-        """The path of the node's file, for messages that refer to the file but not to a line, or None."""
+        """The node's file as a place without a line, for messages about the whole file. None if the file is unknown."""
         return None if self.node_file is None else Where(self.node_file)
 
     @cached_property

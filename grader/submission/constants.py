@@ -49,7 +49,7 @@ def dotted(node: ast.expr) -> str | None:
 
 
 def single_names(tree: ast.AST) -> Names:
-    """Return each assigned name or attribute with its expression, or with None if it has no single assignment."""
+    """Return each assigned name or attribute with its expression, or with None if it is not assigned exactly once."""
     names = Names()
     for node in ast.walk(tree):
         targets: list[ast.expr] = []

@@ -35,7 +35,7 @@ _ONLY_METADATA = frozenset(
         *("license", "keywords", "classifiers", "install_requires", "tests_require", "extras_require", "zip_safe"),
     }
 )
-"""Arguments of setup() that only affect the metadata of the package, which nodes do not read."""
+"""Arguments of setup() that affect only the metadata of the package, which nodes do not read."""
 _INSTALLED = frozenset({"name", "version", "packages", "data_files", "entry_points"})
 _CONFIGURATION = frozenset({"[develop]", "script_dir=$base/lib/{}", "[install]", "install_scripts=$base/lib/{}"})
 

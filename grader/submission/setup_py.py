@@ -122,7 +122,7 @@ def _last(node: ast.expr) -> str:
 
 
 def _value_line(node: ast.expr | None, module: Module) -> int | None:
-    """Return the line of the value itself, even if the argument is only a name for this value, or None."""
+    """Return the line of the value itself (or None), even if the argument is only a name for this value."""
     for _ in range(MAX_DEPTH):  # `a = b; b = a` would loop forever
         if not isinstance(node, ast.Name) or module.names.get(node.id) is None:
             break

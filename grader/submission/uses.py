@@ -163,7 +163,7 @@ def _below(module: str, tops: dict[str, Top]) -> dict[str, Top]:
 
 
 def _use(node: ast.AST, file: _File, names: Collection[str]) -> Iterable[Use]:
-    """Yield the use of a function that this syntax node represents, if any."""
+    """Yield the use of a function if this syntax node is one."""
     name: str | None = None
     written: str | None = None
     if isinstance(node, ast.Call):

@@ -41,8 +41,8 @@ class Hooks:
     `on_publish(topic, type, data)` is called when a pose or a colour is published. `on_intervention(name)` is called
     when a client calls a service ("spawn"), sends a goal ("rotate_absolute") or sets a parameter ("set_background" if
     only colours are set, otherwise "set_parameters"). `on_call(service, type, request, response, waited_s)` is called
-    when a call is answered, `waited_s` (s) after it arrived, and `on_goal(event)` for each event of an action goal.
-    `late` delays the responses if it is not None.
+    when the response to a call is sent, `waited_s` (s) after the call arrived. `on_goal(event)` is called for each
+    event of an action goal. `late` delays the responses if it is not None.
     """
 
     on_command: Callable[[str, bytes, Any], object]

@@ -1,4 +1,4 @@
-"""Answer service calls late, so that a node that does not wait for a response fails visibly."""
+"""Respond to service calls late, so that a node that does not wait for a response fails visibly."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 class LateAnswers:
-    """Handles and answers each call `after_s` (s) after its request has arrived, on the caller's clock.
+    """Handles each call and responds to it `after_s` (s) after its request has arrived, on the caller's clock.
 
-    `tick` sets the time. The calls are answered in the order in which they arrived.
+    `tick` sets the time. The responses are sent in the order in which the calls arrived.
     """
 
     def __init__(self, after_s: float) -> None:
@@ -23,7 +23,7 @@ class LateAnswers:
         self._waiting: deque[tuple[float, Callable[[float], None]]] = deque()
 
     def delay(self, service: Service, handle: Callable[[Any, Any, float], Any]) -> None:
-        """When an answer of the service is due, call `handle(request, response, waited_s)` and send the response."""
+        """When a response of the service is due, call `handle(request, response, waited_s)` and send the response."""
         answer, empty = service.send_response, service.srv_type.Response
         taken: list[Any] = []
 
@@ -38,7 +38,7 @@ class LateAnswers:
         service.callback, service.send_response = take, later
 
     def tick(self, now_s: float) -> None:
-        """Answer the calls that are due at `now_s` (s)."""
+        """Send the responses that are due at `now_s` (s)."""
         self._now_s = now_s
         while self._waiting and now_s - self._waiting[0][0] >= self._after_s:
             asked_s, answer = self._waiting.popleft()

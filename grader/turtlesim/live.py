@@ -84,7 +84,7 @@ class _Screen:
         self._frames += 1
 
     def close(self) -> None:
-        """Write the last picture, and wait until the reader has read it."""
+        """Write the last picture, and wait up to 2 s until the reader has read it."""
         self._show()
         with self._ready:
             self._closed = True

@@ -35,7 +35,7 @@ MOST_TURTLES = 64
 """The maximum number of turtles. The real turtlesim has no limit, but ours must not crash if spawning never stops."""
 
 _FRAMES_TO_LEAVE = 4
-"""The number of frames for which the entities of a killed turtle are kept, so that earlier requests are answered."""
+"""The number of frames for which the entities of a killed turtle are kept, so that earlier requests get a response."""
 
 
 def _nobody(*_: object) -> None:

@@ -117,7 +117,7 @@ def test_links_and_devices_are_skipped_and_nothing_is_written_through_them(tmp_p
 def test_a_zip_bomb_is_refused_before_it_is_unpacked(tmp_path: Path) -> None:
     archive = zipped(tmp_path / "a.zip", *((f"f{number}", MANY) for number in range(100)))
     assert archive.stat().st_size < 1024 * 1024
-    assert "unpacks to more than the 96 MiB" in why_not(archive)
+    assert "is larger than the allowed 96 MiB after unpacking" in why_not(archive)
 
 
 @pytest.mark.parametrize("kind", ["files", "header"])
@@ -132,7 +132,7 @@ def test_a_tar_bomb_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
         info.pax_headers = {"path": "a" * 4 * len(MANY)}
         with tarfile.open(archive, "w:gz", format=tarfile.PAX_FORMAT) as packed:
             packed.addfile(info)
-    assert "unpacks to more than the 2 MiB" in why_not(archive)
+    assert "is larger than the allowed 2 MiB after unpacking" in why_not(archive)
 
 
 def test_a_zip_that_understates_its_sizes_is_refused(tmp_path: Path) -> None:

@@ -78,7 +78,7 @@ def test_messages_have_a_budget_in_number_bytes_values_and_depth() -> None:
     nested: list[Any] = []
     for _ in range(60):
         nested = [nested]
-    assert "more than 50 nested objects" in refused(message({"a": nested}))
+    assert "objects nested more than 50 levels deep" in refused(message({"a": nested}))
 
 
 def test_frames_survive_the_pipe_in_pieces_of_any_size() -> None:

@@ -63,7 +63,7 @@ NOTEBOOKS: dict[str, tuple[Callable[[Path], object], str]] = {
         lambda file: file.write_text(
             a_notebook(code("1")).replace('"metadata": {}', '"metadata": {"a": ' + "[" * 90 + "]" * 90 + "}", 1)
         ),
-        "more than 50 nested objects",
+        "objects nested more than 50 levels deep",
     ),
     "many values": (
         lambda file: file.write_text(json.dumps({"cells": [], "metadata": {"a": [[]] * 1_000_000}})),

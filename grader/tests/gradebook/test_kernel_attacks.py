@@ -57,7 +57,7 @@ ATTACKS = {
     ),
     "a deep list": (
         SEND + "deep = []\nfor _ in range(200):\n    deep = [deep]\nsend('comm_msg', {'comm_id': 'a', 'data': deep})",
-        "The kernel sent a message with more than 50 nested objects.",
+        "The kernel sent a message with objects nested more than 50 levels deep.",
     ),
     "half a letter": (
         SEND + PLAIN + "send('stream', {'name': 'stdout', 'text': '\\ud800'})",

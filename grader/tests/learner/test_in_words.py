@@ -32,7 +32,7 @@ REST = "The code is the same in __init__ and the lines outside functions."
         ),
         (
             OURS.replace("def step", "def go"),
-            f"{REST} Only you have go. Only the solution has step.",
+            f"{REST} Only your file has go. Only the solution has step.",
         ),
         ("", "Your package does not contain this file."),
     ],

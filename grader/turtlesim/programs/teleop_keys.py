@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Drive:
-    """Drive for a second: forwards (1) or backwards (-1), to the left (1) or right (-1), times the node's scale."""
+    """Drive forwards (1) or backwards (-1) for a second, or turn left (1) or right (-1). The node scales the values."""
 
     linear: float
     angular: float
