@@ -22,7 +22,7 @@ class QuickExit:
     code: object = None
     """The exit code. If it is not a number, the process ends as usual."""
     kept: frozenset[str] | None = None
-    """The names of the modules that are not cleared, or None if no module is cleared."""
+    """The names of the modules to keep. All other modules are cleared. If None, no module is cleared."""
 
     @classmethod
     def prepare(cls) -> None:
@@ -46,7 +46,7 @@ class QuickExit:
 
 
 def _flush_files() -> None:
-    """Write what is buffered. The garbage collector may close a file before it writes the buffer."""
+    """Write all buffered data now, because the garbage collector may close a file before its buffer is written."""
     for each in gc.get_objects():
         if isinstance(each, io.TextIOWrapper | io.BufferedWriter | io.BufferedRandom):
             with suppress(OSError, ValueError):

@@ -75,7 +75,7 @@ def _jumped(recording: Recording, first: int) -> bool:
 
 @dataclass(frozen=True)
 class _Path:
-    """The part of a trajectory that consists of some successive frames.
+    """A part of a trajectory: some successive frames.
 
     `x`, `y` (m) and `theta` (rad) begin before the first of these frames. `turned_otherwise` is true for the frames in
     which the turtle did not turn at its turning speed.
@@ -126,7 +126,7 @@ def _by_goal(recording: Recording, now: slice) -> Steps:
 
 
 def _unasked(recording: Recording, now: slice) -> Steps:
-    """Return a mask of the frames that have a turning speed that no recent command set."""
+    """Return a mask of the frames whose turning speed was not set by a recent command."""
     frames = recording.frames
     times = np.array([command.t_s for command in recording.commands])
     speeds = np.array([command.angular[2] for command in recording.commands])

@@ -63,7 +63,7 @@ class Table:
     def string(
         self, key: str, pattern: re.Pattern[str] | None = None, allowed: str = "a string", default: str | None = None
     ) -> str:
-        """Return a string that contains more than spaces and matches `pattern` completely."""
+        """Return a string that matches `pattern` completely and does not consist only of spaces."""
 
         def good(value: object) -> bool:
             return (

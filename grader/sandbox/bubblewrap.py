@@ -181,7 +181,8 @@ def require(*, trusted: bool = False) -> bool:
         return why is None
     message = (
         f"No sandbox is available, so the grader does not run other people's code: {why}. On "
-        "a machine without important data, --trust-submissions runs it with limits on time, memory and output only."
+        "a machine without important data, --trust-submissions runs this code with limits on time, memory and output "
+        "only."
     )
     raise MachineError(message)
 

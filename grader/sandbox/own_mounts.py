@@ -69,7 +69,7 @@ def keep_only(paths: Iterable[Path]) -> bool:
 
 
 def _unshared(c: ctypes.CDLL) -> bool:
-    """Create the mount namespace, for an ordinary user in a new user namespace. Return False if this fails."""
+    """Create the mount namespace (for an ordinary user, in a new user namespace). Return False if this fails."""
     user, group = os.geteuid(), os.getegid()
     if c.unshare(_NEW_MOUNTS) == 0:
         return True

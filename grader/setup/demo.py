@@ -26,7 +26,7 @@ STAGES = {
     "trial": "simulator and node",
     "checks": "checks",
 }
-"""The names of the stages in the report, as printed."""
+"""Maps the name of a stage in the report to the text that is printed."""
 
 
 def main(arguments: list[str] | None = None) -> int:

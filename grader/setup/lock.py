@@ -39,7 +39,8 @@ PARTS = {
 
 ALWAYS = ("setup", "grader")
 """The parts of every set-up. The packages of these two parts are not repeated in other parts. All other parts,
-including `ros`, are optional. Therefore, an optional part lists all packages that it needs beyond the two parts.
+including `ros`, are optional. Therefore, an optional part lists all packages that it needs and that the two parts do
+not have.
 """
 
 SOURCED_BRINGS = frozenset({"numpy", "empy"})

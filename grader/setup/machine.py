@@ -23,7 +23,8 @@ OLDEST, NEWEST = (3, 10), (3, 14)
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 SYSTEM_PATH = ("/usr/local/bin", "/usr/bin", "/bin")
 NO_SANDBOX = (
-    "only your own code can be checked, with limits on time, memory, processes and file size; marks need the sandbox"
+    "only your own code can be checked, with limits on time, memory, processes and file size; "
+    "grading for marks needs the sandbox"
 )
 
 CONTAINER = """\

@@ -68,7 +68,7 @@ def single_names(tree: ast.AST) -> Names:
 
 
 def written(node: ast.expr | None, names: Names) -> ast.expr | None:
-    """Return the expression that is assigned to a name, or any other `node` unchanged."""
+    """Return the expression that is assigned to the name `node`, or `node` itself if there is no such expression."""
     for _ in range(MAX_DEPTH):
         value = names.get(dotted(node) or "") if isinstance(node, ast.Name | ast.Attribute) else None
         if value is None:

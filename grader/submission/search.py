@@ -153,7 +153,7 @@ def _for_a_file(name: str) -> str:
 
 
 def _nearest_parent(name: str) -> str:
-    """Return a remark on how far the path exists, or an empty string if the parent folder exists."""
+    """Return a remark that says which part of the path exists, or an empty string if the parent folder exists."""
     above = Path(name).absolute().parent
     if above.is_dir():
         return ""

@@ -85,13 +85,16 @@ class Teleop(Node):
         super().destroy_node()
 
     def _see_that(self, somebody: Callable[[], bool], name: str) -> bool:
-        """Wait up to two seconds until `somebody` returns true. Otherwise, print a message and return False."""
+        """Return whether `somebody` returns true within two seconds of the start. If not, print a message."""
         while not somebody() and time.monotonic() < self._begun + _DISCOVERY_S:
             time.sleep(0.01)
         there = somebody()
         if not there:
             domain = os.environ.get("ROS_DOMAIN_ID", "0")
-            self._tell(f"No node subscribes to or serves {name} (ROS_DOMAIN_ID is {domain}). Is turtlesim running?")
+            self._tell(
+                f"No subscription or action server for {name} was found (ROS_DOMAIN_ID is {domain}). "
+                "Is turtlesim running?"
+            )
         return there
 
 
