@@ -63,7 +63,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "main-in-class": "main is indented, so it is part of the class",
         "top-level-code": "the program has no main function: its code is at the top level of the file",
         "empty-file": "the file of the node is empty; it may not have been saved",
-        "script-shebang": "the executable is a script, and its first line does not name Python",
+        "script-shebang": "the executable is a script, and its first line does not start Python",
         "script-for-entry-point": "the executable is a script instead of an entry point",
         "setup-cfg": "setup.cfg is missing or contains the wrong folder",
     },

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _POSE = struct.Struct("<xBxx5f")
 _TWIST = struct.Struct("<xBxx6d")
 _LITTLE_ENDIAN = 1
-"""The value of the second byte of serialized data, which means that the byte order is little-endian."""
+"""The second byte of serialized data whose byte order is little-endian."""
 _SPEED_M_S = 1.0
 
 
@@ -76,7 +76,7 @@ def _bag_files(bag: BagInput, ros: Ros, seed: int) -> dict[str, bytes]:
 
 
 def _messages(bag: BagInput, seed: int) -> list[Message]:
-    """Return the poses and the commands in chronological order. The first message has the time 1 s."""
+    """Return the poses and the commands in chronological order. The time stamp of the first message is 1 s."""
     x, y = bag.arc.points(bag.id, seed)
     messages = [
         _message("/turtle1/pose", "turtlesim/msg/Pose", 1.0 + index / bag.rate_hz, _POSE, *values, 0.0, _SPEED_M_S, 0.0)

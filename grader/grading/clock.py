@@ -3,15 +3,15 @@
 The rules, in the order in which they are applied:
 
 1. `--clock simulated` or `--clock wall` sets the clock.
-2. Without these options, a trial starts in simulated time, in which nothing has to wait and no other program can
+2. Without these options, a trial starts in simulated time, in which the grader need not wait and other programs cannot
    disturb the trial. If the source contains a sign that the node may follow wall time, the trial starts in wall time
    instead (grader.trial.clues).
 3. A trial in simulated time stops at the first sign that the node follows wall time after all: a thread sleeps,
-   commands arrive while the clock is held, or the node never becomes idle (grader.trial.simulated). After such a sign,
-   the trial is repeated in wall time. If several threads kept the node from becoming idle, this may have happened by
-   chance, so the trial is first repeated once in simulated time.
-4. The trial is also repeated in wall time if a measured value is near the edge of its tolerance, or if the node did not
-   stop.
+   commands arrive while the clock is stopped, or the node never becomes idle (grader.trial.simulated). After such a
+   sign, the trial is repeated in wall time. If several threads kept the node from becoming idle, this may have happened
+   by chance, so the trial is first repeated once in simulated time.
+4. A trial in simulated time is also repeated in wall time if a measured value is near the edge of its tolerance, or if
+   the node did not stop.
 5. If a trial in wall time fails while other programs use the processors, the trial is repeated while nothing else is
    graded. A busy machine can make a correct node look wrong, but it cannot make a wrong node look correct, so the
    result of the first trial that passes counts. If no trial of WALL_TRIALS passes, the trial with the least disturbance
@@ -44,7 +44,7 @@ WALL_TRIALS = 3
 
 @dataclass(frozen=True)
 class Clock:
-    """The clock of a trial. `why` is the reason for this clock in the report."""
+    """The clock of a trial. `why` is the reason for this choice, which appears in the report."""
 
     name: ClockName
     why: str
@@ -69,12 +69,12 @@ class Attempt:
 
     @property
     def disturbance(self) -> tuple[bool, float]:
-        """The disturbance by other programs: whether they crowded the machine, and the length of the stalls (s)."""
+        """Whether other programs kept the machine too busy, and the total length of the stalls (s)."""
         return self.evidence.recording.crowded, self.evidence.recording.stalled_s
 
 
-ALONE = Clock("simulated", "the simulator ran without a node, so its pace does not matter")
-"""The clock of a trial without a node."""
+ALONE = Clock("simulated", "the simulator ran without a node, so its speed does not matter")
+"""The clock of a trial that has no node."""
 
 
 def first_clock(choice: ClockChoice, evidence: Evidence) -> Clock:

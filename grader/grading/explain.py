@@ -1,7 +1,7 @@
-"""Prove causes: change a copy of the submission at the place to which a failed check points, and run the copy.
+"""Prove causes: fix the place to which a failed check points in a copy of the submission, and run the copy.
 
-Each fix stays in the copy while the next cause is tested, which also reveals mistakes that were hidden by other
-mistakes. Like the submission itself, the copy is built and run in the sandbox. The copy always runs in simulated time.
+Each fix stays in the copy while the next cause is tested. In this way, mistakes that other mistakes hid are also found.
+Like the submission itself, the copy is built and run in the sandbox. The copy always runs in simulated time.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
 MOST_TRIES = 6
 MOST_F = 1.5
-"""The maximum time for testing fixes of a submission, relative to the time for a build and a run of a minimal node."""
+"""The maximum time for testing the fixes of a submission, relative to the time that a build and a minimal node take."""
 BARE_NODE_S = 0.35
-"""The time that a minimal process with one node needs to start and exit (s)."""
+"""The time that a minimal process with one node takes to start and exit (s)."""
 ENOUGH = f"at most {MOST_TRIES} fixes are tested"
 TOO_LONG = "there was no time to test more fixes"
 NOT_SIMULATED = "a node with a fix can only be tested in wall time, which takes too long"
@@ -51,7 +51,7 @@ def explain(
 
 
 def part_of(exercise: Exercise, check: str) -> Exercise:
-    """Return the exercise with only the checks of this check's trial, all checks that these need, and their trials."""
+    """Return the exercise reduced to the checks of this check's trial, and all checks and trials that these need."""
     specs = {spec.id: spec for spec in exercise.checks}
     trial = specs[check].trial
     wanted: dict[str, CheckSpec] = {}
@@ -115,7 +115,10 @@ class _Explaining:
         return Tries(tuple(self.made), len(self.behind), stopped)
 
     def _share(self, target: Outcome, found: Mapping[str, Outcome], diff: str) -> set[Key]:
-        """Record the result of a test for other checks with the same cause. Return the keys of these checks."""
+        """Record the result of a test for all other failed checks that have the same cause.
+
+        Return the keys of these checks.
+        """
         same = [
             each
             for each in self.outcomes

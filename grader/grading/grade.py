@@ -1,6 +1,6 @@
 """Grade one submission: build it, run it, and judge what was observed.
 
-This module connects all other parts of the grader.
+This module connects the other parts of the grader.
 """
 
 from __future__ import annotations
@@ -46,7 +46,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Graded:
-    """A report and the evidence behind it. `prefixes` are the folders in which the message types are installed."""
+    """A report and the evidence on which it is based.
+
+    `prefixes` are the folders in which the message types are installed.
+    """
 
     report: Report
     evidence: Evidence
@@ -66,9 +69,9 @@ def grade(
     """Grade a submission.
 
     `tell` is called with a short message about each step. `early` is called before the build, with the outcomes of the
-    checks that are certain to fail. A machine fault is reported as outcomes with the status `error`, and never as an
-    exception. A caller can replace `build` and `trial`. For example, `grader watch` passes builds and trials that it
-    started in advance.
+    checks that are certain to fail. A fault of the machine never raises an exception: the affected outcomes have the
+    status `error`. A caller can replace `build` and `trial`: `grader watch`, for example, passes builds and trials that
+    it started in advance.
     """
     turns = Turns(turns_folder(), tell)
     rebuild = Rebuild(build)
@@ -78,7 +81,7 @@ def grade(
 
 
 def can_be_explained(graded: Graded) -> bool:
-    """Return whether the trial did not run in wall time, and a fix for the cause of a failed check can be tested."""
+    """Return whether a failed check has a fix that can be tested, which is not the case after a trial in wall time."""
     report = graded.report
     return report.clock != "wall" and any(outcome.finding.fix for outcome in report.with_status(Status.FAILED))
 
@@ -92,7 +95,7 @@ def explained(
     trial: Callable[..., Trial] = Trial,
     give_up: Callable[[], bool] = lambda: False,
 ) -> Graded:
-    """Return the graded submission. If possible, each cause is proved by a fix in a copy.
+    """Return the graded submission after testing its causes by fixing them in a copy, where possible.
 
     `give_up` is called before each change is tested. Once `give_up` returns true, no more changes are tested. `build`
     contains the result of the last build.
@@ -112,7 +115,7 @@ def explained(
         If the corrected node seems to follow wall time, the test of the fix is inconclusive.
         """
         if plan.clock == "wall":
-            raise MachineError("A cause is tested only in simulated time.")  # noqa: EM101
+            raise MachineError("The fix for a cause is tested only in simulated time.")  # noqa: EM101
         return trial(dataclasses.replace(plan, stop_at_doubt=True), *rest, **more)
 
     begun = time.monotonic()
@@ -220,9 +223,9 @@ class _Grading:
 
 
 def _longest_first(evidence: Evidence) -> list[Evidence]:
-    """Return the evidence from the viewpoint of each trial with a node.
+    """Return the evidence of each trial that runs a node.
 
-    The longest trial comes first, so that no processor is idle at the end.
+    The longest trial comes first, so that it does not run alone at the end while other processors are idle.
     """
     specs = evidence.exercise.trials
     views = [evidence.from_trial(spec.id) for spec in specs if spec.tests is None and not spec.beside]

@@ -1,8 +1,8 @@
-"""Judging: check the files of a submission, then its build, then its trials, while the submission is being graded.
+"""Judging: check the files of a submission, then its build, then its trials, as soon as each of them is available.
 
 Judging reads files that a student wrote, so it runs in a child process (submission/reader.py). If the child process
-exceeds its limits, the submission is at fault: every check fails with the diagnosis `unreadable`, and nothing more is
-read.
+exceeds its limits, the submission is considered the cause: every check fails with the diagnosis `unreadable`, and
+nothing more is read.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ UNREAD = Clock("wall", "the source could not be read")
 
 @dataclass
 class Judging:
-    """Judges one submission and chooses the first clock of each trial. `choice` is the value of `--clock`."""
+    """Judges one submission, and chooses the clock with which each trial starts. `choice` is the value of `--clock`."""
 
     choice: ClockChoice
     fault: Fault | None = None
@@ -70,7 +70,8 @@ class Judging:
     def first_clock(self, evidence: Evidence) -> Clock:
         """Return the clock with which this trial starts.
 
-        After the build, the clock depends on the installed entry point.
+        Before the build, the entry point in setup.py determines the clock. After the build, the installed entry point
+        does.
         """
         return self._clocks.get(evidence.trial.id, UNREAD)
 

@@ -1,4 +1,4 @@
-"""The plan of a trial: its clock, start and inputs (based on the seed), and the topics that the checks need."""
+"""The plan of a trial: its clock, start pose and inputs (based on the seed), and the topics that the checks need."""
 
 from __future__ import annotations
 
@@ -19,13 +19,16 @@ if TYPE_CHECKING:
     from grader.trial.recording import ClockName
 
 USUAL_RADIUS_M = 2.0
-"""A random start leaves room for a circle of this radius (m), unless a check needs a different radius."""
+"""A random start pose leaves room for a circle with this radius (m), unless a check needs a different radius."""
 DEFAULT_SEED = 1
-"""The seed for scenarios with random values, if the user gives no seed."""
+"""The seed for scenarios with random values if the user does not specify one."""
 
 
 def plan_of(evidence: Evidence, clock: ClockName, *, choice: ClockChoice, seed: int | None) -> Plan:
-    """Return the plan of this trial. `seed` is the seed from the user, and `choice` is the value of `--clock`."""
+    """Return the plan of this trial.
+
+    `seed` is the seed that the user specified, and `choice` is the value of `--clock`.
+    """
     scenario = evidence.trial.scenario
     ids = [evidence.trial.id, *(spec.id for spec in evidence.exercise.beside(evidence.trial.id))]
     checks = [check for check in evidence.exercise.checks if check.trial in ids]

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 def tests_of(evidence: Evidence) -> TestsSpec:
     """Return the nodes on which the tests run, with the student's own numbers.
 
-    If these numbers cannot be read, a check fails, and the other checks are not judged.
+    If these numbers cannot be read, the values in the exercise are used. A check then fails, and no test result counts.
     """
     spec = evidence.trial.tests
     assert spec is not None

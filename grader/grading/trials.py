@@ -83,13 +83,12 @@ class Trials:
                 self._ahead.run(view.trial.id, self._predicted.package, view.trial.executable, self._predicted.tree)
 
     def run_ahead(self, views: Sequence[Evidence], tree: bytes) -> None:
-        """Start the nodes of those trials whose first clock is simulated time.
+        """Start the nodes of the trials that begin in simulated time.
 
-        `run` waits for the recordings of these trials.
+        Then call `run` to wait for the recording of a trial.
 
-        Nodes that are already running from the predicted install tree continue if this tree has the same content as
-        `tree`, the result of the build. If the install trees differ, every trial that was started from the predicted
-        install tree starts again.
+        If the predicted install tree has the same content as `tree`, the result of the build, the nodes that were
+        started from the predicted install tree continue to run. Otherwise, their trials start again.
         """
         self.tree = tree
         if self._predicted is not None and not self._is_installed(self._predicted):
@@ -110,8 +109,8 @@ class Trials:
         Checks that already have a finding in `settled` are not judged again.
 
         If the simulator fails once, the machine may be at fault. If the simulator fails twice, the submission's node is
-        considered the cause. A node that kept the simulator busy for minutes does not get a second trial, because a
-        class would have to wait too long.
+        considered the cause. If a node kept the simulator busy for minutes, the trial is not repeated, because grading
+        a class would take too long.
         """
         if evidence.trial.calls:
             return self._call(evidence, settled)

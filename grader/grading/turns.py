@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 WAIT_S = 120.0
-"""After this time (s), a grader continues even if the machine is not free."""
+"""After waiting for this time (s), a grader continues even if other graders are still using the machine."""
 _POLL_S = 0.02
 
 
 class Turns:
-    """Lets one grader at a time use the machine alone.
+    """Lets several graders share the machine, or one grader use it exclusively.
 
     All graders use the lock files in `folder`. If these files cannot be used, no grader waits for another grader.
     `tell` is called with a short message if this grader has to wait.

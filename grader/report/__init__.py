@@ -1,1 +1,1 @@
-"""The formats of a report: terminal, JSON, picture, page and more, with one module per format."""
+"""The formats of a report, such as text for the terminal, JSON, a picture or a page, with one module per format."""

@@ -50,11 +50,11 @@ def moments(recording: Recording) -> list[tuple[float, str]]:
 
 
 def _moments_of(goal: Goal) -> list[tuple[float, str]]:
-    name = shorten(goal.action)
+    name, reached = shorten(goal.action), goal.status == "succeeded"
     times = (
         (goal.t_s, f"the node sends a goal to {name}: {_fields(goal.request)}"),
         (goal.cancel_asked_s, f"the node asks {name} to cancel the goal"),
-        (goal.ended_s, f"the goal of {name} is {goal.status}" if goal.status != "succeeded" else "the goal is reached"),
+        (goal.ended_s, "the goal is reached" if reached else f"the goal sent to {name} is {goal.status}"),
     )
     return [(t_s, text) for t_s, text in times if t_s is not None]
 

@@ -1,8 +1,8 @@
 """Decide whether the cause of a failed check is a fact or only a possibility.
 
 A cause is a fact if the files, the build, an exception or the recording show it directly, or if a test has proved it:
-after the suggested fix, the check passes or the node gets further. All other causes are conclusions from the source
-code or from the node's behaviour, and may be wrong. grader/checks/certain.py lists the diagnoses that are facts.
+with the suggested fix, the check passes or the node gets further. All other causes are conclusions from the source code
+or from the node's behaviour, and may be wrong. grader/checks/certain.py lists the diagnoses that are facts.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def is_certain(outcome: Outcome) -> bool:
 
 
 def cause_label(outcome: Outcome) -> Literal["why", "likely"]:
-    """Return the label of the cause in a list of labels and texts."""
+    """Return the label for the cause of this failed check in a report: "why" for a fact, "likely" for a possibility."""
     return "why" if is_certain(outcome) else "likely"
 
 

@@ -31,7 +31,7 @@ GAP = 46.0
 BINS = 120
 """The number of bins for a long series of values. Only the lowest and the highest value of each bin are drawn."""
 HUGE = 1e4
-"""Larger values are drawn as if they were this large."""
+"""Values above this limit are drawn at the limit, and values below its negative at the negative limit."""
 
 DOT, BAD, BAND = "#1c7ed6", "#d6336c", "#2f9e44"
 """Colours with a contrast of at least 3:1 against both the white page and the dark page."""
@@ -131,7 +131,7 @@ def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> 
     if stalled:
         others = "1 interval is" if stalled == 1 else f"{stalled} intervals are"
         caption += (
-            f" {others} left out, because the start of the trial or a stall of the machine may have changed the length."
+            f" {others} left out, because the start of the trial or a stall of the machine may have changed them."
         )
     drawn = ""
     if wanted:
@@ -154,7 +154,7 @@ def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> 
 
 
 def _s(seconds: float) -> str:
-    """Format a time with two decimals, or with two significant digits if the time is below 0.1 s."""
+    """Format a time with two decimal places, or with two significant digits if the time is below 0.1 s."""
     return f"{seconds:.2f}" if seconds >= 0.1 else f"{seconds:.2g}"
 
 
@@ -200,7 +200,10 @@ def _end_s(evidence: Evidence) -> float:
 
 
 def _steps(series: Series, wanted: float | None, label: str, end_s: float, where: tuple[float, int]) -> str:
-    """Draw one field: a step at each command, and a dashed line at the required value. `where` is (top, bins)."""
+    """Draw one field: a step at each command, and a dashed line at the required value.
+
+    `where` contains the y coordinate of the chart's top, and the number of bins.
+    """
     top, bins = where
     drawn = thin(series, end_s, bins)
     known = [value for _, value in drawn] + ([wanted] if wanted is not None else []) + [0.0]

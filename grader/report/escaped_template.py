@@ -43,6 +43,9 @@ def compiled(template: str, *folders: Path) -> Template:
 
 
 def with_code(text: str) -> Markup:
-    """Return a message as one line of HTML, in which text between backticks is code. All of the text is escaped."""
+    """Return a message as one line of HTML, in which text between backticks is marked as code.
+
+    All of the text is escaped.
+    """
     pieces = enumerate(_CODE.split(plain_line(text)))
     return Markup().join(Markup("<code>{}</code>").format(piece) if at % 2 else escape(piece) for at, piece in pieces)

@@ -1,4 +1,4 @@
-"""The requirements of a trial's checks, as shapes on the canvas and limits in the charts.
+"""What the checks of a trial require, as shapes on the canvas and as limits in the charts.
 
 Each kind of check describes its own requirements.
 """
@@ -42,7 +42,7 @@ def requested_values(evidence: Evidence) -> tuple[float, ...] | None:
 
 
 def shapes_of(path: Requested) -> tuple[Line | Ring, ...]:
-    """Return the path as shapes on the canvas."""
+    """Return the required path as shapes on the canvas."""
     rings = tuple(Ring("expected", centre, radius) for centre, radius in path.circles)
     return (*rings, *(Line("expected", points) for points in path.lines))
 

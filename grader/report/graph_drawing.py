@@ -32,7 +32,7 @@ NARROW_SIDE, NARROW_MIDDLE = 124.0, 184.0
 CHAR = 7.0
 """The approximate width of a character."""
 ASIDE = 8.0
-"""The distance of an arrow's end from the middle of its box, if the arrows of both directions end on the same side."""
+"""If arrows in both directions touch the same side of a box, each of them is moved up or down by this distance."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ def _ordered(names: Sequence[str]) -> list[str]:
 
 
 def _places(names: Sequence[str], height: float) -> dict[str, float]:
-    """Return evenly spaced y coordinates for the middles of the names."""
+    """Return evenly spaced y coordinates for the centres of the boxes with these names."""
     room = (height - 34) / max(len(names), 1)
     return {name: 30 + room * (index + 0.5) for index, name in enumerate(names)}
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def for_students(report: Report) -> Report:
-    """Return the report without the details of hidden checks and the code changes that confirmed the causes."""
+    """Return the report without the details of hidden checks, and without the code changes that proved causes."""
     numbers = {outcome.id: number for number, outcome in enumerate((o for o in report.outcomes if o.hidden), 1)}
     return replace(
         report,

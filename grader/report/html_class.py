@@ -78,7 +78,7 @@ class Entry:
 
 @dataclass
 class Diagnosis:
-    """A cause of failed checks: its stable id, its messages with their counts, and the affected submissions."""
+    """A cause of failed checks: its stable id, its messages (with the number of each), and the affected submissions."""
 
     id: str
     texts: Counter[str] = field(default_factory=Counter)
@@ -120,7 +120,7 @@ class ClassReports:
 def read_class(folder: Path) -> ClassReports:
     """Read every report below the folder, sorted by name. Raises UsageError if there is no report."""
     if not folder.is_dir():
-        message = f"There is no folder {folder}: name the folder with the reports (from `grader check --json`)."
+        message = f"There is no folder {folder}. Give the folder that contains the reports from `grader check --json`."
         raise UsageError(message)
     found: list[tuple[Path, Report]] = []
     errors: list[int] = []

@@ -13,7 +13,7 @@ Schema 4. Every key is always present. Strings are never null unless stated belo
     points, max   sums over the outcomes; a check with status "error" counts 0 points
     outcomes      [{id, kind, title, status: "passed", "failed", "skipped" or "error", points, max, seen, expected,
                   cause, diagnosis: stable id of the cause or null, where: {file, line or null} or null, hidden,
-                  advice: true if it has no points and never fails a run, near_edge,
+                  advice: true if a failure costs no points and no pass, near_edge,
                   tried: the result of changing the cause in a copy, or an empty string,
                   change: that change as a unified diff, only if it has proved the cause}]
     seconds       {stage: wall time in s}; differs from run to run

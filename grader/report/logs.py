@@ -24,7 +24,7 @@ BEGINS = "Traceback (most recent call last):"
 
 @dataclass(frozen=True)
 class Size:
-    """The maximum sizes (bytes) of the beginning, the end and the errors of a log in a page."""
+    """The maximum number of bytes that a page shows of the beginning, the end and the errors of a log."""
 
     head: int
     tail: int

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def check_writable(file: Path | None) -> None:
-    """Check that the user may write the file, and that it is not a folder. Call this before doing any work.
+    """Check that the user may write the file, and that the path is not a folder. Call this before doing any work.
 
     Raises UsageError if the file could not be written.
     """

@@ -1,4 +1,7 @@
-"""A run as a PNG: the turtle's canvas with axes, verdict, legend and numbers. Multiple trials appear side by side."""
+"""A run as a PNG image: the turtle's canvas with axes, the verdict, a legend and some numbers.
+
+Multiple trials appear side by side.
+"""
 
 from __future__ import annotations
 

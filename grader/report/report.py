@@ -58,7 +58,7 @@ class Report:
 
     @property
     def warnings(self) -> tuple[Outcome, ...]:
-        """The failed or skipped checks without points, or an empty tuple if anything else failed."""
+        """The failed or skipped checks, or an empty tuple if one of them has points or any check has an error."""
         missing = (*self.with_status(Status.FAILED), *self.with_status(Status.SKIPPED))
         costs = any(outcome.max for outcome in missing) or self.max == 0 or self.with_status(Status.ERROR)
         return () if costs else missing
@@ -107,7 +107,7 @@ REFUTED = "The supposed cause was fixed in a copy of the submission, but the che
 
 
 def _with_try(outcome: Outcome, evidence: Evidence) -> Outcome:
-    """Return the outcome with the result of fixing its cause in a copy. A cause that was refuted is left out."""
+    """Return the outcome with the result of fixing its cause in a copy. A refuted cause is removed."""
     finding, tries = outcome.finding, evidence.tries
     if outcome.status is not Status.FAILED:
         return outcome
@@ -132,7 +132,7 @@ def _in_one_line(difference: str) -> str:
 
 
 def _why_this_clock(evidence: Evidence) -> str:
-    """Return the reason for the clock of the first trial, and a reason for each trial with a different clock."""
+    """Return the reason for the clock of the first trial, and for each clock that differs from this one."""
     first = evidence.run.recording
     if first is None and evidence.run.called is not None:
         return "No node was run. Your code was called, without a simulator."
@@ -146,7 +146,7 @@ def _why_this_clock(evidence: Evidence) -> str:
 
 
 def _why_no_clock(evidence: Evidence) -> str:
-    """Return why the first trial has no clock, with the nodes of the other trials that were run."""
+    """Return the reason why the first trial has no clock, and the names of the nodes that ran in other trials."""
     if evidence.run.overwhelmed is not None:
         return "The trial could not be finished."
     own = evidence.trial.executable

@@ -27,14 +27,14 @@ MOST_OTHERS = 40
 """The maximum number of other turtles that are drawn."""
 MOST_TICKS = 150
 TURNED_RAD = 0.1
-"""A turtle that turned by less than this (rad) counts as not having turned."""
+"""A turtle that turned by less than this (rad) is considered not to have turned."""
 TICK_M = 0.11
 """Half the length of a tick."""
 
 
 @dataclass(frozen=True)
 class Scene:
-    """The content of a drawing: `shapes` from bottom to top, the meaning of each role, and facts with numbers.
+    """The content of a drawing: the `shapes` from bottom to top, the legend's text for each role, and some facts.
 
     `notice` is the reason why there is no trajectory to draw. If there is a trajectory, `notice` is empty.
     """
@@ -160,7 +160,7 @@ def _others(recording: Recording) -> Iterator[tuple[list[Line | Ring | Arrow], s
             shapes.append(Line("other", tuple((row[1], row[2]) for row in track.rows)))
         shapes.append(Arrow("other", (x, y), theta))
     if tracks:
-        yield shapes, f"also there: {a_list([shorten(track.turtle) for track in tracks], most=2)}"
+        yield shapes, f"other turtles: {a_list([shorten(track.turtle) for track in tracks], most=2)}"
 
 
 def finite_points(trajectory: Trajectory) -> list[Point]:

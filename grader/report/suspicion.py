@@ -34,7 +34,7 @@ def suspicions(graded: Sequence[tuple[Report, int]]) -> list[str]:
 
 def _suspicion(report: Report, errors: int, judged: int) -> str:
     if report.with_status(Status.ERROR) and errors >= REPEATED and judged:
-        return f"suspicious: it could not be judged {errors} times in a row, but other submissions could"
+        return f"suspicious: {errors} attempts in a row to judge it failed, but other submissions could be judged"
     if any(outcome.finding.diagnosis == UNREADABLE for outcome in report.outcomes):
         return "the grader could not read all of it"
     return ""

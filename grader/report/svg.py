@@ -187,7 +187,7 @@ def _notice(text: str) -> str:
 def _turtle() -> str:
     """Return the drawing of a turtle at the origin that faces east.
 
-    The drawing is visible only if a script moves it.
+    The drawing is hidden until a script shows and moves it.
     """
     shell = tag("ellipse", rx=15, ry=12, fill="#2f7d32", stroke="#ffffff", stroke_width=1.5)
     pattern = tag("path", d="M-6-7 L5-7 L10 0 L5 7 L-6 7 L-10 0Z", fill="none", stroke="#b9e6a5", stroke_width=1.5)

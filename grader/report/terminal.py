@@ -68,7 +68,7 @@ def render_changes(before: Report, after: Report, console: Console) -> None:
 
 
 def early(outcomes: Sequence[Outcome]) -> list[str]:
-    """Return lines about mistakes that the files already reveal, so that users see them before the package is built."""
+    """Return one line per mistake that the files alone show, so that users see it before the package is built."""
     shown = [(outcome, outcome.finding) for outcome in outcomes if not outcome.hidden]
     lines = [
         f"{outcome.title}: {finding.observed}" + (f" ({finding.where})" if finding.where else "")
@@ -85,7 +85,7 @@ def changes(tries: Tries, console: Console) -> None:
     if tries.made or tries.stopped:
         console.print()
     for each in tries.made:
-        _line(console, Text(f"Tried for {each.check} ({each.diagnosis}): {RESULTS[each.result]}", style="bold"))
+        _line(console, Text(f"Tested for {each.check} ({each.diagnosis}): {RESULTS[each.result]}", style="bold"))
         for line in each.difference.splitlines():
             _line(console, Text(f"    {printable(line)}"))
     if tries.stopped:

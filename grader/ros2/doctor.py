@@ -22,7 +22,7 @@ _NOT_HERE = "only the course's own packages are installed; their versions are in
 
 @dataclass
 class Examination:
-    """The results of the checks of one category."""
+    """The results of all checks in one category."""
 
     category: str
     errors: list[str] = field(default_factory=list)

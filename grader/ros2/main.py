@@ -1,6 +1,6 @@
 """The command `ros2`: run the `ros2` of a sourced ROS 2 if there is one, and otherwise one of our verbs.
 
-This module imports few modules. A verb imports parts of rclpy only when it runs.
+This module imports few modules, so that it starts quickly. A verb imports parts of rclpy only when it runs.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from types import FrameType
 
 ENDS_S = 10
-"""The maximum time that a command has to leave the graph after SIGTERM or SIGHUP (s). After this time, an alarm
+"""The maximum time that a command may take to leave the graph after SIGTERM or SIGHUP (s). After this time, an alarm
 terminates the command."""
 
 

@@ -26,7 +26,7 @@ MODULES = {
     **dict.fromkeys(("launch", "security", "doctor.hello", "wtf.hello"), "unsupported"),
     **dict.fromkeys(("component.load", "component.standalone", "component.unload"), "unsupported"),
 }
-"""The names of modules that differ from the names of their groups or verbs."""
+"""Maps the name of a group or verb to the name of its module, if these names differ."""
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
 
 
@@ -110,7 +110,7 @@ def _add_words(
     chosen: str | None,
     add: Callable[[Parser, str], None],
 ) -> None:
-    """Add the words that may come next, and call `add` to add the arguments of the chosen word."""
+    """Add the words that may come next. For the word on the command line, call `add` to add its arguments."""
     width = max(map(len, about))
     words = parser.add_subparsers(
         title="Commands",

@@ -18,14 +18,15 @@ PROFILES = (
     "action_status_default",
     "best_available",
 )
-"""The names of rclpy's preset profiles, copied so that `--help` does not import rclpy. A test compares the two."""
+"""The names of rclpy's preset profiles. They are copied, so that `--help` need not import rclpy. A test compares
+both."""
 POLICIES = {
     "history": ("system_default", "keep_last", "keep_all", "unknown"),
     "reliability": ("system_default", "reliable", "best_effort", "unknown", "best_available"),
     "durability": ("system_default", "transient_local", "volatile", "unknown", "best_available"),
     "liveliness": ("system_default", "automatic", "manual_by_topic", "unknown", "best_available"),
 }
-"""The names of the policies in rclpy."""
+"""Maps each policy to the names of its values in rclpy."""
 
 
 def add_qos(parser: argparse.ArgumentParser, default: str) -> None:

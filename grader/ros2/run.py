@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _QUOTED = re.compile(r'#!"([^"]+)"(.*)')
 _UNQUOTED = re.compile(r"#!(/[^\s\"]+)(.*)")
 _LONGEST = 255
-"""The kernel reads this many bytes of the first line of a script (BINPRM_BUF_SIZE of Linux, less the last byte)."""
+"""The number of bytes of a script's first line that the kernel reads (BINPRM_BUF_SIZE of Linux, less the last byte)."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:

@@ -1,6 +1,6 @@
 """The trials of one submission. The trials start during the build, and all trials in simulated time run in parallel.
 
-The trials start one after the other, so that most of a processor is left for the build, for which all trials wait.
+The trials start one after the other, so that the build gets most of a processor, because all trials wait for the build.
 Simulated time does not depend on the speed of the machine, so parallel trials do not affect each other. A trial in wall
 time needs the processors to itself, so the caller first waits for the other trials (`settle`).
 """
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Runs(Protocol):
-    """A trial that waits for its node or is already running the node."""
+    """A trial that is waiting for its node, or is already running it."""
 
     def run(self, package: str, executable: str, tree: bytes) -> Recording:
         """Run the executable and return the recording, like `Trial.run`."""
@@ -105,11 +105,11 @@ class Ahead:
         trial.await_ready()
 
     def run(self, name: str, package: str, executable: str, tree: bytes) -> None:
-        """Start the node in a trial that is waiting for its node.
+        """Start the node of this trial.
 
         After this call, `trial(name).run` returns the recording.
 
-        A node that has already been started continues to run.
+        If the node has already been started, it continues to run.
         """
         if name not in self._under_way:
             self._under_way[name] = self._pool.submit(self._started[name].run, package, executable, tree)

@@ -1,7 +1,6 @@
-"""Take waiting messages from a subscription, or waiting requests from a service, without an executor.
+"""Take the messages that have arrived from a subscription, or the requests from a service, without an executor.
 
-An executor checks every entity and every event each time it runs. In each frame, this check takes longer than any other
-part of the frame.
+An executor checks every entity and every event each time it runs, which takes longer than any other part of a frame.
 """
 
 from __future__ import annotations
@@ -13,8 +12,8 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
 MOST_AT_ONCE = 2000
-"""The maximum number of messages or requests that are taken at once. Even if a flood of messages arrives, the clock
-must advance."""
+"""The maximum number of messages or requests that are taken at once. The clock must advance even while very many
+messages arrive."""
 
 
 def take_messages(subscription: Subscription) -> None:
@@ -28,7 +27,7 @@ def take_messages(subscription: Subscription) -> None:
 
 
 def take_requests(service: Service) -> int:
-    """Use the service's callback to answer all requests that have arrived, and return the number of requests."""
+    """Respond to all requests that have arrived with the service's callback, and return the number of requests."""
     with service.handle:
         for count in range(MOST_AT_ONCE):
             request, header = service.handle.service_take_request(service.srv_type.Request)

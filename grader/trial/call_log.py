@@ -12,12 +12,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 MOST_CALLS, MOST_ALIKE = 1000, 200
-"""The log keeps the first MOST_CALLS calls. After that, the log keeps a call only if it contains fewer than MOST_ALIKE
+"""The log keeps the first MOST_CALLS calls. After that, a call is kept only if the log contains fewer than MOST_ALIKE
 calls of services with the same last name, such as the set_pen of every turtle."""
 
 
 class CallLog:
-    """Records the calls. A thousand calls of a harmless service must not hide the next call of another service."""
+    """Records the calls. Even after thousands of calls of one service, the calls of other services are recorded."""
 
     def __init__(self, now: Callable[[], float]) -> None:
         """Create an empty log. `now` returns the time of the trial (s)."""
@@ -27,7 +27,7 @@ class CallLog:
 
     @property
     def calls(self) -> tuple[Call, ...]:
-        """The recorded calls, in the order in which they were answered or overheard."""
+        """The recorded calls. A call is added when the grader answers it, or when a silent server receives it."""
         return tuple(self._calls)
 
     def answered(self, service: str, type_name: str, request: Any, response: Any, waited_s: float) -> None:  # noqa: ANN401

@@ -1,4 +1,4 @@
-"""Called: the result of one call of a student's function, or of one run of a student's program."""
+"""Called: the result of calling a student's function, or of running a student's program, once."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 MOST_TEXT = 20_000
-"""The maximum number of characters that are kept of each output."""
+"""The maximum number of characters of each output that are kept."""
 MOST_VALUES = 10
 TOO_LATE = "too late"
 """The value of `ended` for a call that took too long."""
@@ -22,7 +22,7 @@ TOO_LATE = "too late"
 class Called:
     """The result of the call with this id.
 
-    `ended` says how the process ended: "exit 0", "signal 9", TOO_LATE, or an empty string if this is unknown.
+    `ended` describes how the process ended: "exit 0", "signal 9", TOO_LATE, or an empty string if this is unknown.
     `values` are the numbers that a function returned, if there are at most MOST_VALUES. `kind` is the type of the
     returned value.
     """
@@ -36,7 +36,7 @@ class Called:
 
 
 def called_from_json(data: dict[str, Any]) -> Called:
-    """Return the result that `data` describes. Raises ValueError, TypeError or KeyError if `data` is invalid."""
+    """Create the result from plain data. Raises ValueError, TypeError or KeyError if `data` is invalid."""
     values = data["values"]
     try:
         numbers = None if values is None else tuple(float(each) for each in values[:MOST_VALUES])

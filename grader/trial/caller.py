@@ -17,15 +17,16 @@ if TYPE_CHECKING:
     from grader.trial.inputs import PlannedCall
 
 LATE_S = 1.0
-"""The maximum time that a call waits for its service, on the trial's clock (s)."""
+"""The maximum time that the trial waits for the service of a call, on the trial's clock (s)."""
 FOUND_S = 0.5
-"""The maximum wall time (s) that each call waits for discovery while simulated time stands still."""
+"""The maximum wall time (s) that the trial waits until it discovers the service of a call, while simulated time stands
+still."""
 
 
 class Caller:
     """Makes each service call at the time that the exercise sets.
 
-    The clients exist from the start, so that discovery is complete before the first call.
+    The clients are created at the start, so that discovery is usually complete before the first call.
     """
 
     def __init__(self, node: Node, calls: tuple[PlannedCall, ...], now: Callable[[], float]) -> None:
@@ -57,7 +58,7 @@ class Caller:
     def _given_up(
         self, call: PlannedCall, client: Client, now_s: float, spin: Callable[[float], object] | None
     ) -> bool:
-        """Wait for the service. Return True when the service is available or the waiting time is over."""
+        """Wait for the service. Return whether it is available or the maximum time has passed."""
         until = time.monotonic() + FOUND_S
         while spin is not None and id(call) not in self._first_s and time.monotonic() < until:
             spin(0.01)

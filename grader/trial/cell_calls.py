@@ -2,9 +2,9 @@
 
 This file runs as a separate script. The script reads one line of JSON (`calls`, `script`, `function`, `python_path`,
 `env`, `install`, `files`) and then the install tree, a tar stream, from standard input. The script writes one line of
-JSON for each call. A call cannot write such lines: the process is not dumpable, so its child processes cannot open its
-standard output, and it is the first process of the cell, so that no other process has this standard output. Otherwise,
-one call could change the result of another call.
+JSON for each call. A call cannot write such lines itself: the process is not dumpable, so its child processes cannot
+open its standard output, and it is the first process of the cell, so that no other process has this standard output.
+Otherwise, one call could change the result of another call.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from pathlib import Path
 from typing import Any
 
 FUNCTION_CPU_S = 2
-"""The maximum CPU time of one call of a function (s). A fit in plain Python takes much less.
+"""The maximum CPU time of one call of a function (s). Fitting a circle in plain Python takes much less.
 
 Unlike wall time, CPU time does not depend on the load of the machine.
 """

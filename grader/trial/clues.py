@@ -2,8 +2,8 @@
 
 In simulated time, a node that follows wall time would get a wrong verdict.
 
-The search is limited to the executable's module and the modules of the package that it imports. A sleep in another node
-of the package does not matter.
+The search is limited to the executable's module and the modules of the package that it imports. A call of sleep in
+another node of the package does not matter.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ _NAMES = {
 _CLOCKS = {"Clock", "ROSClock"}
 """Classes of clocks. A clock that the program creates itself does not follow /clock."""
 _TIMELESS = {"threading.Lock", "threading.RLock", "threading.local", "threading.current_thread", "threading.get_ident"}
-"""Names that multi-threaded nodes need. None of them waits for time to pass."""
+"""Names from `threading` that are not clues, because none of them waits for time to pass."""
 MOST_NODES = 30
-"""The size of the largest expression that is shown in full (AST nodes)."""
+"""The maximum size of an expression that is shown in full (number of AST nodes)."""
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ forks of fork servers (grader.trial.fork_server). Without a sandbox, both are ne
 JSON lines with the grader's own process over its standard streams. The first line of input describes the trial. The
 conductor answers {"ready": true} when the simulator and the launcher are ready. The second line of input says what to
 start, and the install tree follows this line. The last line of output is {"recording": {...}}, {"doubt": "...",
-"by_chance": false} if a trial with the other clock must decide, {"overwhelmed": "..."} if the node made the simulator
+"by_chance": false} if a trial with the other clock is needed, {"overwhelmed": "..."} if the node made the simulator
 fail, {"refused": "..."} if the machine refused something while the node was running, or {"fault": "..."} if the
 simulator failed for another reason.
 """
@@ -46,14 +46,15 @@ if TYPE_CHECKING:
 LAUNCHER = Path(__file__).absolute().with_name("launcher.py")
 BUSY = 0.5
 BUSY_S = 0.04
-"""The node itself caused a stall if its processes worked during at least the fraction BUSY of the stall, and for at
-least BUSY_S (s). The node caused all stalls if its processes worked during at least the fraction BUSY of the whole
+"""The node itself caused a stall if its processes used a processor for at least the fraction BUSY of the stall, and for
+at least BUSY_S (s). The node caused all stalls if its processes used a processor for at least the fraction BUSY of the
 trial."""
 REQUESTS_HZ = 500
 """If the simulator answers more requests from the node than this (Hz), the node caused all stalls, on any machine.
 
-On a crowded machine, CPU time alone does not show that the node is the cause, because the simulator and the node each
-get only little of it. For comparison, a node that makes three requests per pose makes 190 per second.
+When other programs keep the machine busy, CPU time alone does not show that the node is the cause, because the
+simulator and the node each get little of it. For comparison, a node that sends three requests per pose sends 190
+requests per second.
 """
 MESSAGES_HZ = 1000
 """If nodes other than the simulator send more messages than this (Hz), the node caused all stalls."""
@@ -64,7 +65,7 @@ together, they were ready to run for at least the fraction STARTED of the time o
 STARTED_LEAST times the length of the trial. A single process cannot reach these limits.
 """
 SIMULATORS = ("/pose", "/color_sensor")
-"""The endings of the topics on which the simulator publishes, for each turtle and in each frame."""
+"""The last parts of the names of the topics on which the simulator publishes in each frame, for each turtle."""
 
 
 class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grader
@@ -72,11 +73,13 @@ class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grad
 
 
 class RefusedError(Exception):
-    """The machine refused a request of the simulator, such as to open a file, which is never the node's fault."""
+    """The machine refused something to the simulator, such as opening a file, for which the node is never the cause."""
 
 
 def main(nodes: socket.socket | None = None) -> None:
-    """Conduct the trial that is described on standard input. `nodes` is the socket on which to ask for nodes.
+    """Conduct the trial that is described on standard input.
+
+    `nodes` is the socket for requesting nodes from the fork server.
 
     Without this socket, each node is a new process that is not in a cell.
     """
@@ -188,7 +191,7 @@ def _run(trial: SimulatedTrial | WallTrial, duration_s: float) -> float:
 
 
 def _own_doing(stall: tuple[float, float], node: NodeGroup, trial: SimulatedTrial | WallTrial) -> bool:
-    """Return whether the node caused the stall, through its own work or through work that it gave the simulator."""
+    """Return whether the node caused the stall, by its own work or by the work that it caused in the simulator."""
     now_s = trial.now()
     offset = time.monotonic() - now_s
     begin, end = stall

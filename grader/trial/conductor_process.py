@@ -29,8 +29,8 @@ MOST_MEMORY = 3 * 1024 * MIB
 """The maximum address space of the conductor (bytes). The conductor itself needs 1 GiB. Messages from the node can fill
 the rest."""
 MOST_ERRORS = 64 * MIB
-"""The maximum size of a file that the conductor writes (bytes). Its standard error is a file outside of the room, and
-the messages of a node can make the libraries of ROS 2 print errors."""
+"""The maximum size of a file that the conductor writes (bytes). The limit is needed because its standard error is a
+file outside the room, and the messages of a node can make the libraries of ROS 2 print errors."""
 
 _PLAIN = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin"}
 
@@ -52,7 +52,7 @@ class ConductorProcess(ABC):
                 self._signal(signal.SIGSTOP)
 
     def resume(self) -> None:
-        """Let the conductor continue, and do not suspend it again."""
+        """Let the conductor continue. After that, it cannot be suspended again."""
         with self._changing:
             if self._may_be_suspended:
                 self._may_be_suspended = False
@@ -70,7 +70,7 @@ class ConductorProcess(ABC):
 
     @abstractmethod
     def pids(self) -> tuple[int, ...]:
-        """Return the ids of processes that, together with their descendants, make up the whole trial."""
+        """Return the ids of the processes that, together with their descendants, are all processes of the trial."""
 
     @abstractmethod
     def wait(self, timeout: float) -> int:
@@ -92,7 +92,7 @@ class ConductorProcess(ABC):
 
 
 class PlainConductor(ConductorProcess):
-    """A conductor without a sandbox. It leads a process group."""
+    """A conductor without a sandbox, which is the leader of a process group."""
 
     def __init__(self, ros: installation.Ros, home: Path, domain: int | None, errors: IO[bytes]) -> None:
         """Start the conductor, with this folder as HOME and in this ROS domain."""
@@ -133,10 +133,10 @@ class ConductorInRoom(ConductorProcess):
     """A conductor that is a fork (grader.trial.fork_server) in a new room."""
 
     def __init__(self, ros: installation.Ros, nodes: int, errors: IO[bytes]) -> None:
-        """Make the room, and ask the fork servers for the conductor and for `nodes` nodes.
+        """Create the room, and request the conductor and `nodes` nodes from the fork servers.
 
         Raises:
-            HolderError: bubblewrap could not make the room.
+            HolderError: bubblewrap could not create the room.
         """
         super().__init__()
         with ExitStack() as stack:

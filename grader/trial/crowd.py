@@ -10,28 +10,28 @@ from grader.trial.node_group import GroupThreads
 from grader.trial.rest import GoneError
 
 STALL_S = 0.03
-"""If the simulator or the node had to wait longer than this between two frames (s), arrival times cannot be trusted."""
+"""If the simulator or the node had to wait longer than this between two frames (s), arrival times are unreliable."""
 OWN_DOING = 0.5
-"""A node that worked for at least this share of the time delayed itself, so the delay is not a stall. Work that the
-node gives the simulator counts as work of the node: a simulator that answers thousands of calls is late, but not
-because of the machine.
+"""If a node used a processor for at least this share of the time, it delayed itself, so the delay is not a stall. Work
+that the node causes in the simulator counts as work of the node: if the simulator answers thousands of calls, it is
+late, but not because of the machine.
 """
 SIMULATOR = 0.3
-"""The share of a processor that the simulator may use for itself. In measurements, the simulator uses a tenth of a
-processor. Any CPU time beyond this share counts as work for the node."""
+"""The share of a processor that the simulator may use for itself. It was measured to use a tenth of a processor. CPU
+time beyond this share counts as work for the node."""
 OTHERS = 0.2
-"""Other programs use the machine if they take at least this share of one processor."""
+"""Other programs are considered to use the machine if they take at least this share of one processor."""
 WAITED = 0.05
-"""The machine is crowded if other programs use it and the simulator and the node together wait for a processor for
-at least this share of the time."""
+"""The machine is crowded if other programs use it and, in addition, the simulator and the node together wait for a
+processor for at least this share of the time."""
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
 
 def is_crowded(waited_s: float, others_s: float, *, of_s: float) -> bool:
-    """Return whether other programs use so much of the machine that the trial is disturbed.
+    """Return whether other programs keep the machine so busy that they disturb the trial.
 
-    In a period of `of_s` (s), the other programs worked for `others_s` (s), and the simulator and the node waited for
-    `waited_s` (s).
+    In a period of `of_s` (s), the other programs used `others_s` (s) of CPU time, and the simulator and the node waited
+    for a processor for `waited_s` (s).
     """
     return waited_s >= WAITED * of_s and others_s >= OTHERS * of_s
 
@@ -39,8 +39,9 @@ def is_crowded(waited_s: float, others_s: float, *, of_s: float) -> bool:
 def is_machines(stalled_s: float, others_s: float) -> bool:
     """Return whether the machine can be at fault for stalls of this total length (s).
 
-    A thread waits for a processor only while something else uses the processor. If the other programs worked for a
-    shorter time than the stalls lasted, the threads of the node kept each other waiting, as when a node floods a topic.
+    A thread waits for a processor only while something else uses the processor. If the other programs used less CPU
+    time than the stalls lasted, the threads of the node delayed each other, for example in a node that publishes
+    without a pause.
     """
     return others_s >= stalled_s
 
@@ -87,7 +88,7 @@ class Stalls:
         return (begun_s, now_s) if max(owed) > STALL_S else None
 
     def worked_for_node_s(self, begin_s: float, end_s: float) -> float:
-        """Return the CPU time (s) that the simulator used for the node, and not for itself, between two times."""
+        """Return the CPU time (s) that the simulator used between two times because of the node."""
         return sum(spent_s for at_s, spent_s in self._for_node if begin_s < at_s <= end_s)
 
 

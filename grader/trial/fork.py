@@ -21,7 +21,7 @@ STATUS = struct.Struct("<i")
 
 
 class Fork:
-    """A process that a fork server has forked, or will fork. Its methods are those of `subprocess.Popen`."""
+    """A process that a fork server has forked, or will fork, with methods like those of `subprocess.Popen`."""
 
     def __init__(self, result: socket.socket) -> None:
         """Watch the forked process. Its fork server has the other end of the socket `result`."""

@@ -1,4 +1,4 @@
-"""Ask the fork servers of this process (grader.trial.fork_server) for conductors and nodes."""
+"""Request conductors and nodes from the fork servers of this process (grader.trial.fork_server)."""
 
 from __future__ import annotations
 
@@ -26,8 +26,9 @@ beginners but would slow down the simulator in every frame."""
 
 
 NOBODYS_HOME = Path("/nonexistent")
-"""The HOME of a server, which only root can create. LTTng, which rclpy loads, obeys any program that listens on a
-socket in HOME, and a folder in /tmp could belong to another user. Forks get a HOME of their own."""
+"""The HOME of a server, which only root can create. LTTng, which rclpy loads, follows the instructions of any program
+that listens on a socket in HOME, so a folder in /tmp, which another user could create, is not safe. Each fork gets a
+HOME of its own."""
 
 
 class ForkServer:

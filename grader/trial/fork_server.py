@@ -1,9 +1,9 @@
-"""Fork conductors or nodes from a process that has already imported rclpy, so that a trial imports nothing.
+"""Fork conductors or nodes from a process that has already imported rclpy, so that a trial need not import it.
 
 A grader has two fork servers: one forks the conductors of its trials, and the other forks the nodes
-(grader.trial.launcher). They are separate, so that a student's node does not know the memory layout of the conductor,
-which reads the messages of the node. A server has no data about the trials. Its forks enter the sandbox before they
-read anything, and student code never runs outside the sandbox.
+(grader.trial.launcher). They are separate, because the conductor reads the messages of a student's node, which must not
+be able to find out the memory layout of the conductor. A server has no data about the trials. Its forks enter the
+sandbox before they read anything, and student code never runs outside the sandbox.
 
 The server runs outside the sandbox. It reads requests of the grader from a socket, each with descriptors:
 
@@ -44,15 +44,15 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
 NODES_SOCKET = 3
-"""The descriptor of the socket on which a conductor asks for nodes."""
+"""The descriptor of the socket on which a conductor requests nodes."""
 MOST_REQUEST = 64 * 1024
 """The maximum size of a request (bytes)."""
 CONDUCTORS, NODES = 6, 5
 """The number of descriptors that are sent with the request for a conductor, and with the cell of a node."""
 CELLS_USER = 1000
-"""The user id in a cell (bubblewrap.cell)."""
+"""The user id of the processes in a cell (bubblewrap.cell)."""
 _AHEAD = ("grader.trial.conductor", "grader.trial.simulated", "grader.trial.wall", "grader.trial.without_node")
-"""The modules of a conductor, which import all other modules that a conductor needs."""
+"""The main modules of a conductor. They import all other modules that a conductor needs."""
 
 
 def main() -> None:
@@ -84,9 +84,9 @@ def main() -> None:
 
 @contextmanager
 def _exit_on_errors() -> Iterator[None]:
-    """End this process if there is an error.
+    """If an error occurs, print one line and end this process.
 
-    There is no traceback, because Python would read source files, and perhaps import modules, from the disk that this
+    No traceback is printed, because Python would read source files, and perhaps import modules, from the disk that this
     process sees. This may be a disk that student code has made (entering.enter), and the process may run as root.
     """
     try:
@@ -140,7 +140,7 @@ def _forked() -> bool:
 
 
 def _enter_room(order: dict[str, Any], problem: str, room: int, *passed: int) -> None:
-    """Become a process in the room."""
+    """Turn this process into a process in the room."""
     *streams, result = passed
     _report_to(streams[2], problem)
     entering.enter(room, cell=False)
@@ -152,7 +152,7 @@ def _enter_room(order: dict[str, Any], problem: str, room: int, *passed: int) ->
 
 
 def _enter_cell(order: dict[str, Any], problem: str, conductors: int, result: int) -> None:
-    """Become a process in the cell of a node."""
+    """Turn this process into a process in the cell of a node."""
     entering.pass_descriptors(socket.socket(fileno=result), STARTED, [pidfd_open(os.getpid())])
     descriptors = _next_node(socket.socket(fileno=conductors), order["nodes"])
     cell, *streams, its_result = descriptors

@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from grader.turtlesim.turtle import Pen, Rgb
 
 MOST_DRAWS = 200
-"""After this number of random draws, a trajectory is accepted even if it is too close to a wall."""
+"""After this number of random draws, the trajectory is accepted even if it is too close to a wall."""
 
 
 @dataclass(frozen=True)
 class PlannedCall:
-    """At `at_s` (s), the trial calls this service of the node."""
+    """A service of the node that the trial calls at the time `at_s` (s)."""
 
     at_s: float
     service: str
@@ -36,8 +36,9 @@ class PlannedCall:
 class Inputs:
     """The inputs of a trial.
 
-    `drives` contains start times (s) with speeds (m/s, rad/s). `arguments` are additional ROS arguments of the node,
-    and `params_file` is the text of a file with parameters. All other fields have the same meaning as in Scenario.
+    `drives` contains rows of a start time (s) and the speeds from that time on (m/s, rad/s). `arguments` are additional
+    ROS arguments of the node, and `params_file` is the text of a file with parameters. All other fields have the same
+    meaning as in Scenario.
     """
 
     drives: tuple[tuple[float, float, float], ...] = ()
@@ -109,7 +110,7 @@ def _params_file(parameters: Mapping[str, Setting]) -> str:
 
 
 class _NoPaper:
-    """A canvas that draws nothing, because only the position of the turtle matters here."""
+    """A canvas that draws nothing, because only the position of the turtle is needed."""
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
         """Draw nothing."""

@@ -41,8 +41,8 @@ _AHEAD = (
     "type_description_interfaces.msg",
 )
 POSTPONED = ("numpy", "yaml")
-"""Modules that rclpy and the messages import, and that most nodes never use. Half of the CPU time of importing rclpy is
-spent on these modules.
+"""Modules that rclpy and the messages import, and that most nodes never use. They account for half of the CPU time that
+importing rclpy takes.
 """
 _NOT_NEEDED = "rosidl_generator_py.generate_py_impl"
 """A module that creates Python code from interfaces and imports a parser. Messages can be used without this module."""
@@ -51,7 +51,7 @@ _TYPES_AHEAD = (("geometry_msgs.msg", "Twist"), ("rosgraph_msgs.msg", "Clock"), 
 
 
 class Postponed(types.ModuleType):
-    """A module that is imported when one of its names is used for the first time."""
+    """A placeholder for a module that is imported when one of its names is used for the first time."""
 
     def load(self) -> types.ModuleType:
         """Import the module now. Return the module."""
@@ -71,8 +71,8 @@ class Postponed(types.ModuleType):
 def postponed(names: Iterable[str] = POSTPONED) -> Iterator[list[Postponed]]:
     """Postpone the import of these modules by other modules that are imported inside the context.
 
-    Modules that are imported after the context get the real modules. Inside the context, the part of ROS 2 that creates
-    the code of messages is not imported at all.
+    Modules that are imported later get the real modules. Inside the context, the part of ROS 2 that generates the code
+    of messages is not imported at all.
     """
     modules = [Postponed(name) for name in names if name not in sys.modules]
     sys.modules.update({module.__name__: module for module in modules})
@@ -88,7 +88,7 @@ def postponed(names: Iterable[str] = POSTPONED) -> Iterator[list[Postponed]]:
 
 
 def import_ahead() -> list[Postponed]:
-    """Import the modules that almost every node needs. Return the modules that few nodes need."""
+    """Import the modules that almost every node needs. Return the placeholders of modules that few nodes need."""
     with postponed() as modules:
         for name in _AHEAD:
             importlib.import_module(name)

@@ -28,7 +28,7 @@ _ENDS_S = 5.0
 
 
 class LaunchError(Exception):
-    """The launcher itself failed. The machine is at fault, since none of the student's code had run."""
+    """The launcher itself failed. The machine is considered the cause, since none of the student's code has run."""
 
 
 def await_launcher(stdout: IO[bytes], stderr: IO[bytes] | None = None) -> None:
@@ -57,7 +57,9 @@ class Launcher(ABC):
 
     @abstractmethod
     def await_started(self) -> tuple[int, ...]:
-        """Wait until the process exists. Return its process id, and the id of the ancestor of orphans in the cell.
+        """Wait until the process exists.
+
+        Return its process id, and the id of the process that becomes the parent of orphans in the cell.
 
         Raises:
             LaunchError: the process could not be started.
@@ -126,7 +128,7 @@ class LauncherInCell(Launcher):
     in_cell = True
 
     def __init__(self, view: bubblewrap.View, limits: Limits, nodes: socket.socket) -> None:
-        """Make the cell, and ask for a fork on the socket `nodes`."""
+        """Create the cell, and request a fork on the socket `nodes`."""
         with call_filter() as filter_fd:
             self._cell = Holder(
                 lambda info_fd: bubblewrap.cell(

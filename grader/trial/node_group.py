@@ -57,7 +57,7 @@ class NodeGroup:
                 process.escalate()
 
     def read_output(self, now_s: float) -> int:
-        """Store the output with the arrival time `now_s`, and return the number of bytes."""
+        """Read and store the new output with the arrival time `now_s`, and return the number of bytes."""
         return sum(process.read_output(now_s) for process in self.processes)
 
     def waited_to_write(self, size: int) -> bool:

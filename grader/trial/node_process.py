@@ -24,16 +24,17 @@ if TYPE_CHECKING:
 KEPT = 256 * 1024
 """The maximum number of bytes of each output stream that are kept."""
 PIPE = 1024 * 1024
-"""The size of the node's pipes (bytes). The size is large, so that the node does not wait for a reader after each
-line."""
+"""The size of the node's pipes (bytes). The size is large, so that the node need not wait until the grader has read its
+output."""
 FULL = 0.25
-"""A node that wrote at most this share of the pipe size has not waited for a full pipe. The kernel may fill each page
-only halfway."""
+"""A node that wrote at most this share of the pipe's size did not have to wait because of a full pipe. The kernel may
+fill each page only halfway."""
 STOP_S = 3.0
 """The maximum time that the node may take to exit after SIGINT (s). After this time, the grader sends SIGTERM and, 1 s
 later, SIGKILL. The time for which the node waits for a processor does not count."""
 MOST_WAITED_S = 12.0
-"""Of the time for which the node waits for a processor, at most this much (s) does not count."""
+"""The maximum waiting time (s) that does not count: any further time for which the node waits for a processor
+counts."""
 
 
 def enlarge(pipe: int) -> int:
@@ -89,10 +90,7 @@ class NodeProcess:
     """
 
     def __init__(self, launcher: Launcher, limits: Limits) -> None:
-        """Take over a launcher that has been started.
-
-        `limits` apply to all processes of the node together.
-        """
+        """Use a launcher that has been started. The `limits` apply to all processes of the node together."""
         self._launcher = launcher
         self._limits = limits
         self._guard: Guard | None = None
@@ -144,7 +142,7 @@ class NodeProcess:
         return self._guard.ready_s(but=self.pid) if self._guard is not None else 0.0
 
     def read_output(self, now_s: float) -> int:
-        """Store the output of the node with the arrival time `now_s`, and return the number of bytes."""
+        """Read and store the node's new output with the arrival time `now_s`, and return the number of bytes."""
         return sum(stream.read(now_s) for stream in self._streams)
 
     def waited_to_write(self, size: int) -> bool:
@@ -191,7 +189,7 @@ class NodeProcess:
         return ProcessEnd(self._by, self._launcher.poll(), now_s, self._stopping_s(), self._out_of)  # type: ignore[arg-type]
 
     def _stopping_s(self) -> float | None:
-        """Return the time since SIGINT without the time for which the node waited for a processor (s), or None."""
+        """Return the time since SIGINT (s), less the time for which the node waited for a processor, or None."""
         if self._interrupted is None:
             return None
         passed_s = time.monotonic() - self._interrupted

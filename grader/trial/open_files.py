@@ -1,4 +1,4 @@
-"""The number of files that the conductor may open. The conductor opens two files for each thread of a node."""
+"""The limit on the number of files that the conductor may open. It opens two files for each thread of a node."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import resource
 from grader.common.system_errors import sentence
 
 LEAST = 256
-"""With a lower limit, the conductor would reach the limit even with an ordinary node."""
+"""With a lower limit, the conductor could not even run an ordinary node."""
 _USUAL = 1024
 
 

@@ -1,4 +1,7 @@
-"""Time limits for a node. The limits apply to CPU time and to sleep, so the load of the machine has no effect."""
+"""Time limits for a node.
+
+The limits apply to CPU time and to the time for which the node sleeps, so the load of the machine has no effect.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,8 @@ HANDSHAKE_S = 100.0
 """The maximum wall time until a node waits for its clock (s). A node can reach this limit only on a crowded machine.
 The limit for the whole trial is slightly higher (trial.py)."""
 TICK_CPU_S = 1.0
-"""The maximum CPU time (s) that a node may use on one frame. Beyond that, the node is considered never idle."""
+"""The maximum CPU time (s) that a node may use on one frame. If a node uses more, it is assumed never to become
+idle."""
 TICK_S = 30.0
 SHARED = 0.1
 """If a second thread did at least this share of the work, several threads kept the node from becoming idle."""
@@ -26,8 +30,8 @@ REQUEST_EVERY_S = 0.02
 class HandshakePatience:
     """The time limit for a node to reach the point at which it waits for its clock.
 
-    Time during which the node works or waits for the grader does not count. `limit_s` is the maximum time that the node
-    may sleep, and the maximum CPU time that it may use (s).
+    `limit_s` is the maximum time that the node may sleep (s), and also the maximum CPU time that it may use (s). Time
+    in which the node waits for the grader to read its output does not count as sleep.
     """
 
     def __init__(self, now_s: float, limit_s: float = HANDSHAKE_LIMIT_S) -> None:
@@ -63,7 +67,7 @@ class TickPatience:
         self._request_s = now_s + REQUEST_EVERY_S
 
     def ended(self, now_s: float) -> bool:
-        """Return whether the node has used too much CPU time, or the wall time is over.
+        """Return whether the node has used too much CPU time, or the maximum wall time has passed.
 
         CPU time counts only from the time when it is read for the first time.
         """

@@ -26,7 +26,7 @@ OWN_NODES = ("/turtlesim", f"{OWN_NAMESPACE}/recorder")
 NAMESAKE = " (not the simulator)"
 """This suffix is added to the name of a student's node if one of the grader's nodes has the same name."""
 NAMELESS = "_NODE_NAME_UNKNOWN_"
-"""The name of a node whose endpoints were found before the node itself."""
+"""The name that ROS 2 reports for a node whose endpoints were discovered before the node itself."""
 _LEVELS = {10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
 
 # A node that keeps creating topics or messages must not fill the memory of the grader.
@@ -40,10 +40,10 @@ OF_EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
 MOST_OBSERVED = 50_000
 """The maximum number of nodes and endpoints in all snapshots together."""
 MOST_MESSAGES = 20_000
-"""The maximum number of messages on a judged topic, and on all other topics together."""
+"""The maximum number of messages on one judged topic, and on all other topics together."""
 MOST_BYTES = 32 * 1024 * 1024
 MOST_JUDGED_BYTES = 4 * 1024 * 1024
-"""The maximum total size of the messages on all other topics together, and on a judged topic (bytes)."""
+"""The maximum total size (bytes) of the messages on all topics that are not judged, and on one judged topic."""
 
 
 class Recorder(Node):
@@ -187,9 +187,9 @@ class Recorder(Node):
     def _endpoints(self, kind: Literal["publisher", "subscription"], topic: str, beside: object) -> set[Endpoint]:
         """Return the endpoints of other nodes on a topic.
 
-        A query takes fifty times as long as counting. Therefore, the endpoints are queried again only if their number
-        or `beside` has changed. `beside` is everything else in the graph that shows whether the endpoints may have
-        changed.
+        A query takes fifty times as long as counting the endpoints. Therefore, they are queried again only if their
+        number or `beside` has changed. `beside` is everything else in the graph that shows whether the endpoints may
+        have changed.
         """
         publishes = kind == "publisher"
         amount = self.count_publishers(topic) if publishes else self.count_subscribers(topic)
@@ -221,7 +221,7 @@ class Recorder(Node):
     def _own_participant(self) -> bytes:
         """Return the recorder's participant.
 
-        No other node can interfere, since the student's node does not exist yet.
+        No other node can publish on the topic that identifies it, since the student's node does not exist yet.
         """
         topic = f"{OWN_NAMESPACE}/whoami"
         publisher = self.create_publisher(Log, topic, 1)

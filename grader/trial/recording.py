@@ -197,18 +197,18 @@ class Recording:
     """The number of topics, nodes, endpoints and snapshots of the graph that were not kept because there were too
     many."""
     doubts: tuple[str, ...] = ()
-    """The reasons why simulated time may misjudge this node. Empty if simulated time can be trusted."""
+    """The reasons why simulated time may misjudge this node. The tuple is empty if simulated time is reliable."""
     seconds: dict[str, float] = field(default_factory=dict)
     """The wall time of each part of the trial: discovery, run, stop (s)."""
     stalls: tuple[tuple[float, float], ...] = ()
     """The periods of a trial in wall time in which the machine gave no processor time to the simulator or the node:
     (from, to) on the trial's clock (s)."""
     crowded: bool = False
-    """Whether other programs used the processors so much that the simulator and the node often had to wait (wall
-    time)."""
+    """Whether, in a trial in wall time, other programs used the processors so much that the simulator and the node
+    often had to wait."""
 
     def seen_from(self, executable: str) -> Recording:
-        """Return the recording from the viewpoint of an additional node, with the output and end of that node.
+        """Return the recording, but with the output and the end of an additional node.
 
         Raises KeyError if no additional node ran this executable.
         """
@@ -221,7 +221,7 @@ class Recording:
         return sum(end - begin for begin, end in self.stalls)
 
     def stalled(self, t_s: float) -> bool:
-        """Return whether this time was in a stall or right after a stall.
+        """Return whether this time was during a stall or right after a stall.
 
         At such times, the arrival time of a message depends more on the machine than on the node.
         """

@@ -1,4 +1,4 @@
-"""Rest: detect whether a process is idle, by reading /proc, which does not disturb the process.
+"""Rest: detect whether a process is idle, by reading /proc, which does not affect the process.
 
 Simulated time advances only while the node is idle: every thread sleeps, and no thread has run between two
 observations. If a thread ran between two observations, a counter in its file /proc/.../schedstat has changed. A thread
@@ -21,9 +21,10 @@ if TYPE_CHECKING:
 HIDDEN = "hidden"
 """The value of `call` for a thread whose process forbids inspection (PR_SET_DUMPABLE of prctl(2))."""
 DDS = "dds."
-"""The prefix of the thread names of Fast DDS."""
+"""The prefix of the names of Fast DDS's threads."""
 _DDS_TIMERS = "dds.ev"
-"""The thread for the timers of Fast DDS. This thread sends data but does not receive any."""
+"""The prefix of the name of the thread that runs the timers of Fast DDS. This thread sends data but does not receive
+any."""
 _SLEEPING = ord("S")
 # The system calls that only wait for time to pass, by their numbers on x86-64.
 _SLEEPS = {35: "nanosleep", 230: "clock_nanosleep"}
@@ -46,7 +47,9 @@ class GoneError(Exception):
 
 
 class DoubtError(Exception):
-    """The process may follow wall time, so its idleness proves nothing. The message gives the reason.
+    """The process may follow wall time, so simulated time cannot rely on the process being idle.
+
+    The message gives the reason.
 
     `by_chance` is true if another run of the same program might not raise this error.
     """

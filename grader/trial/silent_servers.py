@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from grader.trial.recorder import Recorder
 
 MOST_SERVICES = 20
-"""The maximum number of services with a silent server. A node must not fill the memory of the grader."""
+"""The maximum number of services with a silent server. A node must not be able to fill the memory of the grader."""
 
 
 class SilentServers:

@@ -38,15 +38,15 @@ leave no gap of this length for many seconds."""
 WAKE_S = 1.0
 """The maximum time to wait until the node notices /clock (s). A node that uses create_rate never wakes up at time 0."""
 MOST_CPU = 2.0
-"""If the CPU time of a node exceeds this multiple of the trial's duration, the node is also too slow in wall time, so a
-trial in wall time decides."""
+"""If the CPU time of a node exceeds this multiple of the trial's duration, the node would also be too slow in wall
+time, so its result must come from a trial in wall time."""
 GRAPH_EVERY = 31
 """The number of frames between two checks of the graph and of the DDS events: half a second."""
 OWN_EVERY = 5
 """The number of frames between two checks for work that no message announces, such as our own log lines and the steps
 of an action."""
 WAITS_EVERY = 7
-"""The number of frames between two checks of the waits of the node's threads."""
+"""The number of frames between two checks of what the node's threads are waiting for."""
 ENDING_S = 0.5
 """The time limit for a sleeping node to exit (s of wall time). If the node has not exited by then, its sleep is taken
 as a sign that it follows wall time."""
@@ -54,7 +54,7 @@ _POLL_S = 0.00005
 
 
 class SimulatedTrial(Simulation):
-    """A simulation that publishes /clock, which the node follows."""
+    """A simulation that publishes /clock, whose time the node follows."""
 
     held = True
 
@@ -140,7 +140,7 @@ class SimulatedTrial(Simulation):
         self._handled: tuple[bytes, ...] = ()
 
     def _rest(self, patience: TickPatience) -> bool:
-        """Wait until neither the node nor the simulator has anything left to do before the clock advances.
+        """Before the clock advances, wait until neither the node nor the simulator has anything left to do.
 
         Return False if the node never becomes idle.
         """
@@ -179,9 +179,9 @@ class SimulatedTrial(Simulation):
         while True:
             if not self._rest(patience):
                 if patience.several_worked():
-                    self._doubt("the node never comes to rest: its threads keep waking each other up", by_chance=True)
+                    self._doubt("the node never becomes idle: its threads keep waking each other up", by_chance=True)
                 else:
-                    self._doubt("the node is busy all the time: it has a loop without a pause")
+                    self._doubt("the node is always busy: it seems to have a loop without a pause")
                 return
             # The simulator's receiving threads have not run since the last time, so no new message has arrived.
             if self._received == self._handled:
@@ -208,7 +208,7 @@ class SimulatedTrial(Simulation):
             asleep, worked_s = self._node.look().asleep, self._node.run_time_s()
             wrote = self.node.read_output(0.0) > 0
             if patience.ended(time.monotonic(), asleep=asleep, wrote=wrote, worked_s=worked_s):
-                self._doubt("the node did not come to rest before the clock could start")
+                self._doubt("the node did not become idle, so the clock could not start")
                 return
         self._watch()  # threads get their names when they first run
         self._wake()
@@ -243,7 +243,7 @@ class SimulatedTrial(Simulation):
     def _wake(self) -> None:
         """Publish time 0 until each node has woken up twice.
 
-        When each node has woken up twice, the simulator and the nodes have discovered each other.
+        After that, the simulator and the nodes have discovered each other.
         """
         rest = GroupThreads(self.node.pids, not_of_dds)
         try:

@@ -40,8 +40,8 @@ PUBLISHED = {"/turtle1/pose": "turtlesim/msg/Pose", "/turtle1/color_sensor": "tu
 _MOST_AT_ONCE_S = 0.5
 """The maximum time for which callbacks run before the trial checks its clock again (s)."""
 _MOST_INTERVENTIONS = 1000
-"""The maximum number of interventions that are kept in order. After this number, an intervention is kept only
-if its name is new; all others are counted."""
+"""The maximum number of interventions (service and action calls) that are kept in order. After this number, an
+intervention is kept only if its name is new. All others are only counted."""
 
 
 class Simulation:
@@ -156,7 +156,7 @@ class Simulation:
         return alone_s is not None and self._in_company_s is not None and now_s - self._in_company_s >= alone_s
 
     def spin(self, timeout_s: float = 0.0) -> list[object]:
-        """Handle everything that has arrived, waiting up to `timeout_s` if there is nothing yet.
+        """Handle everything that has arrived. If nothing has arrived, wait up to `timeout_s` (s).
 
         Return the entities whose messages or requests were handled.
 
@@ -174,7 +174,7 @@ class Simulation:
         return handled
 
     def may_act(self) -> bool:
-        """Return whether a node has a client of the simulator's actions, or has not answered a call by the trial."""
+        """Return whether a node has a client of the simulator's actions, or a call by the trial is pending."""
         if self.caller is not None and self.caller.pending:
             return True
         if self._actions is None:
@@ -278,9 +278,10 @@ class Simulation:
 
 
 def leave_out_events(node: Node) -> None:
-    """Stop waiting for events (other types, other QoS) on a node's topics, except the topics of the turtle.
+    """Ignore events (incompatible types or QoS) on a node's topics, except the topics of the turtle.
 
-    rclpy adds all event sources to every wait. Topics that the node adds later keep their events.
+    Otherwise, rclpy would check all sources of events each time it waits. Topics that the node adds later keep their
+    events.
     """
     for endpoint in (*node.publishers, *node.subscriptions):
         if not endpoint.topic_name.startswith("/turtle1/"):

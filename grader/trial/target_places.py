@@ -1,6 +1,6 @@
 """Choose random places for targets, which are turtles that a node must catch, nearest first.
 
-Places are chosen again until the order of the targets is unambiguous. A turtle that always goes to the nearest target
+Places are drawn again until the order of the targets is unambiguous. A turtle that always goes to the nearest target
 must be able to reach them in only one order, and any other rule (by name, by the distance from the start) must give a
 different order.
 """
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 NAMES = ("ada", "bela", "cleo", "dora", "emil")
 LOW_M, HIGH_M = 1.5, 9.5
-"""The smallest and the largest coordinate (m)."""
+"""The smallest and the largest coordinate that a target can have (m)."""
 APART_M = 1.6
-"""The smallest distance between two targets, and between a target and the start (m)."""
+"""The minimum distance between two targets, and between a target and the start (m)."""
 CLEAR_M = 1.2
 """The minimum difference between the distances of the nearest and the second-nearest target (m)."""
 LONGEST_M = 20.0

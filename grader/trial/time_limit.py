@@ -46,12 +46,12 @@ class TimeLimit:
                 self._timer.start()
 
     def cancel(self) -> None:
-        """Do not kill the processes any more."""
+        """Cancel the limit, so that the processes are not killed."""
         with self._changing:
             self._timer.cancel()
 
     def close(self) -> None:
-        """Cancel the limit for ever, because the trial is about to end."""
+        """Cancel the limit permanently, because the trial is about to end."""
         with self._changing:
             self._closed = True
             self._timer.cancel()

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from grader.trial.recording import ClockName, Pose, Recording
 
 MOST_ANSWER = 256 * MIB
-"""The maximum size of one answer from the conductor (bytes). Most of an answer consists of a recording's messages."""
+"""The maximum size of one response from the conductor (bytes). Most of a response consists of a recording's
+messages."""
 
 
 @dataclass(frozen=True)
@@ -250,7 +251,7 @@ class Trial:
         try:
             code = self._conductor.wait(5.0)
         except subprocess.TimeoutExpired:
-            return OverwhelmedError("it no longer answered", hung=True)
+            return OverwhelmedError("it no longer responded", hung=True)
         if self._time_limit.starved:
             message = "The machine was too busy to finish the trial in time. Try again when the machine is less busy."
             return MachineError(message)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from grader.turtlesim.world import World
 
 MOST_ROWS = 100_000
-"""The maximum number of rows in all tracks together, except the tracks of the targets."""
+"""The maximum number of rows in all tracks together, not counting the tracks of the targets."""
 MOST_CHANGES = 2000
 
 

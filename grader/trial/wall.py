@@ -1,4 +1,7 @@
-"""A trial in wall time. Wall time is the reference, and the only choice for a node that does not follow ROS time."""
+"""A trial in wall time.
+
+A result in wall time is authoritative, and a node that does not follow ROS time can run only in wall time.
+"""
 
 from __future__ import annotations
 
@@ -66,7 +69,7 @@ class WallTrial(Simulation):
         return stopped_s
 
     def crowded(self) -> bool:
-        """Return whether other programs often made the simulator and the node wait for a processor."""
+        """Return whether the simulator and the node often had to wait for a processor because of other programs."""
         return self._crowded
 
     def _discover(self) -> None:

@@ -78,7 +78,10 @@ POLICY = (
 
 
 def answer_headers(host: str) -> dict[str, str]:
-    """Return the headers of every response, which forbid loading from other sites, and embedding in other sites."""
+    """Return the headers of every response.
+
+    With them, the page cannot load from other sites, nor be embedded in them.
+    """
     return {
         "content-security-policy": POLICY.format(host=host),
         "x-content-type-options": "nosniff",

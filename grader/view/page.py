@@ -62,7 +62,7 @@ class Page:
         def listen(node: Node) -> None:
             """Subscribe to /rosout in the node's thread.
 
-            This is done only on request, since the graph shows subscriptions.
+            This is done only on request, since the subscription is visible in the graph.
             """
             if self._rosout is None:
                 self._rosout = Rosout(node, lambda lines: in_loop(loop, self._logged, lines))

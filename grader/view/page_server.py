@@ -51,8 +51,8 @@ def application(
 ) -> ASGIApp:
     """Return the application, protected by the guard.
 
-    The path "/" returns the file `index` in assets/, filled with the title, the ROS domain and `parts`, the CSS class
-    of the body.
+    The response for the path "/" is the template `index` in assets/, filled in with the title, the ROS domain, and
+    `parts`, the CSS classes of the body.
     """
     filled = {"title": title, "domain": os.environ.get("ROS_DOMAIN_ID", "0"), "parts": parts}
 

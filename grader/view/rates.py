@@ -6,7 +6,7 @@ from collections import deque
 from dataclasses import dataclass, field
 
 WINDOW_S = 5.0
-"""The time over which a rate is computed (s), unless the interval between the last two arrivals is longer."""
+"""A rate is computed over this time (s), unless the last two arrivals are further apart."""
 _LONGEST_S = 30.0
 _GAPS = 2.5
 """The messages are considered to have stopped after this number of average intervals without an arrival."""
@@ -18,7 +18,7 @@ class Arrivals:
     """The arrivals of messages on one topic."""
 
     _observed: deque[tuple[float, int]] = field(default_factory=deque)
-    """For each group of messages: the time of its last arrival, and the number of its arrivals."""
+    """For each group of messages: the arrival time of its last message, and the number of its messages."""
 
     def add(self, when_s: float, count: int = 1) -> None:
         """Record that `count` messages have arrived since the last call. The last arrival was at `when_s` (s)."""
@@ -30,7 +30,7 @@ class Arrivals:
     def hertz(self, now_s: float) -> float | None:
         """Return the mean rate (Hz).
 
-        The result is None if the messages have stopped or are too rare, or if fewer than two groups have arrived.
+        Return None if the messages have stopped or are too rare, or if fewer than two groups of messages have arrived.
         """
         if len(self._observed) < 2:
             return None

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from grader.view.hub import Hub
 
 _RECONNECTS_S = 2.0
-"""The time that a tab from an earlier view needs to reconnect (s)."""
+"""The maximum time to wait until a tab from an earlier view has reconnected (s)."""
 _TIMES = 20
 _SETTINGS: dict[str, Any] = {
     "log_level": "warning",
@@ -97,7 +97,7 @@ class _Server(uvicorn.Server):
         self._ends = asyncio.Event()
 
     def end(self) -> None:
-        """End the server soon."""
+        """Request the server to end, without waiting for it."""
         self.should_exit = True
         self._ends.set()
 

@@ -26,7 +26,7 @@ PACKAGES = ("site-packages", "dist-packages")
 FRAME = re.compile(r'\s*File "(?P<file>[^"]*)", line (?P<line>\d{1,7})(?:, in (?P<function>.*))?')
 ERROR = re.compile(r"(?P<type>[A-Za-z_][\w.]*)(?:: (?P<message>.*))?")
 GUESS = re.compile(r" \(/[^)]*\)$|\.? Did you mean: .*| The following argument types are supported:.*")
-"""Hints that differ between Python versions. These hints are removed, because a diagnosis has its own suggestion."""
+"""Suggestions in messages, which differ between Python versions. They are removed, because a diagnosis has its own."""
 STOPS = frozenset({"KeyboardInterrupt", "ExternalShutdownException"})
 """The exceptions that Ctrl-C raises in a node that is written as in the tutorial."""
 

@@ -132,7 +132,7 @@ def _end(node: ast.AST) -> int:
 
 
 def _small(node: ast.AST) -> bool:
-    """Return whether the syntax node is neither a class, a function nor a block, so that it is on the line itself."""
+    """Return whether the syntax node is neither a class, nor a function, nor another statement with a block."""
     return not isinstance(
         node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef | ast.If | ast.For | ast.While | ast.Try | ast.With
     )

@@ -26,7 +26,7 @@ FORM = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION in the list c
 
 
 def line(evidence: Evidence) -> Where:
-    """Return the line of setup.py with the entry point, else with `console_scripts`, else with the call to setup()."""
+    """Return the line of setup.py with the entry point, or else with `console_scripts`, or else with setup()."""
     setup = evidence.setup_py
     if setup is None:
         return Where("setup.py")
@@ -93,7 +93,7 @@ def _script(evidence: Evidence) -> Cause | None:
         return None
     first = files[script].partition(b"\n")[0].decode("utf-8", "replace")
     if not (first.startswith("#!") and "python" in first and not first.endswith("\r")):
-        text = f'{script} is installed as a script, and its first line, "{shorten(first, 40)}", does not name Python.'
+        text = f'{script} is installed as a script, and its first line, "{shorten(first, 40)}", does not start Python.'
         return Cause("script-shebang", text, Where(script, 1))
     text = f"{script} is installed as a script. Use an entry point that names a function in a module."
     return Cause("script-for-entry-point", text, Where(script, 1))
@@ -150,7 +150,7 @@ def _missing(evidence: Evidence, points: tuple[EntryPoint, ...]) -> Cause:
 
 
 def _looks_like_a_node(evidence: Evidence, targets: list[str | None]) -> str | None:
-    """Return a file that creates a publisher although no entry point names the file, or None."""
+    """Return a file that creates a publisher but to which no entry point refers, or None."""
     taken = [module_file((target or "").partition(":")[0], evidence.submission.files) for target in targets]
     everything = read_code(evidence.submission.files, first=None)
     files = [call.module.file for call in everything.calls("create_publisher")]

@@ -1,4 +1,4 @@
-"""Names in ROS 2 Jazzy that beginners use, which the grader suggests for misspelt names."""
+"""Names in ROS 2 Jazzy that beginners use. The grader suggests them for misspelt names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Explain why the start of a trajectory is missing: commands were lost before a subscription was connected."""
+"""Explain why the start of a trajectory is missing: commands were sent before the simulator was connected."""
 
 from __future__ import annotations
 

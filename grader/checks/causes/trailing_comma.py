@@ -40,7 +40,7 @@ def trailing_comma(scene: CrashScene) -> Cause | None:
 
 
 def _assignments(scene: CrashScene) -> Iterator[tuple[str, ast.expr]]:
-    """Yield each name or attribute that is in scope on the line, with a value that the module assigns to it."""
+    """Yield each name or attribute that is in scope on the line of the crash, with a value that is assigned to it."""
     for node in scene.nodes:
         if not isinstance(node, ast.Assign | ast.AnnAssign) or node.value is None:
             continue
@@ -52,7 +52,7 @@ def _assignments(scene: CrashScene) -> Iterator[tuple[str, ast.expr]]:
 
 
 def _line(scene: CrashScene, number: int | None) -> bytes:
-    """Return the line of the module with this number (from 1). Offsets in a syntax tree count bytes of UTF-8."""
+    """Return the line with this number (from 1) as bytes, since the columns in a syntax tree are counted in bytes."""
     file = scene.module.file if scene.module is not None else ""
     lines = scene.evidence.submission.files.get(file, b"").splitlines()
     return lines[number - 1] if number is not None and number <= len(lines) else b""

@@ -28,20 +28,21 @@ SERVERS = ("wait_for_service", "wait_for_server")
 SLEEPS = ("sleep", "sleep_for", "sleep_until")
 WAITS = (*RESPONSES, *SPINS, *SERVERS, *SLEEPS)
 LOOP = "while"
-"""The name of a wait in a loop that runs until done() returns True."""
+"""The `name` of a `Wait` that is a loop which runs until done() returns True."""
 THREADS = frozenset({"MultiThreadedExecutor", "Thread", "ThreadPoolExecutor", "Timer", "start_new_thread"})
 """If the source uses one of these, another thread can receive the response while a callback waits."""
 STARTS = frozenset({"Thread", "Timer", "start_new_thread", "submit", "to_thread", "run_in_executor"})
 """Functions that run a function, passed as an argument, in another thread."""
 STRAIGHT = frozenset({"__init__", "main"})
-"""Functions that run before rclpy.spin. They are not callbacks, even if their names are used without a call."""
+"""Functions that run before rclpy.spin. They are not counted as callbacks, even if their names are used without a
+call."""
 OTHER_CALLS = frozenset({"subprocess", "self", "super", "cls"})
 """Objects whose method `call` does not belong to a service client."""
 
 
 @dataclass(frozen=True)
 class Wait:
-    """A wait in a callback: the `name` of the function that waits, its name as `written`, and its place."""
+    """A wait in a callback: the `name` of the function that waits, as `written` in the source, and the place."""
 
     name: str
     written: str

@@ -1,4 +1,4 @@
-"""Find tests that prove nothing: they have no assert, or an assert that never runs or always has the same result."""
+"""Find tests that prove nothing, because an assert is missing, never runs, or always has the same result."""
 
 from __future__ import annotations
 
@@ -109,7 +109,10 @@ def in_a_loop(code: TestCode) -> Cause | None:
 
 
 def _may_be_empty(listed: ast.expr, module: Module) -> bool:
-    """Return whether a loop over this expression may run zero times. The result of a call counts as not empty."""
+    """Return whether a loop over this expression may run zero times.
+
+    The result of a call is assumed not to be empty.
+    """
     if isinstance(listed, ast.Call | ast.List | ast.Tuple):
         return False
     value = module.names.get(dotted(listed) or "")
@@ -117,7 +120,7 @@ def _may_be_empty(listed: ast.expr, module: Module) -> bool:
 
 
 def timed_loop(code: TestCode) -> Cause | None:
-    """Return the cause if a loop always lasts for a fixed wall time, like a sleep, else None.
+    """Return the cause if a loop always takes the same wall time, like a call of sleep, else None.
 
     A loop that waits for something until a deadline is correct.
     """

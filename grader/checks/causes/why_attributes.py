@@ -52,7 +52,7 @@ PLAIN = {
 }
 """Maps a built-in type to a phrase for a value of this type."""
 MOST_LETTERS = 2
-"""The largest number of letters that a typo adds or removes."""
+"""The maximum difference in length (letters) between a name and a name that is suggested instead."""
 MODULES_READ = {"math": math, "time": time, "random": random}
 
 
@@ -91,7 +91,7 @@ def _without_setter(scene: CrashScene, name: str) -> Cause | None:
 
 
 def _written_name(scene: CrashScene, name: str) -> str:
-    """Return the name as it is in the source, if its prefix belongs to one of the student's classes, not to Node."""
+    """Return the name as it is in the source: without the prefix of a student's class that Python has added to it."""
     mangled = MANGLED.match(name)
     own = mangled is not None and any(each.name.lstrip("_") == mangled["of"] for each in scene.classes)
     return MANGLED.sub("__", name) if own else name
@@ -107,7 +107,10 @@ def _is_subclass_elsewhere(scene: CrashScene, owner: str, name: str) -> bool:
 
 
 def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None:
-    """Return the cause if an rclpy object, a message or a plain value has no such attribute. Return None for others."""
+    """Return the cause if an rclpy object, a message or a plain value has no such attribute.
+
+    Return None for other objects.
+    """
     if owner in ros_names.FIELDS:
         fields = ros_names.FIELDS[owner]
         guess = nearest(name, fields)

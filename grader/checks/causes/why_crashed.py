@@ -84,7 +84,7 @@ def _why_value(scene: CrashScene) -> Cause | None:
         return comma_for_dot(scene) or Cause("crash", text)
     if "empty" not in scene.crash.message or not any(name in scene.crash.message for name in ("min()", "max()")):
         return None
-    return Cause("crash", "min or max had nothing to compare. Check first whether there is any value.")
+    return Cause("crash", "min or max got no values to compare. Check first whether there are any values.")
 
 
 ARGUMENTS = re.compile(r"error: the following arguments are required: (?P<names>.+)")

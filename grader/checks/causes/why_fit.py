@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from grader.exercise.call_inputs import Arc
 
 ROUGH_M = 0.02
-"""The error (m) that the mean or an extreme of noisy points may have in addition to the tolerance."""
+"""The additional tolerance (m) for a value that was computed as the mean or from the extremes of noisy points."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Fit:
         return self.is_like(self.truth[:2])
 
     def is_like(self, other: Sequence[float], more: float = 0.0) -> bool:
-        """Return whether the values differ from those in `other` by at most their tolerances plus `more`.
+        """Return whether each value differs from the one in `other` by at most its tolerance plus `more`.
 
         If `other` has fewer values, only the first values are compared.
         """

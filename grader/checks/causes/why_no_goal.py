@@ -17,7 +17,8 @@ FEEDBACK = "/_action/feedback"
 OF_A_TYPE = "_FeedbackMessage"
 SENDS = ("send_goal_async", "send_goal")
 ONE_FRAME_S = 0.04
-"""The time (s) from the decision to abort a goal until the goal ends: one frame, and another frame to be safe."""
+"""The maximum time (s) from the event that aborts a goal to the end of the goal: one frame, and another frame to be
+safe."""
 
 
 def why_no_goal(evidence: Evidence, action: str, type_name: str) -> Cause:

@@ -98,7 +98,7 @@ def _never_drives(evidence: Evidence, left: list[Track]) -> Cause:
 
 
 def _nearest_m(evidence: Evidence, track: Track) -> float:
-    """Return the smallest distance between turtle1 and a target that was never caught (m), while the target existed."""
+    """Return the smallest distance (m) from turtle1 to a target that was never caught, while the target existed."""
     x, y = track.rows[-1][1:3]
     frames = evidence.recording.frames
     rows = frames.t_s >= track.rows[0][0]

@@ -22,9 +22,9 @@ NOTHING_RECEIVED = re.compile(
     r"IndexError: (?:list|deque|tuple) index out of range|IndexError: pop from (?:an )?empty|len\(\[\]\)|assert \[\]|"
     r"'NoneType' object has no attribute '(?:linear|angular)'|is an empty sequence|iterable argument is empty"
 )
-"""The message of a test that accesses a command although the test has received none."""
+"""pytest's message about a test that reads a command although the test has received none."""
 COUNTED = re.compile(r"assert (?P<received>\d{1,6}) (?:==|>=|>) (?P<wanted>\d{1,6})\n +\+  where \d+ = len\(\[")
-"""The message of a test that counts messages."""
+"""pytest's message about a test that counts messages."""
 
 
 def why_not_heard(run: NodeRun, code: TestCode, right: Behaviour) -> Cause | None:

@@ -22,15 +22,16 @@ if TYPE_CHECKING:
 
 CATCH = "/catch"
 LEVELS = ("debug", "info", "warning", "warn", "error", "fatal")
-"""The methods of a logger that log a line."""
+"""The methods of a logger that write a log message."""
 TURNS_RAD_S = 0.1
-"""A smaller angular velocity is not a turn (rad/s)."""
+"""A turtle with a smaller angular velocity (rad/s) is considered not to turn."""
 ASIDE_RAD = 0.3
-"""A target within this angle is straight ahead or straight behind, so a turn in either direction is right (rad)."""
+"""A target within this angle (rad) is considered straight ahead or straight behind, so a turn in either direction is
+right."""
 MOST = 0.8
 """The cause is reported only if the turtle turned away or faced away in at least this share of the commands."""
 FEWEST, FEWEST_AWAY = 10, 3
-"""The minimum numbers of turns, and of turns away from the target, that a conclusion needs."""
+"""The minimum number of turns, and of turns away from the target, that are needed for a conclusion."""
 
 
 def why_not_reached(evidence: Evidence, name: str, near_m: float) -> Cause | None:

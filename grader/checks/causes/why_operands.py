@@ -33,4 +33,4 @@ def why_operands(scene: CrashScene) -> Cause | None:
         return Cause("list-for-array", text)
     if (comma := comma_for_dot(scene)) is not None:
         return comma
-    return Cause("crash", f"Python cannot do this with a value of type {left} and a value of type {right}.")
+    return Cause("crash", f"This operator does not support a value of type {left} with a value of type {right}.")

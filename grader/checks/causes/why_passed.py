@@ -61,7 +61,7 @@ def why_passed(scene: CrashScene) -> Cause | None:
 
 
 def _call(scene: CrashScene) -> Call | None:
-    """Return the call of the function that raised the exception, or None unless the caller's line has exactly one."""
+    """Return the call of the function that raised the exception, or None if the caller's line has several or none."""
     function = scene.function
     line = next(iter(scene.crash.callers), None)
     module = scene.module_of(line.file) if line is not None else None

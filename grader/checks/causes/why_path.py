@@ -1,4 +1,4 @@
-"""Explain from the commands and the source code why a trajectory is not the right circle."""
+"""Explain why a trajectory is not the required circle, from the commands and the source code."""
 
 from __future__ import annotations
 

@@ -24,10 +24,11 @@ OFTEN = 0.5
 """In a loop without a pause, the mean interval is less than this fraction of the expected period."""
 WITHOUT_PAUSE = "The period of this timer is 0 s, so it calls its method without a pause."
 NO_PAUSE_S = 0.05
-"""If the mean interval (s) is longer, something in the loop takes time, for example another loop that waits."""
+"""If the mean interval (s) is longer than this, something in the loop takes time, for example an inner loop that
+waits."""
 SEVERAL = 0.1
-"""If the number of successive calls differs from the number of messages per period by at most this share, the calls
-explain a wrong rate."""
+"""Successive calls explain a wrong rate if their number differs from the number of messages per period by at most this
+share."""
 PAUSES = ("sleep", "sleep_for", "sleep_until", "spin_once", "wait", "get", "join", "input")
 """Functions and methods whose purpose is to wait."""
 FRAME_S = 0.016

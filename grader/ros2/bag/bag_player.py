@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosbags.rosbag2 import Reader
 
 _ACKNOWLEDGED_S = 2.0
-"""The maximum time to wait at the end for the last messages to arrive (s)."""
+"""The maximum time to wait at the end until the last messages have arrived (s)."""
 _STEP_S = 0.1
 
 
@@ -105,7 +105,7 @@ class Player:
         return int(self._reader.start_time) + round(float(self._args.start_offset) * 1e9)
 
     def _play(self, key: Callable[[float], str]) -> bool:
-        """Publish all messages once, starting at the offset. Return whether there were any messages."""
+        """Play the bag once, from the start offset. Return whether any messages were published."""
         any_of_them = False
         played, until = self._begin(), self._until()
         found = messages(self._reader, self._args.bag_path, set(self._publishers), self._begin())
@@ -118,7 +118,7 @@ class Player:
         return any_of_them
 
     def _wait(self, key: Callable[[float], str], played: int, stamp: int) -> int:
-        """Wait while the time of the recording advances from `played` to `stamp` (ns). Return the stamp."""
+        """Wait until the time of the recording has advanced from `played` to `stamp` (ns). Return the stamp."""
         if self._burst > 0:
             self._burst -= 1
             return stamp

@@ -43,7 +43,9 @@ def open_bag(path: Path) -> Iterator[Reader]:
 def messages(
     reader: Reader, path: Path, topics: set[str], start: int | None = None
 ) -> Iterator[tuple[str, int, bytes]]:
-    """Yield the topic, stamp (ns since the epoch) and data of each message on `topics` in order from `start`.
+    """Yield the topic, stamp and data of each message on `topics`, in order of the stamps (ns since the epoch).
+
+    If `start` is given, messages with an earlier stamp are omitted.
 
     Raises:
         Ros2Error: the bag is damaged.

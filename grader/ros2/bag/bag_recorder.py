@@ -142,7 +142,7 @@ class Recorder:
             self._full = error
 
     def _drain(self) -> None:
-        """Write the messages that arrived before recording ended but have not been handled.
+        """Write the messages that arrived before the recording ended but have not been written yet.
 
         Messages that have already arrived are read directly from the subscriptions, since an executor handles callbacks
         in any order. The depth of the queue limits the number of waiting messages.

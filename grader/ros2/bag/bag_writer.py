@@ -31,9 +31,10 @@ _VERSION: Literal[9] = 9
 INFORMATION = "rosbag2_bagfile_information"
 """The only top-level key of metadata.yaml."""
 _KEEP_S = 1.0
-"""The interval at which messages are flushed to the file (s). A killed recorder loses at most these messages."""
+"""The interval at which messages are flushed to the file (s). If the recorder is killed, at most the messages of this
+time are lost."""
 _NO_HASH = f"RIHS01_{64 * '0'}"
-"""The hash of a type that is not installed, since the hash cannot be computed from the type's name."""
+"""The hash that is stored for a type that is not installed, since the hash cannot be computed from the type's name."""
 
 
 class BagWriter:

@@ -25,7 +25,7 @@ _METADATA = "metadata.yaml"
 class SplitWriter:
     """A new bag with several files, as a context manager with the methods of BagWriter.
 
-    The metadata is written after each file, so that all complete files can be read if the recorder is killed. The
+    The metadata is written after each file, so that all complete files can be read even if the recorder is killed. The
     current file is in a separate folder until it is complete. `ros2 bag reindex` also finds files in that folder.
 
     `folder`, `storage` and `compression` have the same meaning as for BagWriter. `most_bytes` is the maximum total size

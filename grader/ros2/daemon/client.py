@@ -11,13 +11,13 @@ from typing import Any
 from grader.ros2.daemon import socket_path
 
 ANSWER_S = 8.0
-"""The maximum time to wait for an answer (s). This limit is longer than the time for which the daemon waits for silent
-nodes."""
+"""The maximum time to wait for a response (s). The daemon itself waits for a shorter time for nodes that do not
+respond."""
 _POLL_S = 0.02
 
 
 def request(call: str) -> dict[str, Any] | None:
-    """Return the daemon's answer to "look", "ping" or "stop", or None if no daemon is running."""
+    """Return the daemon's response to "look", "ping" or "stop", or None if no valid response arrives."""
     folder = socket_path.folder()
     if folder is None:
         return None

@@ -1,4 +1,4 @@
-"""The daemon's process: a node that observes the graph, and a socket that answers the user's commands.
+"""The daemon's process: a node that observes the graph, and a socket on which it responds to the user's commands.
 
 The daemon exits after a long idle time, on request, or when its socket has been removed.
 """
@@ -110,7 +110,7 @@ def _answer_all(listening: socket.socket, node: Node, settling: Settling, wanted
 
 
 def _answer(connection: socket.socket, node: Node, settling: Settling, debug: IO[str] | None) -> bool:
-    """Answer a request. Return False for the request to stop."""
+    """Respond to a request. Return False if the daemon was requested to stop."""
     from grader.graph.snapshot import snapshot
 
     connection.settimeout(_REQUEST_S)

@@ -39,7 +39,10 @@ def lines(name: str, *, comments: bool = True, nested_comments: bool = False, de
 
 
 def _strip_comment(line: str) -> str:
-    """Return the line as `--no-comments` prints it. Like the real `ros2`, keep a # that is followed by a space."""
+    """Return the line as `--no-comments` prints it.
+
+    If a space follows the #, the real `ros2` prints the #, and so does this function.
+    """
     before = _without_comment(line)
     behind = line[len(before) :]
     if not before.strip() or not behind:

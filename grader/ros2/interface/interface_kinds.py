@@ -1,4 +1,4 @@
-"""The options that limit the verbs of `interface` to messages, services or actions."""
+"""The options that limit the output of `interface` to messages, services or actions."""
 
 from __future__ import annotations
 

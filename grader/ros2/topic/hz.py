@@ -69,7 +69,7 @@ class Arrivals:
         self._last_ns = now_ns
 
     def have_news(self) -> bool:
-        """Return whether a message has arrived at least a second after the last report."""
+        """Return whether a report is due: a message has arrived at least one second after the last report."""
         if not self._gaps_ns:
             return False
         if self._reported_ns == 0:

@@ -121,7 +121,7 @@ def _publish(
 ) -> None:
     """Publish `times` messages, or publish forever if `times` is 0.
 
-    Finally, wait until the last message has been sent.
+    Then wait for acknowledgements, and keep the node running until `args.keep_alive` (s) has passed.
     """
     from rclpy.duration import Duration
 

@@ -57,7 +57,7 @@ def type_of(node: Node, topic: str, requested: str) -> Any | None:  # noqa: ANN4
 
 
 def not_published(requested: str) -> None:
-    """Warn that the topic seems to have no publishers."""
+    """Print a warning that the topic seems to have no publishers."""
     print(f"WARNING: topic [{requested}] does not appear to be published yet", flush=True)
 
 

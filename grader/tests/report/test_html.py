@@ -290,7 +290,7 @@ def test_goals_are_in_a_table_and_on_the_time_line_of_the_replay() -> None:
     assert "<li>1 goal: 1 canceled</li>" in page
     assert [1.0, f"the node sends a goal to {action}: theta=1.5"] in moments_of(page)
     assert [2.4, f"the node asks {action} to cancel the goal"] in moments_of(page)
-    assert [2.5, f"the goal of {action} is canceled"] in moments_of(page)
+    assert [2.5, f"the goal sent to {action} is canceled"] in moments_of(page)
 
 
 def moments_of(page: str) -> list[list[object]]:

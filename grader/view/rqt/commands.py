@@ -82,7 +82,7 @@ def _main(package: str, parser: argparse.ArgumentParser, parts: Sequence[Part]) 
 
 
 def _fields(**_: object) -> list[str]:
-    """Return all numeric fields in the running graph, for completion."""
+    """Return all numeric fields of the topics in the running graph, for shell completion."""
     from grader.graph.discovery import cli_node, settle
     from grader.graph.endpoints import observe
     from grader.view.rqt.plot_fields import fields_of

@@ -127,7 +127,7 @@ SCRIPT = replace(BUILD, entry_points={})
             {"scripts/draw_circle": "import rclpy\nprint(1)\n"},
             "script-shebang",
             "scripts/draw_circle:1",
-            'scripts/draw_circle is installed as a script, and its first line, "import rclpy", does not name Python.',
+            'scripts/draw_circle is installed as a script, and its first line, "import rclpy", does not start Python.',
         ),
         ({"scripts/draw_circle": "#!/bin/sh\necho python\n"}, "script-shebang", "scripts/draw_circle:1", '"#!/bin/sh"'),
         ({"scripts/draw_circle": "#!/usr/bin/python\r\n1\r\n"}, "script-shebang", "scripts/draw_circle:1", ""),

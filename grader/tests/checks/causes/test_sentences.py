@@ -122,7 +122,7 @@ def cause(line: str, error: str) -> str:
             "TypeError: 'NoneType' object does not support the context manager protocol",
         ),
         (
-            "min or max had nothing to compare",
+            "min or max got no values to compare",
             "x = max([])",
             None,
             "ValueError: max() arg is an empty sequence",
