@@ -95,7 +95,7 @@ def explained(
     trial: Callable[..., Trial] = Trial,
     give_up: Callable[[], bool] = lambda: False,
 ) -> Graded:
-    """Return the graded submission after testing its causes by fixing them in a copy, where possible.
+    """Test the causes of failed checks, if possible, by fixing them in a copy. Return the graded submission.
 
     `give_up` is called before each change is tested. Once `give_up` returns true, no more changes are tested. `build`
     contains the result of the last build.

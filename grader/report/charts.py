@@ -31,7 +31,7 @@ GAP = 46.0
 BINS = 120
 """The number of bins for a long series of values. Only the lowest and the highest value of each bin are drawn."""
 HUGE = 1e4
-"""Values above this limit are drawn at the limit, and values below its negative at the negative limit."""
+"""Before values are drawn, they are limited to the range from -HUGE to HUGE."""
 
 DOT, BAD, BAND = "#1c7ed6", "#d6336c", "#2f9e44"
 """Colours with a contrast of at least 3:1 against both the white page and the dark page."""

@@ -53,7 +53,7 @@ class Report:
         return sum(outcome.max for outcome in self.outcomes)
 
     def with_status(self, status: Status) -> tuple[Outcome, ...]:
-        """Return the outcomes with this status, without advice."""
+        """Return the outcomes with this status, except those of checks that only give advice."""
         return tuple(o for o in self.outcomes if o.status is status and not o.advice)
 
     @property

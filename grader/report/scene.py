@@ -107,7 +107,7 @@ def _without_recording(evidence: Evidence) -> Scene:
 
 
 def _bag_scene(evidence: Evidence) -> Scene | None:
-    """For a step in which students record a bag, return a scene with the turtle's path that the bag contains.
+    """For a step in which students record a bag, return a scene with the path of the turtle in this bag.
 
     Return None for other steps.
     """

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 ERRORS = "errors"
-"""The key in the reports of a class whose value is the number of consecutive gradings that ended with an error."""
+"""In the reports of a class, the value of this key is the number of consecutive gradings that ended with an error."""
 REPEATED = 2
 """The number of consecutive errors after which chance is an unlikely explanation."""
 UNREADABLE = "unreadable"
@@ -34,7 +34,7 @@ def suspicions(graded: Sequence[tuple[Report, int]]) -> list[str]:
 
 def _suspicion(report: Report, errors: int, judged: int) -> str:
     if report.with_status(Status.ERROR) and errors >= REPEATED and judged:
-        return f"suspicious: {errors} attempts in a row to judge it failed, but other submissions could be judged"
+        return f"suspicious: it could not be judged in {errors} consecutive attempts, but other submissions could"
     if any(outcome.finding.diagnosis == UNREADABLE for outcome in report.outcomes):
         return "the grader could not read all of it"
     return ""

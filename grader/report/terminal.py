@@ -80,7 +80,7 @@ def early(outcomes: Sequence[Outcome]) -> list[str]:
 def changes(tries: Tries, console: Console) -> None:
     """Print the changes that were made in copies of the submission to test supposed causes.
 
-    The changes reveal solutions.
+    These changes are parts of solutions, so students should not see them.
     """
     if tries.made or tries.stopped:
         console.print()

@@ -45,17 +45,17 @@ def actions(**_: Any) -> list[str]:  # noqa: ANN401
 
 
 def topic_types(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    """Return the type of the topic on the command line if it is in the graph, and otherwise all message types."""
+    """Return the type of the topic on the command line if this topic exists, and otherwise all message types."""
     return _types(_look().topics, parsed_args.topic_name) or index.all_interfaces("msg")
 
 
 def service_types(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    """Return the type of the service on the command line if it is in the graph, and otherwise all service types."""
+    """Return the type of the service on the command line if this service exists, and otherwise all service types."""
     return _types(_look().services, parsed_args.service_name) or index.all_interfaces("srv")
 
 
 def action_types(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    """Return the type of the action on the command line if it is in the graph, and otherwise all action types."""
+    """Return the type of the action on the command line if this action exists, and otherwise all action types."""
     return _types(_look().actions, parsed_args.action_name) or index.all_interfaces("action")
 
 

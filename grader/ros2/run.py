@@ -36,7 +36,9 @@ def _executables(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noq
 
 
 def run(args: argparse.Namespace) -> int:
-    """Start the executable and wait until it exits. Return the exit code, which is negative after a signal.
+    """Start the executable and wait until it exits.
+
+    Return the exit code, which is negative if a signal terminated the program.
 
     Raises:
         Ros2Error: the package or the executable does not exist, or the executable cannot be started.

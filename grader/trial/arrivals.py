@@ -27,7 +27,7 @@ def take_messages(subscription: Subscription) -> None:
 
 
 def take_requests(service: Service) -> int:
-    """Respond to all requests that have arrived with the service's callback, and return the number of requests."""
+    """Call the service's callback to respond to all requests that have arrived, and return their number."""
     with service.handle:
         for count in range(MOST_AT_ONCE):
             request, header = service.handle.service_take_request(service.srv_type.Request)

@@ -3,8 +3,8 @@
 This process runs in a room of the sandbox, and the student's node in a cell inside this room (grader.sandbox). Both are
 forks of fork servers (grader.trial.fork_server). Without a sandbox, both are new processes. The conductor exchanges
 JSON lines with the grader's own process over its standard streams. The first line of input describes the trial. The
-conductor answers {"ready": true} when the simulator and the launcher are ready. The second line of input says what to
-start, and the install tree follows this line. The last line of output is {"recording": {...}}, {"doubt": "...",
+conductor answers {"ready": true} when the simulator and the launcher are ready. The second line of input specifies what
+to start, and the install tree follows this line. The last line of output is {"recording": {...}}, {"doubt": "...",
 "by_chance": false} if a trial with the other clock is needed, {"overwhelmed": "..."} if the node made the simulator
 fail, {"refused": "..."} if the machine refused something while the node was running, or {"fault": "..."} if the
 simulator failed for another reason.
@@ -65,7 +65,7 @@ together, they were ready to run for at least the fraction STARTED of the time o
 STARTED_LEAST times the length of the trial. A single process cannot reach these limits.
 """
 SIMULATORS = ("/pose", "/color_sensor")
-"""The last parts of the names of the topics on which the simulator publishes in each frame, for each turtle."""
+"""In each frame, the simulator publishes on the topics with these endings, for each turtle."""
 
 
 class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grader
@@ -73,7 +73,7 @@ class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grad
 
 
 class RefusedError(Exception):
-    """The machine refused something to the simulator, such as opening a file, for which the node is never the cause."""
+    """The machine denied a request of the simulator, such as opening a file. The node is never the cause of this."""
 
 
 def main(nodes: socket.socket | None = None) -> None:

@@ -8,10 +8,10 @@ sandbox before they read anything, and student code never runs outside the sandb
 The server runs outside the sandbox. It reads requests of the grader from a socket, each with descriptors:
 
 - **conductor**: JSON with the control groups, the user, the limits and HOME. The descriptors are a process in the room
-  (pidfd_open(2)), standard input, output and error, the socket on which the conductor asks for nodes, and the socket
+  (pidfd_open(2)), standard input, output and error, the socket on which the conductor requests nodes, and the socket
   for the result;
 - **node**: JSON with the control groups, the limits, the system call filter and the number of nodes. The descriptors
-  are the socket on which the conductor asks for nodes, and the socket for the result. For each node, the conductor
+  are the socket on which the conductor requests nodes, and the socket for the result. For each node, the conductor
   sends only descriptors: a process in the node's cell, standard input, output and error, and the socket for the result.
   The conductor sends them before it starts any node.
 

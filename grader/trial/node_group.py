@@ -119,5 +119,5 @@ class GroupThreads:
         return {tid: ran_s for threads in self._each for tid, ran_s in threads.run_times_s().items()}
 
     def waits(self) -> list[Wait]:
-        """Return the reason why each thread waits, except the threads of Fast DDS."""
+        """Return the reason why each thread is waiting, except for the threads of Fast DDS."""
         return [wait for threads in self._each for wait in threads.waits()]

@@ -33,8 +33,8 @@ STOP_S = 3.0
 """The maximum time that the node may take to exit after SIGINT (s). After this time, the grader sends SIGTERM and, 1 s
 later, SIGKILL. The time for which the node waits for a processor does not count."""
 MOST_WAITED_S = 12.0
-"""The maximum waiting time (s) that does not count: any further time for which the node waits for a processor
-counts."""
+"""At most this much of the time for which the node waits for a processor (s) is left out of the time that it takes to
+exit."""
 
 
 def enlarge(pipe: int) -> int:

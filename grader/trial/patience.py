@@ -55,7 +55,7 @@ class HandshakePatience:
 class TickPatience:
     """The time limit for the node and the simulator to respond to each other at one instant of simulated time.
 
-    Reading the CPU time of the node costs as much as checking its threads. Therefore, the CPU time is not read at
+    Reading the CPU time of the node takes as long as checking its threads. Therefore, the CPU time is not read at
     first, and in most cases it is never needed.
     """
 

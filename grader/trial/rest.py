@@ -74,7 +74,7 @@ class Look:
 
 @dataclass(frozen=True)
 class Wait:
-    """The reason why a thread waits: the name of a system call, "futex", "running" and so on.
+    """The reason why a thread is waiting: the name of a system call, "futex", "running" and so on.
 
     `timed` says whether the wait has a timeout.
     """
@@ -185,7 +185,7 @@ class Threads:
         return found
 
     def waits(self) -> list[Wait]:
-        """Return the reason why each thread waits, except the threads of Fast DDS.
+        """Return the reason why each thread is waiting, except for the threads of Fast DDS.
 
         A running thread waits for nothing.
         """

@@ -1,9 +1,9 @@
 """A trial in simulated time: /clock advances only while the node is idle.
 
-The clock is held at 0 until the simulator and the node have discovered each other (the handshake). After this
-handshake, the clock advances in frames of 16 ms. The threads of a node show whether the node follows wall time. Any
-sign that the node follows wall time is called a doubt, and leads to a trial in wall time (grading/clock.py;
-docs/design.md, decision 3).
+The clock stays at 0 until the simulator and the node have discovered each other (the handshake). After this handshake,
+the clock advances in frames of 16 ms. The threads of a node show whether the node follows wall time. Any sign that the
+node follows wall time is called a doubt, and leads to a trial in wall time (grading/clock.py; docs/design.md, decision
+3).
 """
 
 from __future__ import annotations
@@ -220,7 +220,7 @@ class SimulatedTrial(Simulation):
         self.tick(0.0)
 
     def _found_each_other(self) -> bool:
-        """Wait for QUIET_S. Return whether there was no discovery traffic and the node waits for its clock."""
+        """Wait for QUIET_S. Return whether there was no discovery traffic and the node is waiting for its clock."""
         quiet = GroupThreads(self.node.pids, of_dds)
         try:
             before = quiet.look().runs

@@ -21,7 +21,7 @@ LOW_M, HIGH_M = 1.5, 9.5
 APART_M = 1.6
 """The minimum distance between two targets, and between a target and the start (m)."""
 CLEAR_M = 1.2
-"""The minimum difference between the distances of the nearest and the second-nearest target (m)."""
+"""The minimum difference between the distances to the nearest and to the second-nearest target (m)."""
 LONGEST_M = 20.0
 """The maximum length of the path from the start through all targets (m)."""
 MOST_DRAWS = 20_000

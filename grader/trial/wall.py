@@ -1,6 +1,7 @@
 """A trial in wall time.
 
-A result in wall time is authoritative, and a node that does not follow ROS time can run only in wall time.
+If a result in simulated time is in doubt, the result in wall time counts. A node that does not follow ROS time can be
+judged only in wall time.
 """
 
 from __future__ import annotations
@@ -73,7 +74,7 @@ class WallTrial(Simulation):
         return self._crowded
 
     def _discover(self) -> None:
-        """Wait until the node is in the graph and its topics are recorded, until it has exited, or for DISCOVERY_S.
+        """Wait until the node is in the graph and its topics are recorded, or has exited, or DISCOVERY_S has passed.
 
         The first command ends the wait immediately, since the turtle moves after this command. On a crowded machine, a
         node may need much longer to start, and the time for which it waits for a processor does not count.

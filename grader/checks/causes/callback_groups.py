@@ -1,4 +1,4 @@
-"""Find callbacks that wait for a response in the client's own callback group, which is always a deadlock."""
+"""Find callbacks that wait for a response but are in the same callback group as the client: always a deadlock."""
 
 from __future__ import annotations
 

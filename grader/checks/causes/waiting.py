@@ -28,7 +28,7 @@ SERVERS = ("wait_for_service", "wait_for_server")
 SLEEPS = ("sleep", "sleep_for", "sleep_until")
 WAITS = (*RESPONSES, *SPINS, *SERVERS, *SLEEPS)
 LOOP = "while"
-"""The `name` of a `Wait` that is a loop which runs until done() returns True."""
+"""The `name` of a `Wait` in the form of a loop that runs until done() returns True."""
 THREADS = frozenset({"MultiThreadedExecutor", "Thread", "ThreadPoolExecutor", "Timer", "start_new_thread"})
 """If the source uses one of these, another thread can receive the response while a callback waits."""
 STARTS = frozenset({"Thread", "Timer", "start_new_thread", "submit", "to_thread", "run_in_executor"})
@@ -93,7 +93,7 @@ class Wait:
 
 
 def waits_in_callbacks(evidence: Evidence) -> list[Wait]:
-    """Return the waits in callbacks and in the functions that callbacks call, in the order of the source."""
+    """Return the waits in callbacks and in the functions that callbacks call, in their order in the source."""
     modules = evidence.code.modules
     aliases = _aliases(modules)
     own = {node.name for module in modules for node in module.nodes if isinstance(node, ast.FunctionDef)} & set(WAITS)

@@ -195,7 +195,7 @@ def _bound_elsewhere(scene: CrashScene, name: str) -> Cause | None:
 
 
 def _stores(scene: CrashScene, name: str) -> Iterator[tuple[int, Function | None]]:
-    """Yield each line that assigns or defines the name, with the function that the name is local to."""
+    """Yield each line that assigns or defines the name, with the function in which the name is local."""
     for node in scene.nodes:
         stored = isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Store)
         defined = isinstance(node, Function | ast.ClassDef) and node.name == name

@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from grader.trial.observed import Track
 
 STILL_S = 3.0
-"""A turtle that has not moved for this time (s) counts as standing still."""
+"""A turtle that has not moved for this time (s) is considered to stand still."""
 STILL_M = 0.05
 NEAR_M = 1.0
-"""A turtle that stands still within this distance (m) of a target has reached the target."""
+"""A turtle that stands still within this distance (m) of a target is considered to have reached it."""
 CATCH = "/catch"
 OWN_POSE = "/turtle1/pose"
 

@@ -28,7 +28,10 @@ _STEP_S = 0.1
 
 
 class Player:
-    """Plays a bag with the options of `bag play`. Keys pause the playback, step through it and change its rate."""
+    """Plays a bag with the options of `bag play`.
+
+    Keys pause the playback, step through the messages and change the rate.
+    """
 
     def __init__(
         self,

@@ -112,7 +112,7 @@ class BagWriter:
         self._writer.write(self._connections[topic, kind], stamp_ns, data)
 
     def keep(self) -> None:
-        """Flush the messages to the file, at most once per second, so that they remain if this process is killed."""
+        """Flush the messages to the file, at most once per second, so that they are kept if this process is killed."""
         if time.monotonic() - self._kept_at < _KEEP_S:
             return
         self._kept_at = time.monotonic()

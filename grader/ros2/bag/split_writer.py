@@ -1,4 +1,7 @@
-"""Write a bag that consists of several files. A new file begins at a maximum size or duration."""
+"""Write a bag that consists of several files.
+
+A new file begins when the current file has reached the maximum size or duration.
+"""
 
 from __future__ import annotations
 

@@ -78,7 +78,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Publish until Ctrl-C, or the number of times that the options specify.
+    """Publish until Ctrl-C, or until the number of messages that the options specify has been published.
 
     Raises:
         Ros2Error: the type is not installed, a value does not match its field, or the subscriptions do not appear.

@@ -45,7 +45,7 @@ def type_of(node: Node, topic: str, requested: str) -> Any | None:  # noqa: ANN4
     """Return the class of a topic's messages, or None if the topic does not exist. `requested` is the name as typed.
 
     Raises:
-        Ros2Error: nodes disagree about the type of the topic, or the type is not installed.
+        Ros2Error: nodes use different types for the topic, or the type is not installed.
     """
     types = types_of(tuple(node.get_topic_names_and_types()), topic)
     if not types:

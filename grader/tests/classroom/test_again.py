@@ -101,7 +101,7 @@ def test_an_error_that_repeats_while_others_are_judged_is_suspicious(tmp_path: P
     assert (done["ben"].errors, done["clara"].errors) == (TRIES, TRIES)
     reported = attention(out)
     assert reported["anna"] == ""
-    assert "suspicious: 2 attempts in a row to judge it failed" in reported["ben"]
+    assert "suspicious: it could not be judged in 2 consecutive attempts" in reported["ben"]
     assert "suspicious" in reported["clara"]
     assert "2 times in a row" in (out / "index.html").read_text("utf-8")
     # The next run continues to count until the submission is judged.

@@ -95,7 +95,7 @@ def test_a_submission_that_ends_with_an_error_repeatedly_is_listed(folder: Path)
     page = class_page(read_class(folder))
     attention = page[page.index('id="attention"') :]
     assert "student6" in attention
-    assert "suspicious: 2 attempts in a row to judge it failed, but other submissions could be judged" in attention
+    assert "suspicious: it could not be judged in 2 consecutive attempts, but other submissions could" in attention
 
 
 def test_other_files_are_ignored_and_damaged_reports_are_listed(folder: Path) -> None:

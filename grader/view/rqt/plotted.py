@@ -78,7 +78,7 @@ class Plotted:
                 self._wanted[name] = self._begin(name, types)
 
     def flush(self) -> None:
-        """Pass to `tell` all samples since the last flush."""
+        """Pass all samples since the last flush to `tell`."""
         if any(self._new.values()) or self._wanted != self._told:
             self._tell(self._new, dict(self._wanted))
             self._told = dict(self._wanted)

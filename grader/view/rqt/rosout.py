@@ -35,7 +35,7 @@ class Rosout:
         node.create_subscription(Log, "/rosout", self._arrived, _QOS)
 
     def flush(self) -> None:
-        """Pass to `tell` all messages since the last flush."""
+        """Pass all messages since the last flush to `tell`."""
         if self._new:
             new, self._new = self._new[-MOST_LINES:], []
             self._tell(new)
