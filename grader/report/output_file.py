@@ -33,7 +33,7 @@ def write(file: Path, content: bytes) -> None:
     """Write the file.
 
     Raises:
-        UsageError: the file cannot be written at this path.
+        UsageError: the path is not valid or not writable.
         MachineError: the disk is full, or the machine failed in another way.
     """
     try:

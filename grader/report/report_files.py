@@ -17,7 +17,7 @@ def save_files(evidence: Evidence, report: Report, json: Path | None, image: Pat
     A file that is None is not written.
 
     Raises:
-        UsageError: a file cannot be written at its path.
+        UsageError: a path is not valid or not writable.
         MachineError: the disk is full, or the machine failed in another way.
     """
     if json:

@@ -115,7 +115,7 @@ class GroupThreads:
         return sum(threads.run_time_s() for threads in self._each)
 
     def run_times_s(self) -> dict[int, float]:
-        """Return the CPU time (s) that each thread, except the threads of Fast DDS, has used, by thread id."""
+        """Return the CPU time (s) that each thread has used, by thread id, without the threads of Fast DDS."""
         return {tid: ran_s for threads in self._each for tid, ran_s in threads.run_times_s().items()}
 
     def waits(self) -> list[Wait]:

@@ -175,7 +175,7 @@ class Threads:
         return sum(int(run.split()[0]) for run in self.look().runs) / 1e9
 
     def run_times_s(self) -> dict[int, float]:
-        """Return the CPU time (s) that each thread, except the threads of Fast DDS, has used, by thread id."""
+        """Return the CPU time (s) that each thread has used, by thread id, without the threads of Fast DDS."""
         self._refresh()
         found = {}
         for tid, (_, schedstat) in self._files.items():

@@ -1,4 +1,4 @@
-"""Explain why a lifecycle node is silent: the node is never activated."""
+"""Explain why a lifecycle node sends nothing: the node is never activated."""
 
 from __future__ import annotations
 
