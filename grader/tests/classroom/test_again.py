@@ -103,7 +103,7 @@ def test_an_error_that_repeats_while_others_are_judged_is_suspicious(tmp_path: P
     assert reported["anna"] == ""
     assert "suspicious: it could not be judged in 2 consecutive attempts" in reported["ben"]
     assert "suspicious" in reported["clara"]
-    assert "2 times in a row" in (out / "index.html").read_text("utf-8")
+    assert "2 consecutive attempts" in (out / "index.html").read_text("utf-8")
     # The next run continues to count until the submission is judged.
     assert graded(tmp_path / "class", out, Scripted(ends), ends)["ben"].errors == 2 * TRIES
     ends["ben"] = ["failed"]

@@ -34,7 +34,7 @@ def test_an_error_that_repeats_while_others_are_judged_is_suspicious(
         [*(result(f"other{number}", status) for number, status in enumerate(others)), result("dora", "error", errors)]
     )
     assert ("See dora" in said) == suspicious
-    assert (f"{errors} times in a row" in said) == suspicious
+    assert (f"{errors} consecutive attempts" in said) == suspicious
 
 
 @pytest.mark.parametrize(
