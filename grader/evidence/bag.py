@@ -21,7 +21,7 @@ _VERSION: Literal[9] = 9
 
 
 def write_bag(folder: Path, messages: Sequence[Message], prefixes: Iterable[Path]) -> None:
-    """Write the messages in order to a new folder.
+    """Write the messages to a new folder, in the given order.
 
     The folders in `prefixes` contain the .msg files of types that the library rosbags does not know.
 

@@ -72,7 +72,7 @@ class Scenario:
     respond `answers_after_s` (s) after a call. The node starts with `parameters` on its command line and with
     `params_file` in a parameter file.
 
-    The simulator adds `targets` turtles in random places, and the trial itself runs the node that announces these
+    The simulator adds `targets` turtles at random places, and the trial itself runs the node that announces these
     turtles (grader/trial/target_keeper.py). If `alone_s` is set, the trial ends early once the other turtles are gone
     and turtle1 has been alone for this long (s).
     """

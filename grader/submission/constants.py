@@ -145,7 +145,7 @@ def _together(between: str, pieces: Iterable[ast.expr], names: Names, depth: int
 
 
 def _call(node: ast.expr, names: Names, depth: int) -> str | None:
-    """Return the result of os.path.join with strings, which is common in setup.py, or None for another call."""
+    """Return the result of os.path.join with strings, which is common in setup.py, or None for any other expression."""
     if not isinstance(node, ast.Call) or dotted(node.func) not in ("os.path.join", "path.join", "join"):
         return None
     return _together("/", node.args, names, depth)
