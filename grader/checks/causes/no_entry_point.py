@@ -1,4 +1,4 @@
-"""Find the reason why the executable of the exercise does not exist, such as a misspelt entry in setup.py."""
+"""Explain why the executable of the exercise does not exist, for example because its name in setup.py is misspelt."""
 
 from __future__ import annotations
 

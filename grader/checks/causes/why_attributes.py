@@ -83,7 +83,7 @@ def _without_setter(scene: CrashScene, name: str) -> Cause | None:
     """Return the cause if a property of the student or of rclpy's nodes cannot be set, else None."""
     own = next((each for each in scene.functions(name) if "property" in map(dotted, each.decorator_list)), None)
     if own is not None:
-        text = f"{name} is a property without a setter, so nothing can be assigned to it. Use another name inside it."
+        text = f"{name} is a property without a setter, so it cannot be assigned. Store the value under another name."
         return Cause("name-used-twice", text, scene.at(own))
     if not any(isinstance(node, ast.Attribute) and dotted(node) == f"self.{name}" for node in scene.on_line):
         return None

@@ -30,7 +30,7 @@ def test_a_property_of_the_students_own_is_not_one_of_every_node() -> None:
     source = DRIVER.format(line="self.speed = 3").replace("\ndef outside", f"\n{PROPERTY}\ndef outside")
     given = reported(source, NO_SETTER.format("speed", "Driver"))
     assert (given.diagnosis, given.line) == ("name-used-twice", to_look_at(source))
-    assert given.cause.startswith("speed is a property without a setter, so nothing can be assigned to it.")
+    assert given.cause.startswith("speed is a property without a setter, so it cannot be assigned.")
     assert "Every node already has" not in given.cause
 
 
