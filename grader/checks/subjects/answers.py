@@ -1,4 +1,4 @@
-"""Checks of answers.toml: compare the student's answers with given answers, or with the recorded graph and rates."""
+"""Checks of answers.toml: compare the student's answers with expected answers, or with the recorded graph and rates."""
 
 from __future__ import annotations
 
