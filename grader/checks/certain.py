@@ -1,8 +1,8 @@
 """The diagnoses that are facts, and the diagnoses that hold even if the machine was busy.
 
-The two questions are independent. "The class has no object" is a fact, and no busy machine can make it wrong. "No call
-of spin() was found" holds on every machine, but it is a conclusion from the source code and may not be the true cause.
-"The node drives before the first pose" is a fact of the recording, but a busy machine can cause it.
+The two properties are independent. "rclpy.spin is called with None" is a fact, and a busy machine cannot cause it.
+"rclpy.spin is not called" also holds on every machine, but it is a conclusion from the source code and may not be the
+true cause. "The node drives before the first pose" is a fact that the recording shows, but a busy machine can cause it.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ FROM_GRAPH: frozenset[Diagnosis] = frozenset(
         "action-type",
     }
 )
-"""The names, types and QoS of nodes, topics, services and actions."""
+"""Mistakes in the names, types and QoS settings of nodes, topics, services and actions."""
 FROM_CONTENT: frozenset[Diagnosis] = frozenset(
     {
         "wrong-value",
@@ -55,7 +55,7 @@ FROM_CONTENT: frozenset[Diagnosis] = frozenset(
         "x-y-swapped",
     }
 )
-"""The contents of messages, calls, goals and log lines, regardless of when these arrived."""
+"""Mistakes in the contents of messages, calls, goals and log lines, regardless of when these arrived."""
 FROM_ORDER: frozenset[Diagnosis] = frozenset(
     {
         "wrong-direction",
@@ -101,6 +101,6 @@ CONCLUSIONS: frozenset[Diagnosis] = frozenset(
 
 SHOWN = FROM_FILES | FROM_EXCEPTIONS | FROM_GRAPH | FROM_CONTENT
 FACTS = SHOWN | FROM_ORDER
-"""A report states these causes as facts, and every other cause as a possibility until a fix has proved it."""
+"""A report states these causes as facts, and all other causes as possibilities until a tested fix confirms them."""
 ON_EVERY_MACHINE = SHOWN | CONCLUSIONS
-"""In a trial in wall time, every other diagnosis may come from a lack of processor time."""
+"""Diagnoses that hold on a busy machine, too. In wall time, a lack of processor time may cause all the others."""

@@ -1,4 +1,4 @@
-"""Every id that a failed check may have, as a type that mypy checks. See diagnoses.py for the meaning of each id."""
+"""Every diagnosis id of a failed check, as a type that mypy checks. See diagnoses.py for the meaning of each id."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ def difference(before: Mapping[str, bytes], after: Mapping[str, bytes]) -> str:
 
 
 def _replaced(line: str, edit: Edit) -> str | None:
-    """Return the line in which the first occurrence of `edit.old` is replaced with `edit.new`, or None.
+    """Return the line with `edit.new` in place of the first `edit.old`, or None if the line has no `edit.old`.
 
     If possible, replace a whole name rather than part of a longer name.
     """

@@ -41,7 +41,10 @@ def find_exercise(name: str, course: Path | None = None) -> Exercise:
 
 
 def _nearest(name: str, known: Iterable[str]) -> str | None:
-    """Return the id that a name with a typo, with O for 0, or with one word of the id probably means, or None."""
+    """Return the id that this name probably means, or None.
+
+    The name may contain a typo or an O in place of a 0, or it may be one word of the id.
+    """
     number = name.translate(str.maketrans("OoIl", "0011"))
     same = [each for each in known if name and (name.lower() in each.split("-") or each.startswith(f"{number}-"))]
     return nearest(name, known) or (same[0] if len(same) == 1 else None)
@@ -58,7 +61,7 @@ def exercise_of_folder(path: Path, course: Path | None = None) -> Exercise | Non
 
 
 def load_exercise(path: Path) -> Exercise:
-    """Return the exercise in this file, or in the file exercise.toml of this folder.
+    """Return the exercise that this file defines, or the file exercise.toml in this folder.
 
     Raises UsageError, which lists every problem in the file: the key, its value, and the allowed values.
     """
@@ -76,7 +79,7 @@ def load_exercise(path: Path) -> Exercise:
 
 
 def title_of(path: Path) -> str:
-    """Return the title of the exercise in a file exercise.toml. If possible, only the beginning of the file is read.
+    """Return the title of the exercise in a file exercise.toml. If possible, only its beginning is parsed.
 
     Raises UsageError, which lists every problem in the file.
     """

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Judgement:
-    """The findings of all checks, judged from the evidence that exists at a certain stage.
+    """The findings of all checks, judged from the evidence that exists so far.
 
     `findings` contains a finding for every check. The findings in `settled` are final, because the evidence of their
     stage was complete. A finding that is not in `settled` says that the node was not run, or that a required check has
@@ -41,7 +41,7 @@ class Judgement:
         return tuple(_outcome(spec, self.findings[spec.id]) for spec in self.exercise.checks)
 
     def of_trial(self, trial: str) -> tuple[Outcome, ...]:
-        """Return the results of all checks that use the recording of the trial with this id."""
+        """Return the outcomes of all checks that use the recording of the trial with this id."""
         return tuple(
             _outcome(spec, self.findings[spec.id])
             for spec in self.exercise.checks
@@ -103,7 +103,7 @@ class Early:
     blocked: frozenset[str]
 
     def may_run(self, evidence: Evidence) -> bool:
-        """Return whether the trial may still be needed because at least one of its checks is not blocked."""
+        """Return whether the trial may still be needed, since at least one of its checks is not blocked."""
         exercise, trial = evidence.exercise, evidence.trial.id
         return any(_judges_trial(exercise, spec, trial) and spec.id not in self.blocked for spec in exercise.checks)
 
@@ -128,7 +128,7 @@ def judge_early(evidence: Evidence) -> Early:
 
 
 def _judges_trial(exercise: Exercise, spec: CheckSpec, trial: str) -> bool:
-    """Return whether the check judges this trial's recording, either for the trial's node or for an additional node."""
+    """Return whether the check uses the recording of this trial: it is the check's own trial, or runs beside that."""
     return KINDS[spec.kind].stage == "trial" and trial in (spec.trial, exercise.trial(spec.trial).beside)
 
 

@@ -38,7 +38,7 @@ P = TypeVar("P")
 class Kind(Generic[P]):
     """A type of check. `check` is a pure function: the same evidence and parameters give the same finding.
 
-    `title` is the title that a student reads if exercise.toml sets no title. `about` describes the check for authors of
+    `title` is the title that a student sees if exercise.toml sets no title. `about` describes the check for authors of
     exercises (docs/kinds.md). A check whose kind has `advice` is worth no points, and never fails a submission.
     """
 
@@ -52,7 +52,7 @@ class Kind(Generic[P]):
     early: Callable[[Evidence, P], Finding | None] | None = None
     """For a check that needs a build or a trial: return a finding if the files alone show a failure, else None."""
     drives: bool = False
-    """Whether a node passes such a check only if it sends velocity commands to the turtle."""
+    """Whether a node must send velocity commands to the turtle to pass a check of this kind."""
     requested: Callable[[Evidence, P], Requested | None] | None = None
     """Return the requirements of the check as shapes and values, or None if the submission does not determine them."""
     radius_m: Callable[[P], float] | None = None

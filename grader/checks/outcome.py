@@ -29,7 +29,7 @@ class Status(str, Enum):
 class Finding:
     """The result of a check.
 
-    `observed`, `expected` and `cause` are text for a beginner, and `diagnosis` is a stable id.
+    `observed`, `expected` and `cause` are texts for a beginner, and `diagnosis` is a stable id.
 
     `near_edge` is True if the distance between the measured value and the edge of the tolerance is at most a fifth of
     the tolerance, or if the node did not stop in simulated time. If `near_edge` is True, the check is judged again in
@@ -46,9 +46,9 @@ class Finding:
     fix: tuple[Edit, ...] = field(default=(), compare=False)
     """The change that would fix the mistake. The grader tries this change but never shows it to a student."""
     tried: str = ""
-    """A sentence about the result of testing the change."""
+    """A sentence that says whether the check passed when the change was tested."""
     change: str = ""
-    """The change as a unified diff if it has proved the cause. The change is only for instructors, because it is a part
+    """The change as a unified diff if its test confirmed the cause. It is only for instructors, because it is a part
     of the solution."""
 
     def because(self, cause: Cause) -> Finding:

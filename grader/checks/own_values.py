@@ -25,7 +25,7 @@ def numbers_spec(evidence: Evidence) -> NumbersSpec:
 
 
 def read_numbers(evidence: Evidence) -> OwnNumbers | Finding:
-    """Return the student's numbers from the submitted file, or a failed finding if the file contains no numbers."""
+    """Return the student's numbers from the submitted file, or a failed finding if the file is missing or invalid."""
     spec = numbers_spec(evidence)
     data = evidence.submission.files.get(spec.file)
     expected = f"{spec.file} is next to package.xml, as `grader start` wrote it."

@@ -1,4 +1,4 @@
-"""Decide whether a check of a trial in wall time may have failed because of the machine, not because of the node.
+"""Decide whether a check of a trial in wall time may have failed because of the machine rather than the node.
 
 A node that rarely gets a processor does everything later, so it does less before the end of the trial. A lack of
 processor time can therefore explain each failed check that compares times, numbers of messages or trajectories. It
@@ -29,7 +29,7 @@ def too_busy() -> Finding:
 def unless_starved(finding: Finding, recording: Recording, off: float, per_s: float) -> Finding:
     """Return the finding, or an error finding if stalls of the machine can explain the wrong value.
 
-    `off` is the distance of the value from its tolerance range, and `per_s` is the change of the value per second.
+    `off` is the distance of the value from its tolerance range, and `per_s` is how much a second changes the value.
     While the machine stalls, the turtle continues with its last command.
     """
     if finding.status is Status.FAILED and recording.stalls and off <= per_s * recording.stalled_s:
@@ -38,7 +38,7 @@ def unless_starved(finding: Finding, recording: Recording, off: float, per_s: fl
 
 
 def unless_too_busy(finding: Finding, recording: Recording) -> Finding:
-    """Return the finding, or an error finding if the machine stalled so much that this may explain the failed check."""
+    """Return the finding, or an error finding if the machine stalled so much that this may explain the failure."""
     if finding.status is not Status.FAILED or finding.diagnosis in ON_EVERY_MACHINE or recording.stalled_s < STARVED_S:
         return finding
     return too_busy()

@@ -1,4 +1,4 @@
-"""Decide whether a value is within its tolerance, or so near a limit that the trial must be repeated in wall time."""
+"""Decide whether a value is within its tolerance, or so near an edge that the trial must be repeated in wall time."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ NEAR = 0.2
 class Band:
     """The values from `low` to `high`. `low_width` and `high_width` are the widths of the tolerance at these edges.
 
-    An edge that is None does not exist. NaN is never inside a band: every comparison with NaN is False, so the methods
-    check that a value is inside, and not that it is outside.
+    If an edge is None, there is no limit on that side. NaN is never inside a band: every comparison with NaN is False,
+    so the methods check that a value is inside, and not that it is outside.
     """
 
     low: float | None

@@ -59,7 +59,7 @@ To add a mistake:
 
 1. Make a folder `grader/tests/mistakes/NNN-name/` with a new number. Put the submission and a file `expected.toml` into
    it. The keys of that file are the fields of `Case` in [case.py](../tests/case.py).
-2. If no id fits, add one to [diagnoses.py](diagnoses.py), and write the code that recognizes the mistake in the module
+2. If no id fits, add one to [diagnoses.py](diagnoses.py). The code that recognizes the mistake belongs in the module
    of its subject.
 3. Run the case:
 
@@ -68,8 +68,8 @@ python -m pytest -m "" grader/tests/test_mistakes.py -k NNN
 ```
 
 A message has at most 60 words. It says what was observed, what was expected and where, and it never contains a line of
-the solution. Tests check this. A false diagnosis is worse than none: list in `never` of `expected.toml` what the report
-must not say.
+the solution. Tests check these rules. A false diagnosis is worse than none: list in `never` of `expected.toml` what
+the report must not say.
 """
 
 

@@ -27,8 +27,8 @@ class DrawSquareNode(Node):
         if self.publisher.get_subscription_count() == 0:
             return  # no subscriber yet: the command would be lost
         msg = Twist()
-        # TODO c: set the speeds for the current state, count this call, and go to the next state after the last call
-        # in the current one.
+        # TODO c: set the speeds of the current state, and count this call. After the last call of a state,
+        # go to the next state.
         self.publisher.publish(msg)
 
 

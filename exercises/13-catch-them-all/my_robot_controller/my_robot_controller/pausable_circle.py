@@ -23,7 +23,7 @@ class PausableCircleNode(Node):
 
     def send_velocity_command(self):
         msg = Twist()
-        # TODO 11: drive the circle of your radius to the left, but stand still while the node is paused.
+        # TODO 11: drive a circle with your radius to the left, but stand still while the node is paused.
         self.publisher.publish(msg)
 
 

@@ -37,8 +37,8 @@ class DrawSquareNode(Node):
             self.change_state()
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO c: set the speeds for the current state, count this call, and go to the next state after the last call
-        # # in the current one.
+        # # TODO c: set the speeds of the current state, and count this call. After the last call of a state,
+        # # go to the next state.
         # END STARTER
         self.publisher.publish(msg)
         # BEGIN SOLUTION

@@ -50,7 +50,7 @@ class PausableCircleNode(Node):
             msg.angular.z = 1.0
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 11: drive the circle of your radius to the left, but stand still while the node is paused.
+        # # TODO 11: drive a circle with your radius to the left, but stand still while the node is paused.
         # END STARTER
         self.publisher.publish(msg)
 
