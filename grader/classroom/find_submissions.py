@@ -35,7 +35,7 @@ UNKNOWN = ""
 OWN = "exercises"
 """The folder of a clone in which the student works."""
 _OF_PROGRAMS = (".git", ".github", ".gitlab", ".idea", ".ipynb_checkpoints", ".venv", ".vscode", "__MACOSX")
-"""Folders that programs create beside submissions."""
+"""Folders that programs create next to submissions."""
 _OF_THE_COURSE = ("course", "docs", "grader", "solutions")
 """The other folders of a clone."""
 

@@ -1,8 +1,8 @@
 """Enter a sandbox room or cell: a fork of a process that has imported everything becomes a process of the cell.
 
-bubblewrap makes the room or cell. The first program in it is `cat`, which keeps it open. setns(2) moves a process into
-the namespaces of `cat`, and the forks of this process are processes of the room or cell. A fork must then give up the
-same rights that bubblewrap takes from the programs that it starts.
+bubblewrap creates the room or cell. The first program in the room or cell is `cat`, which keeps it open. setns(2) moves
+a process into the namespaces of `cat`, and the forks of this process are processes of the room or cell. A fork must
+then give up the same rights that bubblewrap takes from the programs that it starts.
 
 Like the scripts that run in a cell, this module needs only the standard library and grader.common.linux_calls.
 """
@@ -170,5 +170,5 @@ def allow_inspection(*, allow: bool) -> None:
 
 
 def sacrifice() -> None:
-    """Let the kernel kill this process first if memory runs out. Call `allow_inspection(allow=True)` before."""
+    """Let the kernel kill this process first if memory runs out. Call `allow_inspection(allow=True)` first."""
     Path("/proc/self/oom_score_adj").write_text("1000", "ascii")

@@ -25,7 +25,7 @@ _ENDS_S = 5.0
 
 
 class HolderError(Exception):
-    """bubblewrap could not make the room or cell. The message is the output of bubblewrap."""
+    """bubblewrap could not create the room or cell. The message is the output of bubblewrap."""
 
 
 class Holder:
@@ -60,7 +60,7 @@ class Holder:
         return self._process.pid
 
     def await_ready(self) -> int:
-        """Wait until bubblewrap has made the room or cell. Return a descriptor of HOLDER, for entering.enter.
+        """Wait until bubblewrap has created the room or cell. Return a descriptor of HOLDER, for entering.enter.
 
         Raises:
             HolderError: bubblewrap failed.
