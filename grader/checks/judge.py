@@ -128,7 +128,10 @@ def judge_early(evidence: Evidence) -> Early:
 
 
 def _judges_trial(exercise: Exercise, spec: CheckSpec, trial: str) -> bool:
-    """Return whether the check uses the recording of this trial: it is the check's own trial, or runs beside that."""
+    """Return whether the check uses the recording of this trial.
+
+    It is the check's own trial, or the trial that `beside` refers to in the check's own trial.
+    """
     return KINDS[spec.kind].stage == "trial" and trial in (spec.trial, exercise.trial(spec.trial).beside)
 
 
