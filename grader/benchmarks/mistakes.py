@@ -2,9 +2,9 @@
 
     python -m grader.benchmarks.mistakes [--only NNN ...]
 
-F is the cost of the same work without the grader: a colcon build of the package, and a process with one rclpy node for
-each node that the exercise runs (benchmarks/bare.py). Each part is the median of three measurements. For example,
-04-package-files runs two nodes, and 07-challenges runs four. The speed of a machine varies during the minutes that this
+F is the cost of the same work without the grader: a colcon build of the package, and one process with one rclpy node
+for each trial of the exercise (benchmarks/bare.py). For example, 04-package-files has two trials, and 07-challenges has
+four. Each part of F is the median of three measurements. The speed of a machine varies during the minutes that this
 benchmark takes, so F is measured again after every few cases. A case that exceeds the target in the first measurement
 is measured three more times, each time immediately after F. The median of these three measurements is used.
 """
@@ -76,7 +76,7 @@ def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
         seconds = _whole_s(case, folder / case.name)
         if seconds is None:
             continue
-        found[case.name] = seconds / _f_s(case, bare)
+        found[case.name] = seconds / f_s(_exercise(case), bare)
         if found[case.name] > MOST_F:
             found[case.name] = statistics.median(_beside_f(case, folder / f"{case.name}-{turn}") for turn in range(3))
         print(f"{case.name}: {seconds:.2f} s, {found[case.name]:.2f} F", flush=True)
@@ -90,7 +90,7 @@ def _beside_f(case: Case, folder: Path) -> float:
     """
     bare = _bare_s(folder / "bare")
     seconds = _whole_s(case, folder / "whole")
-    return math.inf if seconds is None else seconds / _f_s(case, bare)
+    return math.inf if seconds is None else seconds / f_s(_exercise(case), bare)
 
 
 def _bare_s(folder: Path) -> dict[str, float]:
@@ -99,8 +99,9 @@ def _bare_s(folder: Path) -> dict[str, float]:
     return {part: statistics.median(each[part].wall_s for each in costs) for part in costs[0]}
 
 
-def _f_s(case: Case, bare: Mapping[str, float]) -> float:
-    return bare["colcon build"] + (1 + len(_exercise(case).trials)) * bare["rclpy node"]
+def f_s(exercise: Exercise, bare: Mapping[str, float]) -> float:
+    """Return F for this exercise (s). `bare` has the duration of a colcon build and of one rclpy node (s)."""
+    return bare["colcon build"] + len(exercise.trials) * bare["rclpy node"]
 
 
 def _exercise(case: Case) -> Exercise:

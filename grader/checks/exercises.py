@@ -61,7 +61,7 @@ def exercise_of_folder(path: Path, course: Path | None = None) -> Exercise | Non
 
 
 def load_exercise(path: Path) -> Exercise:
-    """Return the exercise that this file defines, or the file exercise.toml in this folder.
+    """Return the exercise that the file `path` defines. If `path` is a folder, its file exercise.toml is read.
 
     Raises UsageError, which lists every problem in the file: the key, its value, and the allowed values.
     """

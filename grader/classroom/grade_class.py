@@ -158,6 +158,6 @@ def _engine(request: Request, *, local: bool) -> Engine:
 def _reported(kept: Sequence[Result], todo: Sequence[Todo]) -> str:
     reasons = Counter(one.why for one in todo)
     why = ", ".join(f"{amount} {reason}" for reason, amount in reasons.most_common())
-    before = f"{len(kept)} graded before, " if kept else ""
+    before = f"{len(kept)} already graded, " if kept else ""
     to_grade = f"{len(todo)} to grade" + (f" ({why})" if reasons.keys() - {"new"} else "")
     return f"{count(len(kept) + len(todo), 'submission')}: {before}{to_grade if todo else 'nothing to grade'}."

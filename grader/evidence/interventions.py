@@ -53,7 +53,7 @@ def moved_by(recording: Recording, *, from_start: bool, others_removed: bool = F
 
 
 def first_driven(recording: Recording) -> int:
-    """Return the index of the first frame in which a command can have moved the turtle."""
+    """Return the index of the first frame in which a command could have moved the turtle."""
     begin_s = min((command.t_s for command in recording.commands), default=0.0)
     return int(np.searchsorted(recording.frames.t_s, begin_s))
 

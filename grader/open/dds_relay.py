@@ -74,7 +74,7 @@ class Relay:
         self._inside[0].sendto(datagram, (HOST, port))
 
     def _as_seen_inside(self, locator: re.Match[bytes]) -> bytes:
-        """Return the locator with the address of this relay, since the cell has no other addresses."""
+        """Return the locator with the address of this relay, which is the only address that the cell can reach."""
         (port,) = struct.unpack("<I", locator[2])
         if FIRST_OWN <= port < FIRST_OWN + OTHERS:
             self._reachable.add(port)

@@ -246,8 +246,8 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
     elif python:
         if stamp and ros is None and stamp.ros != WHEELS:
             say(
-                f"This set-up was made for the ROS 2 in {stamp.ros}, which is not sourced. The course's "
-                f"own ROS 2 replaces it"
+                f"This set-up was made for the ROS 2 in {stamp.ros}, which is not sourced. The "
+                f"course is set up again with its own ROS 2; your installation is not changed"
             )
         if machine.is_offline(os.environ):
             terminal_text.say(setup_errors.NO_NETWORK.format("it has no network"))

@@ -1,6 +1,6 @@
 """The process that serves the page.
 
-The process also reads from the simulator and ROS, and handles the requests of pages.
+The process also reads from the simulator and ROS, and handles the requests that pages send.
 """
 
 from __future__ import annotations

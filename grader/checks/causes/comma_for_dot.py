@@ -34,7 +34,7 @@ def comma_for_dot(scene: CrashScene, undefined: str = "") -> Cause | None:
 
 
 def _neighbours(scene: CrashScene) -> Iterator[tuple[ast.expr, ast.expr]]:
-    """Yield the values before and after each comma that may be written in place of a dot."""
+    """Yield the values before and after each comma that may be a typing mistake for a dot."""
     for node in scene.on_line:
         if isinstance(node, ast.Expr | ast.FormattedValue) and isinstance(node.value, ast.Tuple):
             yield from _pairs(node.value.elts)

@@ -39,8 +39,8 @@ class Square:
     """Requires sides of this length, corners of 90 degrees, and a standstill at the start after the fourth side."""
 
     side_m: float = number(above=0, at_most=5, about="The length of a side.")
-    side_tolerance_m: float = number(0.15, above=0, about="The maximum error of a side.")
-    corner_tolerance_deg: float = number(7.0, above=0, about="The maximum error of a corner of 90 degrees.")
+    side_tolerance_m: float = number(0.15, above=0, about="The maximum error of the length of a side.")
+    corner_tolerance_deg: float = number(7.0, above=0, about="The maximum difference between a corner and 90 degrees.")
     closing_m: float = number(0.4, above=0, about="The maximum distance from the start to the end of the fourth side.")
     direction: str = choice("counter-clockwise", "clockwise", "either", about="The direction of the turn.")
 
@@ -145,7 +145,7 @@ def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -
             return unless_starved(finding, recording, abs(more) - params.side_tolerance_m, float(speed.max()))
     for name, corner in zip(ORDINALS, corners, strict=False):
         if not right.holds(sign * corner):
-            observed = f"The {name} corner turns by {sign * corner:.0f} degrees."
+            observed = f"At the {name} corner, the turtle turns by {sign * corner:.0f} degrees."
             cause = "A quarter turn is pi / 2 rad, which is turning speed times time."
             finding = failed(observed, expected, Cause("corner-angle", cause, where), near_edge=near)
             off = abs(sign * corner - 90.0) - params.corner_tolerance_deg

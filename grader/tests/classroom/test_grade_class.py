@@ -74,7 +74,7 @@ def test_a_second_run_grades_only_what_changed(undisturbed: Run, tmp_path: Path)
     (submitted / "gina" / "more.txt").write_text("Still nothing.")
     shutil.rmtree(submitted / ACTS)
     done = grade(submitted, "--exercise", STEP, "--out", out)
-    assert "8 submissions: 7 graded before, 1 to grade (1 changed)." in done.stdout
+    assert "8 submissions: 7 already graded, 1 to grade (1 changed)." in done.stdout
     assert (
         "1 result of other submissions in" in done.stdout
     )  # the result of the removed submission stays, but is not counted

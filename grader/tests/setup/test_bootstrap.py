@@ -184,7 +184,7 @@ def test_a_set_up_for_a_sourced_ros_is_not_replaced_without_a_word(
     course: Course, capsys: pytest.CaptureFixture[str]
 ) -> None:
     course.set_up(ros=JAZZY)
-    assert "replaces it" not in capsys.readouterr().out
+    assert "with its own ROS 2" not in capsys.readouterr().out
     course.set_up()
     assert "made for the ROS 2 in /opt/ros/jazzy, which is not sourced" in capsys.readouterr().out
 

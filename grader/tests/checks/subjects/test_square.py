@@ -15,6 +15,11 @@ TICKS = 10
 Leg = tuple[int, float, float]
 
 
+def turns(corner: str, degrees: int) -> str:
+    """Return the message about a corner with this angle."""
+    return f"At the {corner} corner, the turtle turns by {degrees} degrees."
+
+
 def side(length_m: float = 2.0) -> Leg:
     return TICKS, length_m / (TICKS * TICK_S), 0.0
 
@@ -55,11 +60,11 @@ def test_a_square_is_one(parts: list[Leg], start: Pose | None) -> None:
     [
         (round_((2.0, 2.0, 2.3, 2.0)), "side-length", "The third side is 2.30 m long: 0.30 m too long."),
         (round_((2.0, 1.5, 2.0, 2.0)), "side-length", "The second side is 1.50 m long: 0.50 m too short."),
-        (round_(corners=(90.0, 60.0, 90.0, 90.0)), "corner-angle", "The second corner turns by 60 degrees."),
-        (round_(corners=(90.0, 90.0, 60.0, 90.0)), "corner-angle", "The third corner turns by 60 degrees."),
-        (round_(corners=(90.0, 90.0, 98.0, 90.0)), "corner-angle", "The third corner turns by 98 degrees."),
-        (round_(corners=(105.0,) * 4), "corner-angle", "The first corner turns by 105 degrees."),
-        (round_(corners=(90.0, -90.0, 90.0, 90.0)), "corner-angle", "The second corner turns by -90 degrees."),
+        (round_(corners=(90.0, 60.0, 90.0, 90.0)), "corner-angle", turns("second", 60)),
+        (round_(corners=(90.0, 90.0, 60.0, 90.0)), "corner-angle", turns("third", 60)),
+        (round_(corners=(90.0, 90.0, 98.0, 90.0)), "corner-angle", turns("third", 98)),
+        (round_(corners=(105.0,) * 4), "corner-angle", turns("first", 105)),
+        (round_(corners=(90.0, -90.0, 90.0, 90.0)), "corner-angle", turns("second", -90)),
         (round_(corners=(-90.0,) * 4), "wrong-direction", "The turtle turns in the wrong direction at the corners."),
         (round_()[:5], "too-few-sides", "The trajectory has 3 sides."),
         ([side()], "too-few-sides", "The trajectory has 1 side."),

@@ -1,0 +1,13 @@
+"""The benchmark of the mistakes: with how many nodes a case is compared."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.benchmarks.mistakes import f_s
+from grader.checks.exercises import find_exercise
+
+
+@pytest.mark.parametrize(("step", "nodes"), [("03-circle-publisher", 1), ("04-package-files", 2), ("07-challenges", 4)])
+def test_f_has_one_node_for_each_trial(step: str, nodes: int) -> None:
+    assert f_s(find_exercise(step), {"colcon build": 100.0, "rclpy node": 1.0}) == 100.0 + nodes
