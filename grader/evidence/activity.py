@@ -34,14 +34,21 @@ def ended_at_start(recording: Recording) -> bool:
 
     A node that raised an exception inside rclpy's spin did run, no matter how soon it exited. A node that raised an
     exception in a constructor and sent no command did not run, no matter how late it exited: on a busy machine, the
-    start takes longer than the initial period (START_S). These rules depend neither on the clock nor on the time of the
-    first observation. If there is no such exception, a node that exits in the initial period counts as a node that did
-    not run.
+    start takes longer than the initial period (START_S). The same holds for a program that exited without an error
+    before its node appeared in the graph. These rules depend neither on the clock nor on the time of the first
+    observation. If none of them applies, a node that exits in the initial period counts as a node that did not run.
     """
     end = recording.end
     if end.by != "itself" or spun(recording):
         return False
-    return end.t_s <= START_S or (_failed_in_constructor(recording) and not recording.commands)
+    if end.t_s <= START_S:
+        return True
+    return not recording.commands and (_failed_in_constructor(recording) or _left_without_a_node(recording))
+
+
+def _left_without_a_node(recording: Recording) -> bool:
+    """Return whether the program exited without an error, and no node of it appeared in the graph."""
+    return recording.end.exit_code == 0 and TRACEBACK not in recording.stderr.text and not nodes(recording)
 
 
 def _failed_in_constructor(recording: Recording) -> bool:

@@ -10,7 +10,7 @@ from grader.common.lazy import np
 from grader.evidence import activity
 from grader.evidence.circle_fit import Circle, fit_circle, turns_about
 from grader.evidence.interventions import MOVING, first_driven
-from grader.trial.recording import Pose
+from grader.trial.recording import OUTLIVES_S, Pose
 
 if TYPE_CHECKING:
     from grader.trial.recording import Floats, Recording
@@ -123,9 +123,13 @@ def _before_driving(recording: Recording) -> int:
 
 
 def trajectory_of(recording: Recording) -> Trajectory:
-    """Return the trajectory of the turtle from the pose that `driven_from` returns until SIGINT."""
+    """Return the trajectory of the turtle from the pose that `driven_from` returns until SIGINT.
+
+    If the node exited on its own, return the trajectory until OUTLIVES_S later.
+    """
     frames, start = recording.frames, driven_from(recording)
-    until = frames.t_s <= activity.end_s(recording)
+    by_itself = recording.end.by == "itself"
+    until = frames.t_s <= (recording.end.t_s + OUTLIVES_S if by_itself else activity.end_s(recording))
     until[: _before_driving(recording)] = False
     x = np.append(start.x, frames.x[until])
     y = np.append(start.y, frames.y[until])

@@ -21,8 +21,9 @@ import os
 import signal
 import sys
 import tarfile
+import time
 import types
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -47,6 +48,8 @@ importing rclpy takes.
 _NOT_NEEDED = "rosidl_generator_py.generate_py_impl"
 """A module that creates Python code from interfaces and imports a parser. Messages can be used without this module."""
 _SIMULATED = "use_sim_time:=true"
+DELIVERY_S = 0.5
+"""The maximum time for which a publisher exists longer, until its messages have been acknowledged (s)."""
 _TYPES_AHEAD = (("geometry_msgs.msg", "Twist"), ("rosgraph_msgs.msg", "Clock"), ("turtlesim.msg", "Pose"))
 
 
@@ -109,6 +112,30 @@ def _initialize_with(ours: list[str]) -> None:
         original(self, [*given, *ours] if isinstance(given, list | tuple) else given, **options)
 
     Context.init = init
+
+
+def deliver_before_destroying() -> None:
+    """Keep each publisher until its messages have been acknowledged, or until DELIVERY_S has passed.
+
+    A reader drops a message that it receives after the notice that the publisher is gone. Whether the last message of a
+    node arrives before this notice would depend on the machine. The loops do not sleep, so that a simulated
+    clock stands still.
+    """
+    from rclpy.duration import Duration
+    from rclpy.publisher import Publisher
+
+    original, monotonic = Publisher.destroy, time.monotonic
+
+    @functools.wraps(original)
+    def destroy(self: Publisher) -> None:
+        until = monotonic() + DELIVERY_S
+        with suppress(Exception):
+            while not self.wait_for_all_acked(Duration()) and (now := monotonic()) < until:
+                while monotonic() < now + DELIVERY_S / 500:
+                    pass
+        original(self)
+
+    Publisher.destroy = destroy
 
 
 def _exit_without_waiting() -> None:
@@ -199,6 +226,7 @@ def run(waiting: list[Postponed]) -> None:
     if not (source.startswith(b"#!") and b"python" in source.split(b"\n", 1)[0]):
         # The node is not a Python script, so the arguments can only be passed on the command line.
         os.execv(script, [*sys.argv, *order["ros_arguments"]])
+    deliver_before_destroying()
     if order["ros_arguments"]:
         _initialize_with(order["ros_arguments"])
     if _SIMULATED not in order["ros_arguments"]:

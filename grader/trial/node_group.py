@@ -42,6 +42,10 @@ class NodeGroup:
         """Return whether all of the processes have exited."""
         return all(process.ended() for process in self.processes)
 
+    def ended_itself(self) -> bool:
+        """Return whether the trial's own node exited before it received SIGINT. Call this after it has exited."""
+        return self.processes[0].ended_itself
+
     def interrupt(self) -> None:
         """Send SIGINT to each node, as Ctrl-C does in a terminal."""
         for process in self.processes:

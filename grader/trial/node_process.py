@@ -157,6 +157,11 @@ class NodeProcess:
         """Return whether the process has exited."""
         return self._launcher.poll() is not None
 
+    @property
+    def ended_itself(self) -> bool:
+        """Whether the process has not received a signal from the grader."""
+        return self._by == "itself"
+
     def interrupt(self) -> None:
         """Send SIGINT, as Ctrl-C does in a terminal."""
         if self._is_gone():

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 AFTER_STALL_S = 0.05
 """After a stall, messages still arrive late for this long (s)."""
+OUTLIVES_S = 0.2
+"""The trajectory goes on for this long after the node has exited on its own (s). Thus, a last command always moves the
+turtle, and it does not matter how soon the grader notices the exit."""
 
 ClockName = Literal["simulated", "wall"]
 

@@ -17,6 +17,7 @@ from grader.trial.call_log import CallLog
 from grader.trial.caller import Caller
 from grader.trial.goals import GoalLog
 from grader.trial.recorder import Recorder
+from grader.trial.recording import OUTLIVES_S
 from grader.trial.silent_servers import SilentServers
 from grader.trial.target_keeper import TargetKeeper
 from grader.trial.turtles import TurtleWatch
@@ -144,11 +145,12 @@ class Simulation:
         self.turtles.look(now_s, self.turtlesim.world)
         if len(self.turtlesim.world.turtles) > 1:
             self._in_company_s = now_s
+        self._keep_frame(now_s)
+
+    def _keep_frame(self, now_s: float) -> None:
         state = self.turtlesim.turtle_state("turtle1")
         if state is not None:
-            self.frames.append(
-                (now_s, state.x, state.y, state.theta, state.linear, state.angular, state.wall),
-            )
+            self.frames.append((now_s, state.x, state.y, state.theta, state.linear, state.angular, state.wall))
 
     def is_over(self, now_s: float) -> bool:
         """Return whether the trial ends early, because turtle1 has been alone for long enough."""
@@ -271,6 +273,14 @@ class Simulation:
             self.node.escalate()
         self.spin()
         self.node.read_output(self.now())
+        if self.node.ended_itself():
+            self._carry_out_last_command(from_s + frames * FRAME_S)
+
+    def _carry_out_last_command(self, from_s: float) -> None:
+        """Run the frames in which the turtle outlives the node, however soon the exit of the node was noticed."""
+        for frame in range(round(OUTLIVES_S / FRAME_S) + 2):
+            self.turtlesim.world.step(from_s + frame * FRAME_S)
+            self._keep_frame(from_s + frame * FRAME_S)
 
     def tick(self, now_s: float) -> None:
         """Run one frame, and publish the time if the clock is simulated."""

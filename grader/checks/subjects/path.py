@@ -217,7 +217,9 @@ def _not_round(
 
 def _too_short(evidence: Evidence, trajectory: Trajectory, turns: float, expected: str, *, near_edge: bool) -> Finding:
     observed = f"The turtle drove {turns:.2f} of a turn."
-    early = ended_early(evidence)
+    crash, early = crash_of(evidence), ended_early(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, observed, expected)
     if early:
         return failed(observed, expected, Cause("ended-early", early, evidence.place("publish")), near_edge=near_edge)
     if evidence.commands[0].t_s > LATE_S:

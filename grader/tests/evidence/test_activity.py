@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from grader.evidence.activity import START_S, ended_at_start
-from grader.tests.checks.made import recording
+from grader.tests.checks.made import graph, recording
 from grader.trial.recording import Output, ProcessEnd
 
 IN_INIT = """\
@@ -42,3 +42,15 @@ def test_an_exception_in_a_constructor_is_a_failed_start_however_late_it_comes(
 def test_a_node_that_sent_a_command_had_started() -> None:
     end = ProcessEnd(by="itself", exit_code=1, t_s=LATE_S, stop_s=None)
     assert not ended_at_start(recording([(0.1, 2.0, 1.0)], end=end, stderr=Output(IN_INIT)))
+
+
+@pytest.mark.parametrize(
+    ("exit_code", "nodes", "at_start"),
+    [(0, 0, True), (0, 1, False), (1, 0, False)],
+)
+def test_a_program_that_ended_without_a_node_had_not_started_however_late_it_is_noticed(
+    exit_code: int, nodes: int, *, at_start: bool
+) -> None:
+    end = ProcessEnd(by="itself", exit_code=exit_code, t_s=LATE_S, stop_s=None)
+    graphs = tuple(graph() for _ in range(nodes))
+    assert ended_at_start(recording([], end=end, graphs=graphs)) is at_start

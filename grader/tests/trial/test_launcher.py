@@ -91,6 +91,29 @@ def test_any_other_node_exits_as_always(in_ros: InRos, tmp_path: Path) -> None:
     assert done.returncode == -signal.SIGABRT, done.stderr
 
 
+LAST = """#!/usr/bin/env python3
+import rclpy
+from rclpy.publisher import Publisher
+from std_msgs.msg import String
+acknowledged = iter({answers})
+Publisher.wait_for_all_acked = lambda *_: next(acknowledged)
+rclpy.init()
+node = rclpy.create_node("fish")
+node.destroy_publisher(node.create_publisher(String, "words", 10))
+print(next(acknowledged))
+"""
+
+
+def test_a_publisher_is_destroyed_after_its_messages_have_been_acknowledged(in_ros: InRos, tmp_path: Path) -> None:
+    done = launch(in_ros, tmp_path, LAST.format(answers=[False, False, True, "destroyed"]), [])
+    assert printed(done) == b"destroyed\n", done.stderr
+
+
+def test_a_publisher_is_destroyed_even_if_its_messages_are_never_acknowledged(in_ros: InRos, tmp_path: Path) -> None:
+    done = launch(in_ros, tmp_path, LAST.format(answers="lambda: False, True") + "print('destroyed')\n", [])
+    assert printed(done) == b"False\ndestroyed\n", done.stderr
+
+
 @pytest.mark.parametrize("args", ["None", "sys.argv", "[]", "('node', '--ros-args', '-r', 'a:=b', '--')"])
 def test_simulated_time_is_requested_without_an_argument_that_the_program_sees(
     in_ros: InRos, tmp_path: Path, args: str

@@ -7,6 +7,7 @@ import tarfile
 
 import pytest
 
+from grader.evidence.trajectory import trajectory_of
 from grader.ros.installation import find_ros
 from grader.ros.underlay import with_turtlesim
 from grader.trial.inputs import Inputs
@@ -42,6 +43,18 @@ node.create_subscription(String, "/ping", publisher.publish, 10)
 """
 ENDS = """
 node.create_timer(1.0, lambda: exit(0))
+"""
+LEAVES = """
+from geometry_msgs.msg import Twist
+publisher = node.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+def drive():
+    msg = Twist()
+    msg.linear.x = 2.0
+    publisher.publish(msg)
+    node.destroy_node()
+    rclpy.shutdown()
+    exit(0)
+node.create_timer(0.5, drive)
 """
 CATCHER = """
 client = node.create_client(Kill, "/catch")
@@ -103,3 +116,9 @@ def test_the_trial_plays_the_node_that_announces_and_removes_targets() -> None:
     assert [track.turtle for track in recording.tracks if track.gone_s is not None] == names
     assert recording.own_nodes == ("/turtlesim", "/spawner")
     assert recording.sigint_t_s < 3.0  # turtle1 has been alone for long enough
+
+
+def test_the_last_command_of_a_node_arrives_and_moves_the_turtle() -> None:
+    recording = trial_of(Inputs(), leaves=LEAVES)
+    assert (recording.end.by, len(recording.commands)) == ("itself", 1)
+    assert trajectory_of(recording).length_m > 0.3
