@@ -9,6 +9,7 @@ import pytest
 from grader.tests.browser import violations
 from grader.tests.narrow import cut
 from grader.tests.open.course import CIRCLE
+from grader.tests.waiting import until
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -70,6 +71,7 @@ def test_the_story_of_step_03(learner: Course, browser: Browser) -> None:
     verdict(page, "Passed: 100 of 100 points.")
     page.locator("#checks li.failed").first.wait_for(state="detached")
     page.locator("#details article").first.wait_for(state="detached")
+    until(lambda: not stayed(page, "run-1"))  # the verdict comes before the trajectory
     page.get_by_role("button", name="Play").click()
     page.get_by_role("button", name="Pause").wait_for()
     assert page.locator(f'.steps [data-step="{CIRCLE}"]').get_by_text("100/100").is_visible()
