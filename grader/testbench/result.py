@@ -111,7 +111,7 @@ def run_of(ended: Ended) -> NodeRun:
     """Return the run with its report. Parts of the report that have an unexpected form are ignored."""
     try:
         report = json.loads(ended.report)
-    except ValueError:
+    except (ValueError, RecursionError):
         report = None
     report = report if isinstance(report, dict) else {}
     listed = report.get("cases")

@@ -4,7 +4,7 @@ This file runs as a separate script. The script reads one line of JSON (`calls`,
 `env`, `install`, `files`) and then the install tree, a tar stream, from standard input. The script writes one line of
 JSON for each call. A call cannot write such lines itself: the process is not dumpable, so its child processes cannot
 open its standard output, and it is the first process of the cell, so that no other process has this standard output.
-Otherwise, one call could change the result of another call.
+No process that a call has started lives on in the next call. Otherwise, one call could change the result of another.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ import tempfile
 import time
 import traceback
 import types
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -73,6 +74,7 @@ def _called(order: dict[str, Any], call: dict[str, Any]) -> dict[str, Any]:
         if child == 0:
             _child(order, call, (out.fileno(), err.fileno(), returned.fileno()))
         ended = _ended(child)
+        _end_processes(child)
         values, kind = _returned(_text(returned.fileno()))
         return {
             "ended": ended,
@@ -95,7 +97,7 @@ def _text(file: int) -> str:
 def _returned(text: str) -> tuple[list[float] | None, str]:
     try:
         values, kind = json.loads(text)
-    except (ValueError, TypeError):
+    except (ValueError, TypeError, RecursionError):  # the call can write anything
         return None, ""
     return values, kind
 
@@ -110,9 +112,21 @@ def _ended(child: int) -> str:
                 return TOO_LATE
             return f"exit {code}" if code >= 0 else f"signal {-code}"
         time.sleep(POLL_S)
-    os.killpg(child, signal.SIGKILL)
+    os.kill(child, signal.SIGKILL)  # it may have left its process group
     os.waitpid(child, 0)
     return TOO_LATE
+
+
+def _end_processes(child: int) -> None:
+    """Kill the processes that a call has started: in a cell, all of them, and otherwise its process group."""
+    with suppress(ProcessLookupError):
+        if os.getpid() == 1:
+            os.kill(-1, signal.SIGKILL)  # all processes of the cell, except this one
+        else:
+            os.killpg(child, signal.SIGKILL)
+    with suppress(ChildProcessError):
+        while os.getpid() == 1:
+            os.wait()
 
 
 def _child(order: dict[str, Any], call: dict[str, Any], files: tuple[int, int, int]) -> None:

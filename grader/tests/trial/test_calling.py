@@ -105,6 +105,40 @@ def test_who_breaks_the_call_gets_no_numbers(ros: Ros, body: str) -> None:
     assert [each.values for each in called(ros, f"def f(x, y):\n    {body}\n")] == [None, None]
 
 
+@pytest.mark.skipif(not bubblewrap.usable(), reason="the sandbox is not available")
+def test_a_process_of_a_call_does_not_live_on(ros: Ros) -> None:
+    source = """
+import os
+import time
+
+def f(x, y):
+    alive = [name for name in os.listdir("/proc") if name.isdigit() and int(name) not in (1, os.getpid())]
+    if os.fork() == 0:
+        os.setsid()
+        time.sleep(1000)
+    return (len(alive),)
+"""
+    assert [each.values for each in called(ros, source)] == [(0.0,), (0.0,)]
+
+
+def test_a_result_that_cannot_be_parsed_does_not_affect_the_next_call(ros: Ros) -> None:
+    source = """
+import os
+
+def f(x, y):
+    if os.path.exists("not-the-first"):
+        return (1.0,)
+    open("not-the-first", "w").close()
+    for number in range(3, 20):
+        try:
+            os.pwrite(number, b"[" * 20_000, 0)
+        except OSError:
+            pass
+    os._exit(0)
+"""
+    assert [each.values for each in called(ros, source)] == [None, (1.0,)]
+
+
 def test_a_program_reads_the_files_beside_it(ros: Ros) -> None:
     source = "import sys\nprint(open(sys.argv[1]).read())\nsys.exit('the end')\n"
     tree = tree_of(ros, f"lib/{PACKAGE}/program", source)
