@@ -167,7 +167,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "parameter-type": "the parameter is not a float",
         "parameter-descriptor": "the parameter has no description or no range",
         "parameter-range": "the range of the parameter is wrong",
-        "parameter-accepted": "the node accepts a value that it must refuse",
+        "parameter-accepted": "the node accepts a value that it must reject",
         "parameter-refused": "the node refuses a value that it must accept",
         "parameter-not-followed": "the node does not use the new value of a parameter",
         "no-reason": "the node refuses a value without a reason",

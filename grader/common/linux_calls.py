@@ -44,7 +44,7 @@ def pidfd_send_signal(pidfd: int, number: int) -> None:
 
 
 def close_from(lowest: int) -> None:
-    """Close all file descriptors of this process that are not less than `lowest`.
+    """Close all file descriptors of this process from `lowest` upwards.
 
     If Python was built without close_range(2), `os.closerange` calls close(2) for every number up to the limit on open
     files. This takes minutes if the limit is very high, as in some containers.

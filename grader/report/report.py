@@ -58,7 +58,10 @@ class Report:
 
     @property
     def warnings(self) -> tuple[Outcome, ...]:
-        """The failed or skipped checks, or an empty tuple if one of them has points or any check has an error."""
+        """The failed and skipped checks if none of them is worth points, else an empty tuple.
+
+        The tuple is also empty if a check has the status `error`, or if the whole report is worth no points.
+        """
         missing = (*self.with_status(Status.FAILED), *self.with_status(Status.SKIPPED))
         costs = any(outcome.max for outcome in missing) or self.max == 0 or self.with_status(Status.ERROR)
         return () if costs else missing

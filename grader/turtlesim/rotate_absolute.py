@@ -44,7 +44,7 @@ class _DeferringActionServer(ActionServer):
         goal_handle: ServerGoalHandle,
         execute_callback: Callable[[ServerGoalHandle], RotateAbsolute.Result] | None,
     ) -> None:
-        """Do nothing, because the frames execute the goal."""
+        """Do nothing, because the simulator executes the goal, one step per frame."""
 
     def give_result(self, goal_handle: ServerGoalHandle, result: RotateAbsolute.Result) -> None:
         """Send the result of a finished goal to the clients that request it."""

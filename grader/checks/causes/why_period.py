@@ -92,7 +92,7 @@ def _why_mean(evidence: Evidence, noun: str, call: str, mean: float, rate_hz: fl
 
 
 def _every_few_calls(evidence: Evidence, noun: str, call: str, mean: float) -> Cause | None:
-    """Return the cause if the callback of the only timer sends only in every second, third, ... call, else None."""
+    """Return the cause if the callback of the only timer sends only on every 2nd, 3rd, ... call, else None."""
     timer, period = _timers(evidence)[0]
     if not period or sends_each_time(evidence, call):
         return None

@@ -239,7 +239,7 @@ LOG_POSITION = Kind(
     "The log shows where the turtle is",
     LogPosition,
     log_position,
-    about="Each log line in the format shows where the turtle was when the line was logged.",
+    about="Each log line that matches `format` shows where the turtle was when the line was logged.",
 )
 LOG_DISTANCE = Kind(
     "log_distance",

@@ -43,5 +43,5 @@ NO_CALLS = Kind(
     "The node does not call certain functions",
     NoCalls,
     no_calls,
-    about="The node's file calls none of the given functions, under any name.",
+    about="The node's file calls none of the given functions, even through an alias.",
 )

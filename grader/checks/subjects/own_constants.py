@@ -41,8 +41,8 @@ class OwnConstants:
 def own_constants(evidence: Evidence, params: OwnConstants) -> Finding:
     """Each constant has the student's number, and the node uses the constant.
 
-    A constant that the module computes or reads is not judged. If the module has no constant with the name, the number
-    must occur in the source.
+    A constant whose value is known only at run time, for example because it is read from a file, is not judged. If the
+    module has no constant with the name, the number must occur in the source.
     """
     files = evidence.submission.files
     file = module_file(params.module, files)

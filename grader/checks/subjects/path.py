@@ -77,7 +77,7 @@ class CircleParams:
 
 
 def expected_centre(start: Pose, params: CircleParams) -> tuple[float, float]:
-    """Return the centre (m) of the right circle for a turtle with this start pose."""
+    """Return the centre (m) of the expected circle for a turtle with this start pose."""
     side = 1.0 if params.direction == "counter-clockwise" else -1.0
     return (
         start.x - side * params.radius_m * math.sin(start.theta),

@@ -76,6 +76,6 @@ NEVER_WAITS = Kind(
     never_waits,
     early=_early,
     about="No callback waits for a response, for a server or for time to pass: `call`, "
-    "`spin_until_future_complete`, `wait_for_service` without a timeout, `sleep`, under any name. With several "
+    "`spin_until_future_complete`, `wait_for_service` without a timeout, `sleep`, even through an alias. With several "
     "threads, waiting for a response is allowed if the node continues after the response.",
 )
