@@ -9,6 +9,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.waiting import waits_in_callback
 from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_unasked import why_unasked
 from grader.checks.kind import Kind, number, string, table
 from grader.checks.outcome import Finding, failed, passed
@@ -148,7 +149,7 @@ def no_response(evidence: Evidence, service: str, type_: str, call: Call | None,
         return failed(observed, expected, Cause("no-response", where=where))
     if not call.missing and ended:
         observed = f"The node did not respond to the call to {service}. {ended}"
-        return failed(observed, expected, Cause("no-response", where=where))
+        return failed(observed, expected, why_ended(evidence))
     if not call.missing:
         cause = waits_in_callback(evidence) or Cause(
             "no-response", "Something in the node blocks its callbacks.", where

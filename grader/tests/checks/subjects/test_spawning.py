@@ -67,6 +67,13 @@ def test_a_node_that_has_ended_removes_nobody() -> None:
     assert finding.observed.endswith("The node exited on its own after 5.1 s.")
 
 
+def test_the_end_of_a_node_is_the_cause_even_if_its_response_got_lost() -> None:
+    ended = ProcessEnd(by="itself", exit_code=0, t_s=CAUGHT_S + 0.1, stop_s=None)
+    unanswered = replace(catch(), response=None, answered_s=None)
+    assert diagnosis(of_removes(given(calls=[unanswered], gone={}, end=ended))) == "ended-early"
+    assert diagnosis(of_removes(given(calls=[unanswered], gone={}))) == "no-response"
+
+
 def test_who_was_not_caught_must_stay() -> None:
     removed = of_removes(
         given(calls=[catch(), kill("target2"), kill("target3")], gone={"target2": CAUGHT_S, "target3": CAUGHT_S})
