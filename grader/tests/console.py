@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 FENCE = re.compile(r"^```(\w*) ?([^\n]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-NUMBER = re.compile(r"\d+(?:\.\d+)?")
+COUNTED = r"(?:of|points?|scores?|submissions?|students?|checks?|differences|(?:not )?passed|failed|to grade|changed)"
+NUMBER = re.compile(rf"\d+(?:\.\d+)?(?!\.?\d)(?! {COUNTED}\b)")
+"""A number that may differ from run to run, such as a time. A number of points, for example, may not."""
 END = "--- the end of what one command printed ---"
 
 
@@ -76,7 +78,10 @@ def run(block: Block, cwd: Path, env: Mapping[str, str], timeout_s: float) -> li
 
 
 def differs(shown: tuple[str, ...], printed: str) -> str | None:
-    """Return the first expected line that is missing from the output, or None. Numbers are not compared."""
+    """Return the first expected line that is missing from the output, or None.
+
+    Of the numbers, only numbers of things, such as points, are compared.
+    """
     lines = [_plain(line) for line in printed.splitlines()]
     at, jump = 0, True
     for line in shown:

@@ -67,3 +67,16 @@ def test_commands_share_a_shell(tmp_path: Path) -> None:
 )
 def test_what_is_shown_must_be_printed_in_that_order(shown: tuple[str, ...], wrong: str | None) -> None:
     assert differs(shown, "a 1\nb\nc\nd\n") == wrong
+
+
+@pytest.mark.parametrize(
+    ("shown", "wrong"),
+    [
+        ("15 of 100 points in 2 s", False),
+        ("15 of 100 points in 0.75 s", False),
+        ("5 of 100 points in 2 s", True),
+        ("15 of 90 points in 2 s", True),
+    ],
+)
+def test_numbers_of_things_are_compared_and_times_are_not(shown: str, wrong: bool) -> None:
+    assert (differs((shown,), "15 of 100 points in 1.25 s\n") is not None) == wrong
