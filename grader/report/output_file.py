@@ -16,8 +16,11 @@ if TYPE_CHECKING:
 def check_writable(file: Path | None) -> None:
     """Check that the user may write the file, and that the path is not a folder. Call this before doing any work.
 
-    Raises UsageError if the file could not be written.
+    Raises UsageError if the file could not be written, or if it is `-`, which means standard output elsewhere.
     """
+    if str(file) == "-":
+        message = "The file cannot be -, since standard output contains the verdict. Choose a file name."
+        raise UsageError(message)
     if file is not None and not file.absolute().parent.is_dir():
         message = f"There is no folder {file.absolute().parent} to write {file.name} to."
         raise UsageError(message)

@@ -209,13 +209,13 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
 
 def who_hears(env: Mapping[str, str]) -> str:
     """Return a message for the user that states the domain of the nodes in an environment and who can reach them."""
-    domain = env.get("ROS_DOMAIN_ID") or "0"
-    reach = env.get("ROS_AUTOMATIC_DISCOVERY_RANGE") or "SUBNET"
+    domain, reach = env.get("ROS_DOMAIN_ID") or "0", env.get("ROS_AUTOMATIC_DISCOVERY_RANGE") or "SUBNET"
     if reach == "LOCALHOST" or env.get("ROS_LOCALHOST_ONLY") == "1":
         return f"ROS domain {domain}, reachable only on this machine"
     if reach == "SUBNET":
         return f"ROS domain {domain}, reachable from the network (ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST limits it)"
-    return f"ROS domain {domain}, ROS_AUTOMATIC_DISCOVERY_RANGE={reach}"
+    note = ", with which commands cannot find each other's nodes" if reach == "OFF" else ""
+    return f"ROS domain {domain}, ROS_AUTOMATIC_DISCOVERY_RANGE={reach}{note}"
 
 
 def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str:

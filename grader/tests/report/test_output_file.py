@@ -28,6 +28,11 @@ def test_a_file_that_may_not_be_written_is_named_before_any_work(
     assert asked == [file if there else tmp_path]
 
 
+def test_a_dash_is_not_a_file_name() -> None:
+    with pytest.raises(UsageError, match=r"cannot be -, since standard output contains the verdict\."):
+        output_file.check_writable(Path("-"))
+
+
 def test_a_full_disk_behind_a_file_does_not_hide_the_verdict() -> None:
     command = [str(Path(sys.prefix, "bin/grader")), "check", str(SOLUTION), "--json", "/dev/full"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
