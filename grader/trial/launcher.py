@@ -128,7 +128,9 @@ def deliver_before_destroying() -> None:
 
     @functools.wraps(original)
     def destroy(self: Publisher) -> None:
-        until = monotonic() + DELIVERY_S
+        # After a crash, a wait could be interrupted by Ctrl-C, which would replace the traceback.
+        crashed = sys.exc_info()[0] not in (None, SystemExit)
+        until = monotonic() + (0.0 if crashed else DELIVERY_S)
         with suppress(Exception):
             while not self.wait_for_all_acked(Duration()) and (now := monotonic()) < until:
                 while monotonic() < now + DELIVERY_S / 500:
