@@ -96,12 +96,11 @@ def _without(module: str, name: str) -> Iterator[None]:
     typer imports these names and does not use them for a help text. Importing their modules takes longer than printing
     the text.
     """
-    stand_in = ModuleType(module)
-    setattr(stand_in, name, None)
     if module in sys.modules:
         yield
         return
-    sys.modules[module] = stand_in
+    sys.modules[module] = stand_in = ModuleType(module)
+    setattr(stand_in, name, None)
     try:
         yield
     finally:

@@ -109,6 +109,14 @@ def test_a_publisher_is_destroyed_after_its_messages_have_been_acknowledged(in_r
     assert printed(done) == b"destroyed\n", done.stderr
 
 
+def test_a_crash_is_not_delayed_by_messages_that_are_not_acknowledged(in_ros: InRos, tmp_path: Path) -> None:
+    crash = "try:\n    1 / 0\nfinally:\n    node.destroy_publisher("
+    script = LAST.format(answers=[False, "destroyed at once", True]).replace("node.destroy_publisher(", crash)
+    script = script.replace("\nprint(", "\n    print(")
+    done = launch(in_ros, tmp_path, script, [])
+    assert printed(done) == b"destroyed at once\n", done.stderr
+
+
 def test_a_publisher_is_destroyed_even_if_its_messages_are_never_acknowledged(in_ros: InRos, tmp_path: Path) -> None:
     done = launch(in_ros, tmp_path, LAST.format(answers="lambda: False, True") + "print('destroyed')\n", [])
     assert printed(done) == b"False\ndestroyed\n", done.stderr
