@@ -107,7 +107,7 @@ def _is_subclass_elsewhere(scene: CrashScene, owner: str, name: str) -> bool:
 
 
 def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None:
-    """Return the cause if an rclpy object, a message or a plain value lacks the attribute. Other objects: None."""
+    """Return the cause if an rclpy object, a message or a plain value lacks the attribute, else None."""
     if owner in ros_names.FIELDS:
         fields = ros_names.FIELDS[owner]
         guess = nearest(name, fields)
