@@ -9,4 +9,5 @@ if [ "$ZSH_EVAL_CONTEXT" = toplevel ]; then
     echo "setup.zsh was run as a program, so this terminal is as it was before. Type: source $0" >&2
     exit 1
 fi
-eval "$("${${(%):-%x}:A:h}/bin/grader" env)"
+eval "$("${${(%):-%x}:A:h}/bin/grader" env || [ $? != 126 ] || echo \
+    "echo 'The system runs no programs from this .venv. To see the reason, type make demo in the folder of the course.' >&2")"

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 from grader.common import package_managers, xdg
 from grader.common.interpreter import interpreter
+from grader.common.noexec import noexec_folder, noexec_sentence
 from grader.common.readable_by_all import make_readable
 from grader.errors import MachineError
 from grader.ros import installation
@@ -57,10 +58,11 @@ def ensure(ros: installation.Ros, tell: Callable[[str], None] = _report_nothing)
     function takes about a millisecond.
 
     Raises:
-        MachineError: a build tool is missing, the build failed, or the cache cannot be written.
+        MachineError: a build tool is missing, the build failed, or the cache cannot be written or is mounted noexec.
     """
     if installation.has_turtlesim(ros):
         return None
+    _require_loadable(xdg.cache())
     search = installation.environment(ros, home=Path("/"))["PATH"]
     prefix = xdg.cache() / _name(ros, _compiler(search))
     if prefix.is_dir():
@@ -146,6 +148,12 @@ def _require_tools(search: str) -> None:
             f"Install what is missing: {package_managers.command(manager, missing, root=os.geteuid() == 0)}"
         )
         raise MachineError(message)
+
+
+def _require_loadable(cache: Path) -> None:
+    mounted = noexec_folder(cache)
+    if mounted:
+        raise MachineError(noexec_sentence(mounted, "set XDG_CACHE_HOME to a folder on another file system"))
 
 
 def _listed(needs: list[package_managers.Need]) -> str:

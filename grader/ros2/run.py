@@ -8,6 +8,7 @@ import shutil
 import sys
 from typing import TYPE_CHECKING, Any
 
+from grader.common.noexec import noexec_folder, noexec_sentence
 from grader.ros import index
 from grader.ros.failure import Ros2Error, did_you_mean
 from grader.ros2.completion import completes, packages
@@ -69,6 +70,11 @@ def _path(args: argparse.Namespace) -> Path:
         message = "\n".join(["Multiple executables found:", *(f"- {path}" for path in found)])
         raise Ros2Error(message)
     if not found:
+        folder = installed[args.package_name] / "lib" / args.package_name
+        mounted = noexec_folder(folder)
+        if mounted and (folder / args.executable_name).is_file():
+            instead = "move your workspace to another file system, delete build, install and log in it, and build again"
+            raise Ros2Error(noexec_sentence(mounted, instead))
         names = [path.name for path in all_of_them]
         hint = did_you_mean(args.executable_name, names, "No executable found")
         have = ", ".join(names) if names else "none; entry_points in its setup.py defines them"

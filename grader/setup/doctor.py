@@ -82,7 +82,7 @@ def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] 
     try:
         ros = underlay.with_turtlesim(ros, tell)
     except MachineError as error:
-        return [*lines, Line("turtlesim", "its interfaces are not built", "broken", str(error))]
+        return [*lines, Line("turtlesim", "its interfaces cannot be used", "broken", str(error))]
     where = f"the course's own interfaces, built in {ros.underlay}" if ros.underlay else "part of ROS 2"
     lines.append(Line("turtlesim", where))
     return [*lines, look_at_node(ros, confined=confined)]

@@ -1,4 +1,4 @@
-"""The folder of the course: whether its path is one with which all programs of the set-up work.
+"""The folder of the course: whether its path is one with which all programs of the set-up work, and programs run there.
 
 Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
 of Python 3.6.
@@ -6,6 +6,8 @@ of Python 3.6.
 
 import os
 from pathlib import Path
+
+from grader.common.noexec import noexec_folder, noexec_sentence
 
 _REFUSED = frozenset(':;"\\#?[]|$`')
 """Characters with which a program of the set-up or of colcon fails: in a search path, a list of CMake, a URL, a
@@ -20,7 +22,9 @@ def place_problem(folder: Path) -> str:
         path = str(folder)
     refused = sorted({sign for sign in path if sign in _REFUSED or not sign.isprintable()})
     if not refused:
-        return ""
+        mounted = noexec_folder(folder / ".venv")
+        instead = "copy the course's folder to another file system, and type the same command there"
+        return noexec_sentence(mounted, instead) if mounted else ""
     return (
         f"The path of the course's folder, {path!a}, contains {' '.join(map(ascii, refused))}. CMake, colcon or Python "
         "cannot handle this. Rename or move the folder, so that its path consists of letters, digits, spaces, - and _, "

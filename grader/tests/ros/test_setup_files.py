@@ -31,3 +31,15 @@ def test_the_wrong_use_is_one_sentence_with_the_right_one(line: str, said: str) 
     done = subprocess.run(["sh", "-c", line], cwd=FOLDER, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (1, "", 1)
     assert said in done.stderr
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh"])
+def test_a_command_that_the_system_does_not_run_is_explained(shell: str, tmp_path: Path) -> None:
+    """A file without the permission to run stands for a file system that is mounted with the option noexec."""
+    if shutil.which(shell) is None:
+        pytest.skip("zsh is not installed")
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin/grader").touch(mode=0o644)
+    setup = shutil.copy(FOLDER / f"setup.{shell}", tmp_path)
+    done = subprocess.run([shell, "-c", f". {setup}"], capture_output=True, text=True, check=False)
+    assert "To see the reason, type make demo in the folder of the course." in done.stderr

@@ -19,6 +19,7 @@ import pytest
 from grader.errors import MachineError
 from grader.ros import installation, underlay
 from grader.tests.both_worlds import of_a_sourced_ros
+from grader.tests.pretended import mounted_noexec
 from grader.tests.traps import Traps, careless
 
 if TYPE_CHECKING:
@@ -187,6 +188,17 @@ def test_a_build_that_fails_on_a_full_disk_names_the_disk(
     monkeypatch.setattr(shutil, "disk_usage", lambda _: usage._replace(free=4096))
     with pytest.raises(MachineError, match=rf"built in {cache}: No space left on device\. .* set XDG_CACHE_HOME"):
         underlay.ensure(ros)
+
+
+def test_a_cache_from_which_nothing_can_be_loaded_is_named(
+    ros: installation.Ros, cache: Path, builds: list[Sequence[str]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    underlay.ensure(ros)
+    builds.clear()
+    mounted_noexec(monkeypatch, cache.parent)
+    with pytest.raises(MachineError, match=rf"^{cache.parent} is mounted with the option noexec.* set XDG_CACHE_HOME"):
+        underlay.ensure(ros)
+    assert builds == []
 
 
 def test_what_a_killed_build_left_is_removed(ros: installation.Ros, cache: Path, builds: list[Sequence[str]]) -> None:  # noqa: ARG001

@@ -9,6 +9,7 @@ import pytest
 from grader.setup import bootstrap
 from grader.setup.place import place_problem
 from grader.setup.setup_errors import MACHINE_BROKEN
+from grader.tests.pretended import mounted_noexec
 
 ROOT = Path(bootstrap.__file__).parents[2]
 
@@ -27,6 +28,13 @@ def test_a_path_with_which_a_program_fails_is_named(sign: str) -> None:
 
 def test_a_path_that_is_not_unicode_is_named() -> None:
     assert "\\udcfc" in place_problem(Path(os.fsdecode(b"/home/ada/\xfcbung")))
+
+
+def test_a_folder_from_which_no_program_runs_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    mounted_noexec(monkeypatch, tmp_path)
+    problem = place_problem(tmp_path / "course")
+    assert problem.startswith(f"{tmp_path} is mounted with the option noexec")
+    assert "copy the course's folder to another file system" in problem
 
 
 def test_the_set_up_says_so_before_it_does_anything(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -18,12 +19,12 @@ SEES = ("bwrap", "--dev-bind", "/", "/")
 NOTHING_KEPT = (("PIP_CACHE_DIR", "/nowhere/pip"), ("UV_CACHE_DIR", "/nowhere/uv"))
 
 
-def refused(course: Clone, said: str) -> None:
-    """Check that `make demo` ends with this message."""
+def refused(course: Clone, said: str, end: str = ".") -> None:
+    """Check that `make demo` ends with one message that contains `said`, and ends with `end`."""
     printed = course.run("make demo", ends=2)  # make exits with 2 if a command fails
     assert f"Error {MACHINE_BROKEN}" in printed
     (sentence,) = [line for line in printed.splitlines() if said in line]
-    assert sentence.endswith(".")
+    assert sentence.endswith(end)
     assert "Traceback" not in printed
 
 
@@ -36,6 +37,14 @@ def test_in_a_folder_that_cannot_be_written_to(tmp_path: Path) -> None:
     course = clone(tmp_path)
     there = str(course.folder)
     refused(replace(course, within=(*SEES, "--ro-bind", there, there)), ".venv cannot be written to (Read-only")
+
+
+def test_on_a_disk_that_is_mounted_noexec(tmp_path: Path) -> None:
+    course = clone(tmp_path)
+    alone = ("unshare", "--mount", *(() if os.getuid() == 0 else ("--map-root-user",)))
+    mount = 'mount --bind "$0" "$0" && mount -o remount,bind,noexec "$0" && exec "$@"'
+    within = (*alone, "sh", "-c", mount, str(course.folder))
+    refused(replace(course, within=within), f"{course.folder} is mounted with the option noexec", end="'")
 
 
 @pytest.mark.parametrize("room", [20 * MB, pytest.param(60 * MB, marks=[pytest.mark.exhaustive, pytest.mark.door])])

@@ -1,0 +1,30 @@
+"""An executable that is installed but cannot be run."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.ros.failure import Ros2Error
+from grader.ros2 import run
+from grader.tests.pretended import mounted_noexec
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def test_a_workspace_from_which_no_program_runs_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    index, installed = tmp_path / "share/ament_index/resource_index/packages", tmp_path / "lib/my_robot_controller"
+    for folder in (index, installed):
+        folder.mkdir(parents=True)
+    (index / "my_robot_controller").touch()
+    (installed / "draw_circle").touch(mode=0o644)  # noexec has the same effect
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    args = Namespace(package_name="my_robot_controller", executable_name="draw_circle", prefix=None, argv=[])
+    with pytest.raises(Ros2Error, match="Executables of my_robot_controller: none"):
+        run.run(args)
+    mounted_noexec(monkeypatch, tmp_path)
+    with pytest.raises(Ros2Error, match=r"is mounted with the option noexec.* move your workspace"):
+        run.run(args)
