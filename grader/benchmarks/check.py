@@ -3,7 +3,7 @@
     python -m grader.benchmarks.check [--times N] [--submission FOLDER]
 
 Everything is measured in one run on the same machine. The measurements alternate, so that other programs slow down all
-of them alike. The first check of a package builds the package. The next check reuses the build, as it does after a
+of them alike. The first check of a package builds the package. The next check reuses the build, as does a check after a
 change to a module.
 """
 

@@ -1,4 +1,4 @@
-"""Measure how long it takes to create a page (relative to F) and to show the page, also for a class of 200 students.
+"""Measure how long it takes to create and show the page of a report, and the page of a class of 200 students.
 
     python -m grader.benchmarks.html [--times N] [--submission FOLDER]
 

@@ -37,7 +37,7 @@ AT_MOST = 1.5
 
 
 def seconds(argv: list[str], cwd: Path) -> float:
-    """Return the duration of a command (s). The output is shown only if the command fails."""
+    """Run a command, and return its duration (s). The output is shown only if the command fails."""
     env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "PYTHONWARNINGS": "ignore"}
     begun = time.monotonic()
     done = subprocess.run(argv, cwd=cwd, env=env, capture_output=True, text=True, check=False)
@@ -49,7 +49,7 @@ def seconds(argv: list[str], cwd: Path) -> float:
 
 
 def nbgrader(root: Path, *words: str) -> float:
-    """Return the duration of an nbgrader command (s)."""
+    """Run an nbgrader command, and return its duration (s)."""
     return seconds(interpreter("-m", "nbgrader", *words).argv, root / "course")
 
 

@@ -65,7 +65,7 @@ def main() -> None:
     print(f"F = {f_s:.2f} s wall")
     print(f"reading in children: {1000 * wall_s:+.0f} ms, {wall_s / f_s:+.3f} F, {1000 * cpu_s:+.0f} ms of CPU")
     if cpu_s > _MOST_S:
-        message = f"Reading in children costs more than {1000 * _MOST_S:.0f} ms of CPU time, the limit."
+        message = f"Reading in child processes costs more than {1000 * _MOST_S:.0f} ms of CPU time, the limit."
         raise MachineError(message)
 
 

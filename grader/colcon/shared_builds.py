@@ -139,7 +139,8 @@ class Usual:
 def without_modules(submission: Submission, ros: Ros) -> Usual | None:
     """Return the package with empty modules, or None if the package is unusual or a module does not compile.
 
-    setuptools compiles the modules, and the log of a build contains the errors and warnings.
+    setuptools compiles the modules, and the log of a build contains the errors and warnings. Such a package is
+    therefore built separately.
 
     Call this through `grader.submission.reader.read`.
     """

@@ -1,7 +1,7 @@
 """The help of the command `grader`, and its error messages for words that are not commands.
 
-On narrow terminals, the help has one column without boxes instead of typer's tables. On a terminal that is 40
-characters wide, a table with four columns would leave only 8 characters for the text.
+On narrow terminals, the help is printed in one column, without typer's tables. On a terminal that is 40 characters
+wide, a table with four columns would leave only 8 characters for the text.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def _format_help(
 
 @contextmanager
 def _without(module: str, name: str) -> Iterator[None]:
-    """Let other modules import `name` from a module without importing the module, unless it is imported already.
+    """Put a stand-in with the attribute `name` in place of a module, unless the module is already imported.
 
     typer imports these names and does not use them for a help text. Importing their modules takes longer than printing
     the text.

@@ -31,7 +31,7 @@ def number(value: object) -> float:
     """
     if isinstance(value, int | float) and -MOST <= value <= MOST:  # false for NaN too
         return value
-    message = f"{value!r:.40} is not a number that the grader writes"
+    message = f"{value!r:.40} is not a number, or is too large"
     raise ValueError(message) if isinstance(value, int | float) else TypeError(message)
 
 

@@ -56,7 +56,7 @@ class _Lazy:
 
 
 def _why_not_imported(name: str, error: ImportError) -> str:
-    """Return why a module cannot be imported, and what to do."""
+    """Return a message that says why a module cannot be imported, and what to do."""
     top = name.partition(".")[0]
     why = " ".join(str(error).split())[:200].rstrip(".")
     entries = [entry for entry in os.environ.get("PYTHONPATH", "").split(os.pathsep) if entry]

@@ -21,7 +21,7 @@ _PIDFD_SEND_SIGNAL, _PIDFD_OPEN, _CLOSE_RANGE = 424, 434, 436
 
 
 def pidfd_open(pid: int) -> int:
-    """Return a descriptor of a process (pidfd_open(2)).
+    """Return a file descriptor that refers to a process (pidfd_open(2)).
 
     Raises:
         OSError: there is no such process, or the kernel is older than Linux 5.3.
@@ -32,7 +32,7 @@ def pidfd_open(pid: int) -> int:
 
 
 def pidfd_send_signal(pidfd: int, number: int) -> None:
-    """Send a signal to the process of this descriptor (pidfd_send_signal(2)).
+    """Send a signal to the process that this descriptor refers to (pidfd_send_signal(2)).
 
     Raises:
         OSError: the process has exited (ProcessLookupError), or the kernel refused.

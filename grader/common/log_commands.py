@@ -1,9 +1,9 @@
-"""Output without commands to a continuous integration (CI) system: a log can contain text from a submission.
+"""Remove commands to a continuous integration (CI) system from the output, which can contain text from a submission.
 
 CI systems execute commands that they find in the log of a job. GitHub Actions executes `::command::` at the beginning
 of a line, and the older `##[command]` anywhere (`ActionCommand.TryParseV2` and `TryParse` in actions/runner). Azure
 Pipelines executes `##vso[command]` anywhere, and TeamCity `##teamcity[command]`. A space inside the marker makes it
-plain text. Commands of GitLab need control characters, which no report contains.
+plain text. GitLab's commands need control characters, which no report contains.
 """
 
 from __future__ import annotations

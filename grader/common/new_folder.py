@@ -20,7 +20,7 @@ def new_folder(folder: Path, mode: int = 0o777) -> Iterator[None]:
 
     Raises:
         UsageError: the folder is not empty.
-        MachineError: the system does not allow the block to write into the folder.
+        MachineError: the folder could not be created or written.
     """
     was_there = folder.exists()
     if was_there and (not folder.is_dir() or any(folder.iterdir())):

@@ -1,7 +1,7 @@
 """Prepare a process of the grader, so that it works with any settings of the user.
 
 A command of the grader calls `prepare` before it does anything else. Child processes inherit the changes, except for
-the filter of warnings.
+the warnings filter.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A folder with a fixed name that only this user can write to, for files that several processes of the user share.
+"""A folder with a fixed name to which only this user has access, for files that several processes of the user share.
 
 Other users can also create files in the folder for temporary files. If the grader opened a file with a fixed name in
 that folder, another user could have created the file first, for example as a link to a file of the grader's user.
@@ -21,7 +21,7 @@ def private_folder(above: Path, name: str) -> Path:
     """Return the folder `name` in `above`. The folder is created if it does not exist.
 
     Raises:
-        MachineError: the folder cannot be created, or other users can write to it.
+        MachineError: the folder cannot be created, or other users have access to it.
     """
     folder = above / name
     try:

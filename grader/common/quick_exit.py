@@ -13,7 +13,7 @@ _MOST_BITS = 31
 
 
 class QuickExit:
-    """The end of this process, once its exit code is known.
+    """Ends this process quickly if its exit code is set.
 
     All functions that are registered with atexit still run. Objects in modules that were imported later than those in
     `kept` are finalized, so that a file that a submission left open is written.
@@ -26,7 +26,7 @@ class QuickExit:
 
     @classmethod
     def prepare(cls) -> None:
-        """Register the end. Call this function first, because Python calls the functions of atexit in reverse order."""
+        """Register `_end` with atexit. Call this method first, because Python calls the functions in reverse order."""
         atexit.register(cls._end)
 
     @classmethod

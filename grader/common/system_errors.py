@@ -12,7 +12,7 @@ import sys
 from typing import Optional, Tuple
 
 OF_THE_DISK = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS})
-"""Errors which mean that the disk is full or broken. Any other error concerns a single file."""
+"""Errors that mean that the disk is full or broken. Any other error concerns a single file."""
 ROOM = "free some space there, or set another folder with XDG_CACHE_HOME, XDG_STATE_HOME or TMPDIR"
 _SCARCE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN, errno.EIO})
 _NOT_ALLOWED = "see the output of `grader doctor`"
@@ -94,7 +94,7 @@ def sentence(number: int, where: str = "", room: str = ROOM) -> str:
         return f"The disk cannot be written to{at}: {room}."
     if number == errno.EMFILE:
         most = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
-        return f"The grader may not open more than {most} files: raise this limit, for example with `ulimit -n 4096`."
+        return f"The grader cannot open more than {most} files: raise this limit, for example with `ulimit -n 4096`."
     if number == errno.ENFILE:
         return "This machine has too many files open: close other programs."
     if number == errno.ENOMEM:

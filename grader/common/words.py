@@ -48,7 +48,7 @@ def a_list(items: Sequence[str], last: str = "and", *, most: int = 12) -> str:
 def number(value: float, unlike: float | None = None) -> str:
     """Return the number with four significant digits, or with all digits if it would otherwise look equal to `unlike`.
 
-    Spell out NaN and infinity.
+    NaN and infinity are spelled out.
     """
     if math.isnan(value):
         return "NaN (not a number)"

@@ -11,9 +11,9 @@ if TYPE_CHECKING:
 
 
 def home(env: Mapping[str, str] = os.environ) -> Path:
-    """Return the user's home. HOME may be unset, empty or relative, as in a cron job or a container.
+    """Return the user's home folder. HOME may be unset, empty or relative, as in a cron job or a container.
 
-    In this case, the home is taken from the user database, or is "/" if the database does not contain the user.
+    In this case, the folder is taken from the user database, or is "/" if the database does not contain the user.
     """
     named = env.get("HOME", "")
     if named.startswith("/"):

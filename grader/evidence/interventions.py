@@ -89,7 +89,7 @@ class _Path:
 
 
 def _path(recording: Recording, first: int) -> _Path:
-    """Return the path in the frames from number `first` until SIGINT."""
+    """Return the path from frame number `first` until SIGINT."""
     frames = recording.frames
     stop = int(np.searchsorted(frames.t_s, activity.end_s(recording), side="right"))
     x, y, theta = (

@@ -72,7 +72,7 @@ def distance_m(recording: Recording, track: Track, t_s: float) -> float:
 
 
 def is_there(track: Track, from_s: float, to_s: float) -> bool:
-    """Return whether the target exists at any time between these two times (s)."""
+    """Return whether the target existed at any time between these two times (s)."""
     return track.rows[0][0] <= to_s and (track.gone_s is None or track.gone_s >= from_s)
 
 

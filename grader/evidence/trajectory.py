@@ -118,14 +118,14 @@ def driven_from(recording: Recording) -> Pose:
 
 
 def _before_driving(recording: Recording) -> int:
-    """Return the number of frames before the first command, or 0 if no call can have moved the turtle before."""
+    """Return the number of frames before the first command, or 0 if no call can have moved the turtle by then."""
     return first_driven(recording) if MOVING & set(recording.interventions) else 0
 
 
 def trajectory_of(recording: Recording) -> Trajectory:
     """Return the trajectory of the turtle from the pose that `driven_from` returns until SIGINT.
 
-    If the node exited on its own, return the trajectory until OUTLIVES_S later.
+    If the node exited on its own, the trajectory ends OUTLIVES_S (s) after the exit.
     """
     frames, start = recording.frames, driven_from(recording)
     by_itself = recording.end.by == "itself"

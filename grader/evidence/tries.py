@@ -1,4 +1,4 @@
-"""Try: a change in a copy of a submission, made where a failed check points, and the result of this change."""
+"""Try: a change in a copy of a submission, at the place to which a failed check points, and its result."""
 
 from __future__ import annotations
 

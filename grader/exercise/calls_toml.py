@@ -40,7 +40,7 @@ def read_calls(table: Table) -> CallsSpec:
 
 
 def unknown_calls(trials: Sequence[TrialSpec], checks: Sequence[CheckSpec]) -> Iterator[str]:
-    """Yield a message for each check that refers to a call which does not exist in the check's trial."""
+    """Yield a message for each check that refers to a call that does not exist in the check's trial."""
     calls = {trial.id: trial.calls.ids for trial in trials}
     for check in checks:
         wanted = check.params.get("call")

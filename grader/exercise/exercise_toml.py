@@ -167,7 +167,7 @@ def _checks(
             _must_be_check(table, "needs", need, ids)
     circle = _circle(specs)
     if circle:
-        top.problem(f'"needs" has a cycle: {" -> ".join(circle)}. Remove one of them.')
+        top.problem(f'"needs" has a cycle: {" -> ".join(circle)}. Remove one of these needs.')
     return specs
 
 

@@ -52,7 +52,7 @@ class Behaviour:
     waits: bool = True
     """Whether the node publishes nothing before the first pose."""
     straightens: bool = True
-    """Whether the node drives straight ahead again when it has left the wall."""
+    """Whether the node drives straight ahead again when it is no longer near a wall."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class TestsSpec:
     own: tuple[str, ...] = ()
 
     def with_numbers(self, numbers: Mapping[str, Value]) -> TestsSpec:
-        """Return the nodes with the student's own numbers. A broken node keeps the fields in which it is broken."""
+        """Return a copy with the student's own numbers. A broken node keeps the fields in which it is broken."""
         drawn = {name: float(numbers[name]) for name in self.own}
 
         def with_drawn(behaviour: Behaviour) -> Behaviour:

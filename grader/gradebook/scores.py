@@ -85,8 +85,8 @@ def sync(
 
     Raises:
         UsageError: nothing was collected, a step is not in the gradebook, or another sync is running.
-        MachineError: the machine cannot grade or write. If the machine fails, unconfirmed scores are also worth 0
-            points.
+        MachineError: the machine cannot grade or write. The scores that are not confirmed are worth 0 points in this
+            case too.
     """
     from sqlalchemy.exc import SQLAlchemyError
 

@@ -81,7 +81,7 @@ def grade(
 
 
 def can_be_explained(graded: Graded) -> bool:
-    """Return whether a failed check has a fix that can be tested, which is not the case after a trial in wall time."""
+    """Return whether a failed check has a fix that can be tested. After a trial in wall time, no fix can be tested."""
     report = graded.report
     return report.clock != "wall" and any(outcome.finding.fix for outcome in report.with_status(Status.FAILED))
 

@@ -87,8 +87,8 @@ class Trials:
 
         Then call `run` to wait for the recording of a trial.
 
-        If the predicted install tree has the same content as `tree`, the result of the build, the nodes that were
-        started from the predicted install tree continue to run. Otherwise, their trials start again.
+        `tree` is the install tree of the finished build. If the predicted install tree has the same content, the nodes
+        that were started from it continue to run. Otherwise, their trials start again.
         """
         self.tree = tree
         if self._predicted is not None and not self._is_installed(self._predicted):

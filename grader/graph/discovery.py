@@ -157,7 +157,7 @@ class Settling:
         """Wait until nothing new has arrived for 0.1 s and all participants on this machine have sent their data.
 
         The wait ends earlier if `enough` returns true. `deadline_s` is the maximum waiting time (s), or None for the
-        default. Returns False if the deadline passes first.
+        default. Return False if the deadline passes first.
         """
         begun = time.monotonic()
         most = deadline_s if deadline_s is not None else DEADLINE_S

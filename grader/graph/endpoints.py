@@ -1,4 +1,7 @@
-"""The part of the graph that a node has discovered: other nodes, publishers and subscriptions. Needs rclpy."""
+"""The part of the graph that a node has discovered: other nodes, publishers and subscriptions.
+
+This module needs rclpy.
+"""
 
 from __future__ import annotations
 

@@ -105,7 +105,7 @@ def _next(exercise: Exercise, wanted: list[int], known: StepProgress) -> int | N
 
 
 def _is_done(exercise: Exercise, hint: Hint, known: StepProgress) -> bool:
-    """Return whether the checks of the hint have passed. A check of a later part counts only if it failed."""
+    """Return whether the checks of the hint have passed. A check of another part counts only if it failed."""
     of_part = {each.id for each in exercise.checks if hint.part and each.title.startswith(f"{hint.part})")}
     needed = set(hint.checks) & of_part or set(hint.checks)
     return bool(needed) and needed <= set(known.done) and not set(hint.checks) & set(known.failed)

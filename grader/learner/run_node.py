@@ -1,4 +1,4 @@
-"""Run the node of a step together with a turtlesim and its view. Ctrl-C stops both."""
+"""Run the node of a step together with a turtlesim and its view. Ctrl-C stops all of them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 READY_S = 30.0
 """The maximum time for starting turtlesim (s)."""
 ENDS_S = 5.0
-"""The maximum time for a program to exit after Ctrl-C (s) before it is killed."""
+"""The maximum time for a program to exit after Ctrl-C (s). After this time, the program is killed."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ def run(program: Program, *, view: bool) -> int:
 
 
 def _built(program: Program, place: Path, env: Mapping[str, str]) -> Path | None:
-    """Build with colcon outside the workspace. Return install/<package>, or None if colcon printed an error."""
+    """Build with colcon outside the workspace. Return install/<package>, or None if the build failed."""
     bases = ["--build-base", str(place / "build"), "--install-base", str(place / "install")]
     # The user's settings of colcon, such as `symlink-install` in ~/.colcon/defaults.yaml, are for the workspace.
     own = {name: value for name, value in env.items() if not name.startswith("COLCON_")}
@@ -174,7 +174,7 @@ def _turtlesim(env: Mapping[str, str], *, view: bool) -> Iterator[None]:
     """Run turtlesim, and stop it at the end of the `with` block.
 
     Raises:
-        MachineError: turtlesim did not start, and has printed the reason.
+        MachineError: turtlesim did not start. Its output has been printed.
     """
     options = ["--view"] if view else []
     with tempfile.TemporaryDirectory(prefix="grader-run-") as place:

@@ -1,7 +1,7 @@
 """Watch a folder, and grade the submission in it after every save.
 
-While the learner edits, the simulator and the launcher of the next trial are already waiting, and the result of the
-last build is kept. Therefore, the verdict after a save takes little longer than the trial itself.
+While the learner is editing, the simulator and the launcher of the next trial are already waiting, and the result of
+the last build is kept. Therefore, the verdict after a save takes little longer than the trial itself.
 """
 
 from __future__ import annotations

@@ -163,7 +163,7 @@ def lacking_lines(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, t
 def open_tasks(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, tuple[str, ...]]:
     """Return the tasks (TODO 1: ...) in the step's package files that are missing from the learner's files.
 
-    `files`, the keys of the result and the errors are those of `lacking_lines`.
+    `files`, the keys of the result and the exceptions are the same as in `lacking_lines`.
     """
     source = _package_files(exercise, files)
     return {path: tasks for path, file in source.items() if (tasks := _tasks(file, files[path]))}

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from grader.view.address import Place
 
 _ENDS_S = 15.0
-"""The maximum time for the server to exit (s) before it is killed."""
+"""The maximum time for the server to exit (s). After this time, the server is killed."""
 
 
 def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:

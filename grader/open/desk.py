@@ -38,7 +38,10 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Content:
-    """The part of the page that changes. `number` counts the verdicts. `doing` is the stage of grading, or ""."""
+    """The part of the page that changes. `doing` is the stage of grading, or "".
+
+    When `number` changes, the page loads the details of the verdict again.
+    """
 
     exercise: str = ""
     folder: str = ""

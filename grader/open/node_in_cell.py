@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from grader.ros.installation import Ros
 
 STOP_S = 4.0
-"""The maximum time for the program to exit after Ctrl-C (s) before it is killed."""
+"""The maximum time for the program to exit after Ctrl-C (s). After this time, the program is killed."""
 _LOOK_S = 0.2
 _CHUNK = 65536
 

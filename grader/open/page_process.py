@@ -1,6 +1,6 @@
 """The process that serves the page, and its connection to the process that grades.
 
-The grading process forks to read a learner's files, which is safe only without other busy threads. Therefore, the
+The grading process forks to read a learner's files. A fork is safe only if no other thread is busy. Therefore, the
 server is a separate process. The server receives the content of the page as lines of JSON, and sends the commands that
 grading.py defines.
 """

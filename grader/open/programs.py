@@ -26,7 +26,7 @@ KEPT = 200
 LONGEST = 500
 """The maximum length of a line of a program's output (characters)."""
 ENDS_S = 8.0
-"""The maximum time for a program to exit after Ctrl-C (s) before it is killed."""
+"""The maximum time for a program to exit after Ctrl-C (s). After this time, the program is killed."""
 READY_S = 30.0
 """The maximum time for starting turtlesim (s)."""
 NO_CELL = "There is no sandbox here, so the program runs under your account, as in a terminal."
@@ -131,7 +131,7 @@ class Programs:
         """The step of the node, and the digest of its code when the node was started."""
 
     def address(self) -> Address | None:
-        """Return the address of turtlesim's view, whether turtlesim was started here or in a terminal, or None."""
+        """Return the address of the view of a turtlesim that was started here or in a terminal, or None."""
         for line in self.turtlesim.lines:
             found = _ADDRESS.search(line)
             if found:
@@ -147,7 +147,7 @@ class Programs:
 
     @contextmanager
     def doing(self, text: str) -> Iterator[None]:
-        """Show the text on the page as long as the `with` block runs, because starting a program takes seconds."""
+        """Show the text on the page while the `with` block is running, because starting a program takes seconds."""
         self._tell(text)
         try:
             yield

@@ -25,7 +25,7 @@ TEMPLATE = "verdict.html"
 
 
 def verdict_html(evidence: Evidence, report: Report, folder: Path) -> str:
-    """Return the HTML. `folder` is the folder of the package, whose files the links open in VS Code.
+    """Return the HTML. `folder` is the folder of the package. The links open the package's files in VS Code.
 
     If the recorded data cannot be drawn, the HTML has no drawings.
     """

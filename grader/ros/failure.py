@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 OTHER = "/other"
-"""The name of a visible node. With this default, `did_you_mean` does not say that no node is running."""
+"""The default of `nodes` in `did_you_mean`: the name of a visible node, so that a node seems to be running."""
 
 
 class Ros2Error(GraderError):

@@ -33,7 +33,7 @@ _TEMPORARY = ".building-"
 _LOG_LINES = 15
 _FULL = 1 << 20
 """If fewer bytes are free after a build has failed, a full disk is considered to be the reason. CMake and compilers do
-not always say so."""
+not always report a full disk."""
 
 
 def _report_nothing(_: str) -> None:

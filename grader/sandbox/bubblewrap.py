@@ -1,4 +1,4 @@
-"""Run untrusted commands. This module starts all student code.
+"""Build the command lines that create a sandbox and run the simulator or student code in it.
 
 bubblewrap creates two kinds of containers:
 
@@ -10,8 +10,8 @@ bubblewrap creates two kinds of containers:
   filter (system_calls.py), and limits on memory, processes, files, CPU and disk. usage.py watches totals that the
   kernel does not limit.
 
-The functions of this module only return command lines. The caller starts and stops the process. The standard streams of
-the process are pipes.
+The functions that build command lines start no process. The caller starts and stops the process. The standard streams
+of the process are pipes.
 """
 
 from __future__ import annotations

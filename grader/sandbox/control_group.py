@@ -126,7 +126,10 @@ def _parents() -> list[Path]:
 
 
 def _own() -> Iterator[tuple[str, str]]:
-    """Yield each controller with the group of this process. In version 2, the name of the controller is ""."""
+    """Yield each controller, and the path of this process's group in the controller's tree.
+
+    In version 2, the name of the controller is "".
+    """
     with suppress(OSError):
         for line in OWN.read_text("utf-8").splitlines():
             _, controllers, path = line.split(":", 2)

@@ -65,7 +65,7 @@ def why_impossible() -> str | None:
 
 
 def enter(holder: int, *, cell: bool) -> None:
-    """Move this process into all namespaces of the process with this descriptor (pidfd_open(2)).
+    """Move this process into all namespaces of the process that this descriptor (pidfd_open(2)) refers to.
 
     The pid namespace only applies to processes that are forked afterwards. The process must have only one thread. If it
     belongs to root, it also leaves all supplementary groups. Afterwards, other processes of the user cannot inspect it.
@@ -101,7 +101,7 @@ def pid_of(pidfd: int) -> int:
 
 
 def pass_descriptors(to: socket.socket, data: bytes, descriptors: Sequence[int]) -> None:
-    """Send data with descriptors. Any thread may call this function.
+    """Send data together with file descriptors. Any thread may call this function.
 
     The kernel refuses if the sockets of the user contain more descriptors than the sender may open (ETOOMANYREFS of
     unix(7)). The sockets of a cell may contain somewhat more than NODE_LIMITS.open_files, so the limit of the sender is

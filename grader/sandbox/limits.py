@@ -57,7 +57,7 @@ _OPTIONS = {
 
 
 def limited(argv: Sequence[str], limits: Limits, *, in_cell: bool = False) -> list[str]:
-    """Return the command that runs `argv` under resource limits, the only limits that work without bubblewrap."""
+    """Return the command that runs `argv` under resource limits, which also work without bubblewrap."""
     set_limits = resource_limits(limits, in_cell=in_cell)
     options = [f"--{name}={set_limits[kind]}" for kind, name in _OPTIONS.items() if kind in set_limits]
     # If the machine runs out of memory, the kernel kills this process first.

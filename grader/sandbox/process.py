@@ -90,10 +90,10 @@ class _Pump:
         return len(self.stdout) > self._most
 
     def serve(self, left: Callable[[], float], stopped: Callable[[], bool]) -> bool:
-        """Serve until the child closes its pipes or writes too much, no time is left, or `stopped` returns True.
+        """Serve until the child closes its pipes or writes too much.
 
-        Return False in the last two cases. `left` returns the remaining time (s). `left` and
-        `stopped` are called several times per second.
+        Return False if no time is left or `stopped` returns True before that. `left` returns the remaining time (s).
+        `left` and `stopped` are called several times per second.
         """
         with self._selector:
             while self._selector.get_map() and not self.too_much:

@@ -59,7 +59,7 @@ class Stamp(NamedTuple):
     python: str
     version: List[int]
     digest: str
-    """See `digest`."""
+    """The hash that the function `digest` returned."""
     parts: List[str]
     seconds: Dict[str, float]
 

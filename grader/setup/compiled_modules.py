@@ -24,7 +24,7 @@ def remove_incomplete(folder: Path) -> None:
 def is_complete(path: Path) -> bool:
     """Return whether Python can load this compiled module.
 
-    Python is often unable to load a module of another Python version.
+    The result can also be False for a module that another version of Python compiled.
     """
     try:
         marshal.loads(path.read_bytes()[HEADER:])

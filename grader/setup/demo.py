@@ -60,7 +60,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def closing_words(exit_code: int) -> str:
-    """Return the message to print if the course's solution did not pass."""
+    """Return the message to print if the solution could not be graded or did not pass."""
     if exit_code == MACHINE_BROKEN:
         return (
             "\nThe solution could not be graded on this machine. To see what is missing, type: .venv/bin/grader doctor"

@@ -116,7 +116,7 @@ def look_at_system() -> Line:
 
 
 def look_at_python() -> Line:
-    """Return a line with this interpreter and whether the course supports it."""
+    """Return a line that names this interpreter and says whether the course supports it."""
     observed = f"CPython {platform.python_version()}, {Path(sys.executable).parent}"
     if machine.OLDEST <= sys.version_info[:2] <= machine.NEWEST:
         return Line("Python", observed)
@@ -125,7 +125,7 @@ def look_at_python() -> Line:
 
 
 def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None) -> Iterator[Line]:
-    """Yield a line on whether .venv matches the current lock file and the sourced ROS 2."""
+    """Yield a line that says whether .venv matches the current lock file and the sourced ROS 2."""
     stamp = stamp or bootstrap.read_stamp()
     if stamp is None or Path(sys.prefix) != bootstrap.VENV:
         yield Line("set-up", "not created by `make`; versions may differ from the lock file")
@@ -210,7 +210,7 @@ def look_at_memory(meminfo: str) -> Line:
 
 
 def look_at_ros(ros: Ros, env: Mapping[str, str]) -> Line:
-    """Return a line with the ROS 2 that grading uses, and whether it matches this Python."""
+    """Return a line that names the ROS 2 that grading uses, and says whether it matches this Python."""
     sourced = machine.sourced_ros(env, bootstrap.VENV)
     if ros.kind == "sourced" and sourced and sourced.python != sys.version_info[:2]:
         wanted = ".".join(map(str, sourced.python))
@@ -225,7 +225,7 @@ def look_at_ros(ros: Ros, env: Mapping[str, str]) -> Line:
 
 
 def look_at_sandbox() -> Line:
-    """Return a line on whether this machine can create sandbox cells, in which students' processes run.
+    """Return a line that says whether this machine can create sandbox cells, in which students' processes run.
 
     Sandbox cells are optional for users who check only their own code.
     """

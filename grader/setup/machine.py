@@ -59,7 +59,7 @@ print(json.dumps({
 
 
 class Python(NamedTuple):
-    """An interpreter.
+    """A Python interpreter.
 
     `path` contains no symlinks, and `cpython` says whether the interpreter is a CPython that the ROS 2 wheels support.
     """
@@ -122,7 +122,7 @@ def platform_problem(system: str, machine: str, libc: Tuple[str, str], ros: Opti
 
 
 def is_offline(env: Mapping[str, str], root: Path = Path("/")) -> bool:
-    """Return whether packages certainly cannot be downloaded, because the network has no route.
+    """Return whether no packages can be downloaded, because the machine has no route to a network.
 
     The result is False if a mirror, a proxy or a folder of wheels is configured. `root` is the folder that contains
     proc/.

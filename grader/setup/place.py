@@ -1,4 +1,4 @@
-"""The folder of the course: whether its path is one with which all programs of the set-up work, and programs run there.
+"""Check that all programs of the set-up work in the course's folder: its path, and whether programs run there.
 
 Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
 of Python 3.6.
@@ -10,8 +10,8 @@ from pathlib import Path
 from grader.common.noexec import noexec_folder, noexec_sentence
 
 _REFUSED = frozenset(':;"\\#?[]|$`')
-"""Characters with which a program of the set-up or of colcon fails: in a search path, a list of CMake, a URL, a
-pattern, a file of ninja, or a string of the shell."""
+"""Characters that make the set-up or colcon fail, because they have a special meaning in a search path, a CMake list, a
+URL, a pattern, a ninja file, or a shell string."""
 
 
 def place_problem(folder: Path) -> str:

@@ -55,7 +55,7 @@ def _groups(needs: Sequence[package_managers.Need]) -> List[List[package_manager
 
 
 def _rights(path: str) -> Optional[List[str]]:
-    """Return the beginning of a command that runs as root: empty for root, or sudo. Return None if there is no sudo."""
+    """Return the prefix of a command that needs root: empty for root, otherwise sudo. Return None without sudo."""
     if os.getuid() == 0:
         return []
     sudo = package_managers.find_program("sudo", path)
@@ -85,4 +85,4 @@ def _run(command: Sequence[str], program: str, env: Mapping[str, str]) -> str:
     lines = [line.strip() for line in done.stdout.decode("utf-8", "replace").splitlines()]
     reported = [line for line in lines if _ERROR.match(line)] or list(filter(None, lines))[-1:]
     words = "; ".join(line.rstrip(".?") for line in list(dict.fromkeys(reported))[:TOLD_LINES])
-    return f"{program} failed: {words or 'it gave no reason'}"
+    return f"{program} failed: {words or 'no reason given'}"

@@ -90,7 +90,7 @@ def of_output(said: str, folder: Path) -> Optional[str]:
 
 
 def offline(said: str) -> Optional[str]:
-    """Return the part of an installer's output that shows that the network is missing, or None."""
+    """Return the part of an installer's output that shows that there is no network, or None."""
     found = _OFFLINE.search(said)
     return found.group() if found else None
 

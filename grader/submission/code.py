@@ -91,7 +91,10 @@ class Call:
 
 @dataclass(frozen=True)
 class Code:
-    """The node's file and the submission files that it imports, except tests and setup.py."""
+    """The node's file and the submission files that it imports, or all files if the node's file is unknown.
+
+    Tests and setup.py are left out.
+    """
 
     modules: tuple[Module, ...]
     node_file: str | None = None
@@ -118,7 +121,7 @@ class Code:
     def calls(self, name: str) -> list[Call]:
         """Return the calls to functions and methods whose dotted name ends with this name, in source order.
 
-        Calls to functions that are alike (ALIKE) are included.
+        If ALIKE maps another method to this name, the calls to that method are included.
         """
         return self._calls.get(name, [])
 

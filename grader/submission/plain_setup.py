@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grader.submission.setup_py import SetupPy
 
 NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
-"""Matches the names of packages that setuptools does not change."""
+"""Matches package names that setuptools does not normalize."""
 _VERSION = re.compile(r"(0|[1-9]\d*)(\.(0|[1-9]\d*))*")
 _POINT = re.compile(r"(?P<name>[A-Za-z0-9]\w*)\s*=\s*(?P<target>[A-Za-z_][\w.]*:[A-Za-z_]\w*)")
 _IMPORTED = frozenset({"setuptools", "os"})

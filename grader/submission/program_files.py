@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 _SYSTEM = ("/usr", "/lib", "/lib64", "/opt/ros", "/etc/ld.so.cache", "/etc/localtime", "/dev/null", "/dev/urandom")
 _MODULES = ("site-packages", "dist-packages")
-"""The folders of a search path that contain only modules. All other entries may be any folder, such as the current
+"""The folders of a search path that contain only modules. The other entries can be any folders, such as the current
 folder or the home folder."""
 
 

@@ -38,7 +38,7 @@ class TestFunction:
 
 @dataclass(frozen=True)
 class TestCode:
-    """The Python files outside the package's module folder (`folder`), except setup.py: the tests and their helpers."""
+    """The test files of a package, and all other Python files outside its module folder, except setup.py."""
 
     __test__ = False
 
@@ -61,7 +61,10 @@ def is_test_file(path: str) -> bool:
 
 
 def read_test_code(files: Mapping[str, bytes], folder: str) -> TestCode:
-    """Read the test files. Raises TooLargeError if the files are larger than anyone would write by hand."""
+    """Read the test files and their helpers. `folder` is the package's module folder.
+
+    Raises TooLargeError if the files are larger than anyone would write by hand.
+    """
     inside = f"{folder}/"
     paths = [
         path

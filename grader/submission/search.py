@@ -31,7 +31,7 @@ class _Search:
 
     packages: list[str] = field(default_factory=list)
     nearly: list[str] = field(default_factory=list)
-    """Files whose names would be package.xml or setup.py in lower case and without a second suffix."""
+    """Files whose names are almost right: package.xml or setup.py with capital letters or with a second suffix."""
     linked: list[str] = field(default_factory=list)
     """Links to folders. Such links are not followed."""
     ignored: list[str] = field(default_factory=list)

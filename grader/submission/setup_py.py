@@ -34,7 +34,7 @@ class EntryPoint:
 
 @dataclass(frozen=True)
 class SetupPy:
-    """The arguments of setup() that are constants. All other arguments are None."""
+    """The arguments of setup() that are constants. All other arguments are None or empty."""
 
     name: str | None = None
     name_line: int | None = None

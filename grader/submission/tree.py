@@ -120,7 +120,7 @@ def open_file(path: Path, *, at: Path | None = None) -> IO[bytes]:
 def require_path(descriptor: int, path: Path) -> None:
     """Raise OSError if an opened file or folder is not at this absolute path.
 
-    Without this check, a link would be followed if a student replaced a folder with it after the path was chosen.
+    Without this check, a student could replace a folder with a link after the path was chosen.
     """
     if Path("/proc/self/fd", str(descriptor)).readlink() != path:
         raise OSError(errno.ELOOP, os.strerror(errno.ELOOP))

@@ -163,7 +163,7 @@ def _below(module: str, tops: dict[str, Top]) -> dict[str, Top]:
 
 
 def _use(node: ast.AST, file: _File, names: Collection[str]) -> Iterable[Use]:
-    """Yield the use of a function if this syntax node is one."""
+    """Yield a use if this syntax node uses one of the functions."""
     name: str | None = None
     written: str | None = None
     if isinstance(node, ast.Call):

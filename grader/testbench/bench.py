@@ -35,7 +35,7 @@ MOST_HANGS = 2
 RIGHT_S = 5.0
 """The time limit for each test on the correct node (s).
 
-On a broken node, a test may wait longer for a missing message.
+On a broken node, a test may need more time, because it may wait for a message that never arrives.
 """
 DOUBT_S = 1.0
 """The time limit for each test on a broken node (s) until a run on the correct node has ended."""

@@ -30,7 +30,7 @@ MOST_REPORT = 64 * 1024
 LATEST = 4.0
 """The maximum wall time of a run, as a multiple of its time limit. This limit also applies on a busy machine."""
 END_S = 30.0
-"""The time allowed (s) for making a cell, and again for ending it."""
+"""The time limit (s) for creating a cell, and the time limit for ending it."""
 LOOK_S = 0.1
 _QUESTION = struct.Struct("<cHqdd")
 _HEADER = struct.Struct("<idI")
@@ -85,7 +85,7 @@ class Conversation:
         self._childs.close()
 
     def result(self) -> Ended:
-        """Respond to the requests of the run until the run ends, or until its time is over."""
+        """Respond to the requests of the run until it ends or its time is over, and return its result."""
         begun, over = time.monotonic(), False
         until = begun + LATEST * self._run_s + END_S
         with selectors.DefaultSelector() as selector:

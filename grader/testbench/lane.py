@@ -136,7 +136,7 @@ class Lane:
         Each test may take `test_s` seconds.
 
         Raises:
-            MachineError: pytest or rclpy could not be imported, or no cell could be made.
+            MachineError: pytest or rclpy could not be imported, or no cell could be created.
         """
         self._wait_until_ready()
         brain = Brain(behaviour, self._package.node)
@@ -146,7 +146,7 @@ class Lane:
             conversation.passed()
             ended = conversation.result()
             if not (conversation.has_begun or self._has_begun or self._killed):
-                raise MachineError("No cell could be made for the tests. `grader doctor` shows what is missing.")  # noqa: EM101
+                raise MachineError("No cell could be created for the tests. `grader doctor` shows what is missing.")  # noqa: EM101
             self._has_begun = True
         return ended
 

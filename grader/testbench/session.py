@@ -7,7 +7,7 @@ socket, the session sends STARTED with a descriptor of the process that runs the
 session sends the exit code of pytest, the duration (s), the report's size, and the report. The session does not know
 whether a run uses the correct node or a broken one.
 
-bubblewrap makes the cell, and a fork of the session enters it (grader.sandbox.entering). The session itself learns
+bubblewrap creates the cell, and a fork of the session enters it (grader.sandbox.entering). The session itself learns
 nothing about its runs: the fork reports to the grader, and ends together with its cell. Therefore, neither a cell nor
 the memory of a run contains a trace of an earlier run.
 """
@@ -148,7 +148,7 @@ def _supervise(order: dict[str, Any], source: bytes, asks: int, answers: int, re
 
 
 def _new_cell(order: dict[str, Any]) -> Holder:
-    """Make a cell, and move this process into its namespaces. Forks of this process are then processes of the cell."""
+    """Create a cell, and move this process into its namespaces, so that later forks are processes of the cell."""
     passed: tuple[int, ...] = ()
     if order["filter"] is not None:
         its_filter, writes = os.pipe()

@@ -68,7 +68,7 @@ class Hooks:
 
 
 class TurtleInterface:
-    """The topics, services and action of the turtle called `name`. After a reset, a new turtle has this name."""
+    """The topics, services and action of the turtle called `name`. After a reset, they belong to the new turtle1."""
 
     def __init__(
         self, node: Node, name: str, world: World, hooks: Hooks, pose_every: int = 1, pose_from_s: float = 0.0

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from grader.turtlesim.world import World
 
 EVERY = 12
-"""The number of frames between two pictures, for 5 pictures per second."""
+"""The number of frames per picture. There are about 5 pictures per second."""
 SIZE_PX = 330
 TURTLE: tuple[int, int, int] = (124, 197, 118)
 

@@ -74,7 +74,7 @@ class State(NamedTuple):
 
 
 class Paper(Protocol):
-    """The surface on which a turtle draws, and whose colours the turtle's sensor reads. Coordinates are in m."""
+    """The surface on which a turtle draws, and from which the turtle's sensor reads colours. Coordinates are in m."""
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
         """Draw a line from (x0, y0) to (x1, y1)."""

@@ -202,7 +202,7 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
             'needs = "rate"',
             '[[check]] 2 (values): "needs" is "rate"; it must be a list of strings.',
         ),
-        ('needs = ["rate"]', 'needs = ["values"]', '"needs" has a cycle: values -> values. Remove one of them.'),
+        ('needs = ["rate"]', 'needs = ["values"]', '"needs" has a cycle: values -> values. Remove one of these needs.'),
         (
             'id = "values"',
             'id = "rate"',
@@ -236,7 +236,7 @@ def test_each_mistake_of_an_author_is_named(tmp_path: Path, old: str, new: str, 
 
 def test_a_circle_of_needs_is_shown(tmp_path: Path) -> None:
     reported = problems(tmp_path, GOOD.replace('kind = "rate"', 'kind = "rate"\nneeds = ["values"]'))
-    assert reported == ['"needs" has a cycle: rate -> values -> rate. Remove one of them.']
+    assert reported == ['"needs" has a cycle: rate -> values -> rate. Remove one of these needs.']
 
 
 def test_all_mistakes_are_reported_at_once(tmp_path: Path) -> None:

@@ -106,7 +106,7 @@ def test_what_can_be_done_without_is_installed_by_itself(machine: Machine, monke
             "apt-get failed: W: Failed to fetch: Could not resolve host; E: Unable to locate package cmake",
         ),
         ("echo only words; exit 1", "apt-get failed: only words"),
-        ("exit 1", "apt-get failed: it gave no reason"),
+        ("exit 1", "apt-get failed: no reason given"),
     ],
 )
 def test_a_failure_is_reported_in_the_managers_own_words(

@@ -26,14 +26,14 @@ def test_a_low_limit_that_may_be_raised_is_raised() -> None:
 def test_a_low_limit_is_never_the_fault_of_the_node() -> None:
     done = checked("ulimit -n 64")
     assert done.returncode == 3, done.stdout
-    assert "may not open more than 64 files: raise this limit" in done.stdout
+    assert "cannot open more than 64 files: raise this limit" in done.stdout
     assert "the node made" not in done.stdout
 
 
 @pytest.mark.parametrize(
     ("error", "limit", "found"),
     [
-        (OSError(errno.EMFILE, ""), 64, "may not open more than 64 files"),
+        (OSError(errno.EMFILE, ""), 64, "cannot open more than 64 files"),
         (OSError(errno.EMFILE, ""), 256, None),
         (OSError(errno.ENFILE, ""), 1024, "too many files open"),
         (OSError(errno.ENOENT, ""), 64, None),

@@ -31,7 +31,7 @@ def first(x: float, y: float, theta: float) -> Leg:
 
 
 def follow(leg: Leg, x: float, y: float, theta: float) -> tuple[Leg, float, float]:
-    """Return the current leg for a turtle at this pose, and its linear (m/s) and angular (rad/s) velocity.
+    """Return the current leg of a turtle at this pose, and the turtle's linear (m/s) and angular (rad/s) velocity.
 
     All corners are computed from the first corner, so that small errors do not accumulate.
     """

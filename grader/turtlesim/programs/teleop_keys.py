@@ -57,7 +57,7 @@ _UNFINISHED = re.compile(r"\x1b(?:\[[0-9;]*|O)?\Z")
 
 
 def keys(text: str) -> tuple[list[Key], str]:
-    """Return the commands in order, and the incomplete sequence at the end of the text. Ignore other keys."""
+    """Return the commands in order, and the incomplete escape sequence at the end of the text. Ignore other keys."""
     typed: list[Key] = []
     at = 0
     while at < len(text):

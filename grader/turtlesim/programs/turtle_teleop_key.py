@@ -33,7 +33,8 @@ The arrow keys drive the turtle, for one second per key press.
 F stops turning, Q quits."""
 _NO_TERMINAL = (
     "turtle_teleop_key reads keys from a terminal, but its standard input is not a terminal (it is a pipe or a file, "
-    "or it was started in the background). Start it in a separate terminal: ros2 run turtlesim turtle_teleop_key"
+    "or the program was started in the background). Start the program in a separate terminal: "
+    "ros2 run turtlesim turtle_teleop_key"
 )
 _DISCOVERY_S = 2.0
 """The maximum time (s) that the discovery of a running turtlesim takes."""
