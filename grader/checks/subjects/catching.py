@@ -250,7 +250,7 @@ NEAREST_FIRST = Kind(
     "The nearest target is caught first",
     NoParams,
     nearest_first,
-    about="After each catch, turtle1 drives to the turtle that is then nearest.",
+    about="After each catch, turtle1 drives to the turtle that is nearest at that moment.",
 )
 WITHIN_REACH = Kind(
     "within_reach",

@@ -197,8 +197,8 @@ DECLARES = Kind(
     "The parameter has a description and a range",
     Declares,
     declares,
-    about="When a `[[trial.call]]` of `/NODE/describe_parameters` requests it, the node describes a "
-    "float with a description and the given range.",
+    about="In the response to a `[[trial.call]]` of `/NODE/describe_parameters`, the parameter is a float with a "
+    "description and the given range.",
 )
 SETS = Kind(
     "sets_parameter",
