@@ -7,9 +7,10 @@ of Python 3.6.
 import os
 import shlex
 from pathlib import Path
+from typing import Optional
 
 
-def noexec_folder(path: Path) -> Path | None:
+def noexec_folder(path: Path) -> Optional[Path]:  # noqa: UP045 - valid in Python 3.6
     """Return the topmost folder of the noexec mount that contains `path`, or None if programs in `path` can run.
 
     `path` does not need to exist.

@@ -54,6 +54,7 @@ RUNS_FIRST = (
         "__init__.py",
         "common/__init__.py",
         "common/interpreter.py",
+        "common/noexec.py",
         "common/package_managers.py",
         "common/readable_by_all.py",
         "common/system_errors.py",
