@@ -104,7 +104,9 @@ class GraphQuestion:
     """
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
-    find: str = choice("topic", "type", "node", about="The property of each endpoint that the question asks for.")
+    find: str = choice(
+        "topic", "type", "node", about="What the question asks for: the topic, the type or the node of each endpoint."
+    )
     among: str = choice("publisher", "subscription", "all", about="The kind of endpoint that counts.")
     node: str = string("a node's full name", start="/", default="", about="Only endpoints of this node count.")
     type_starts: str = string(

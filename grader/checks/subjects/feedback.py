@@ -169,5 +169,5 @@ LOG_FEEDBACK = Kind(
     "The log shows the feedback",
     LogFeedback,
     log_feedback,
-    about="While the turtle follows a rotate_absolute goal, log lines show how far the turtle must still turn.",
+    about="While a rotate_absolute goal is active, log lines show how far the turtle must still turn.",
 )
