@@ -21,6 +21,7 @@ from rclpy.signals import SignalHandlerOptions
 from grader.common.system_errors import refusal
 from grader.errors import MachineError
 from grader.graph.announcements import participant_ports, passed_on
+from grader.graph.valid_names import ObservingNode, readable_names
 from grader.ros.domain import wrong_domain
 from grader.ros.failure import Ros2Error
 from grader.ros.installation import FASTDDS_PROFILE
@@ -58,7 +59,8 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
     A `patient` node announces itself less often than other nodes, because it runs for hours.
 
     Raises:
-        Ros2Error: the node could not be created, for example because the domain id is wrong.
+        Ros2Error: the node could not be created, for example because the domain id is wrong. In the context: a name in
+            the graph is not valid UTF-8.
         MachineError: the machine has no memory, files or threads left for a node.
     """
     domain = _domain()
@@ -72,7 +74,7 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
     try:
         with announced:
             rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
-            node = rclpy.create_node(
+            node = ObservingNode(
                 name or f"{PREFIX}_{os.getpid()}",
                 start_parameter_services=False,
                 parameter_overrides=[
@@ -89,7 +91,8 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
         message = f"The ROS 2 node could not be created: {lines[0]}"
         raise Ros2Error(message) from error
     try:
-        yield node
+        with readable_names():
+            yield node
     except ExternalShutdownException as error:
         raise KeyboardInterrupt from error
     finally:

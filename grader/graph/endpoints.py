@@ -8,6 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.common.words import printable
+
 if TYPE_CHECKING:
     from rclpy.node import Node
 
@@ -43,7 +45,7 @@ def observe(node: Node) -> Observed:
             ("publisher", node.get_publishers_info_by_topic(topic)),
             ("subscription", node.get_subscriptions_info_by_topic(topic)),
         ):
-            ends += [End(kind, _full(i.node_name, i.node_namespace), topic, i.topic_type) for i in infos]
+            ends += [End(kind, _full(i.node_name, i.node_namespace), topic, printable(i.topic_type)) for i in infos]
     return Observed(
         tuple(sorted(name for name in names if name != own)),
         tuple(sorted((end for end in ends if end.node != own), key=lambda end: (end.topic, end.kind, end.node))),
@@ -51,4 +53,4 @@ def observe(node: Node) -> Observed:
 
 
 def _full(name: str, namespace: str) -> str:
-    return f"{namespace.rstrip('/')}/{name}"
+    return printable(f"{namespace.rstrip('/')}/{name}")

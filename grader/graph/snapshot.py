@@ -12,7 +12,9 @@ from rclpy.action import (
 )
 from rclpy.node import NodeNameNonExistentError
 
+from grader.common.words import printable
 from grader.graph.graph_info import EndpointLook, Look, Named, NodeLook
+from grader.graph.valid_names import valid
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -32,7 +34,7 @@ def snapshot(node: Node) -> Look:
         endpoints=tuple(_endpoints(node, (name for name, _ in topics))),
         services=services,
         service_counts={name: (node.count_clients(name), node.count_services(name)) for name, _ in services},
-        actions=_named(get_action_names_and_types(node)),
+        actions=_named(valid(get_action_names_and_types(node))),
     )
 
 
@@ -66,6 +68,7 @@ def _endpoints(node: Node, topics: Iterable[str]) -> Iterable[EndpointLook]:
 
 def _endpoint(topic: str, info: Any, *, publishes: bool) -> EndpointLook:  # noqa: ANN401
     qos = info.qos_profile
+    info.node_name, info.topic_type = printable(info.node_name), printable(info.topic_type)
     return EndpointLook(
         topic, publishes, info.node_name, qos.reliability.short_key, qos.durability.short_key, str(info)
     )

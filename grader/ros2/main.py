@@ -13,6 +13,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, NoReturn
 
 from grader.common.own_process import prepare
+from grader.common.plain_output import protect_terminal
 from grader.common.standard_streams import make_usable
 from grader.common.system_errors import refusal
 from grader.common.terminal_text import say
@@ -41,6 +42,7 @@ def main() -> NoReturn:
     """Run `ros2` and exit with its exit code."""
     make_usable()
     prepare()
+    protect_terminal()
     code = run()
     with suppress(OSError):
         sys.stderr.flush()

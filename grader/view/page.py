@@ -8,7 +8,6 @@ from __future__ import annotations
 import asyncio
 import json
 import os
-from collections import deque
 from typing import TYPE_CHECKING
 
 from grader.graph.discovery import cli_node
@@ -19,7 +18,7 @@ from grader.view.graph_news import GraphNews
 from grader.view.guard import Door
 from grader.view.hub import Hub
 from grader.view.page_server import application
-from grader.view.rqt.rosout import MOST_LINES, Line, Rosout
+from grader.view.rqt.rosout import Line, Lines, Rosout
 from grader.view.serving import ended_by_signals, in_loop, serve
 from grader.view.state import State
 from grader.view.system import Ears
@@ -44,7 +43,7 @@ class Page:
         self._hub = Hub(self._whole)
         self._news = GraphNews(self._hub, show or Show(), self._state)
         self._rosout: Rosout | None = None
-        self._lines: deque[Line] = deque(maxlen=MOST_LINES)
+        self._lines = Lines()
 
     async def serve(self, place: Place) -> bool:
         """Serve until the simulator exits or Ctrl-C is pressed. Return whether the page could be opened in a browser.
@@ -89,7 +88,7 @@ class Page:
             return await serve(place, app, door, self._hub, self._ended, stays=self._stays)
 
     def _logged(self, lines: list[Line]) -> None:
-        self._lines += lines
+        self._lines.add(lines)
         self._hub.tell("log", {"log": lines})
 
     # --- the simulator ------------------------------------------------------------------------------------------
@@ -113,6 +112,6 @@ class Page:
         return {
             **(self._state.whole() if self._feed is not None else {}),
             "simulator": self._feed is not None,
-            "log": list(self._lines),
+            "log": self._lines.all(),
             **self._news.whole(),
         }

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.common.own_process import prepare
+from grader.common.plain_output import protect_terminal
 from grader.common.terminal_text import say
 from grader.errors import GraderError, MachineError, UsageError
 from grader.graph.graph import Show, picture, to_dot, to_text
@@ -42,6 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Decision 9 in docs/design.md explains the other exit codes.
     """
     prepare()
+    protect_terminal()
     argv = list(sys.argv[1:] if arguments is None else arguments)
     for number in (signal.SIGTERM, signal.SIGHUP):
         # Exit as after Ctrl-C, so that the node leaves the graph properly.

@@ -71,6 +71,7 @@ class Ears:
         self._tell = tell
         self._known = known
         self._counters: dict[str, _Counter] = {}
+        self._observed = Observed((), ())
         self._driver: tuple[str, Teleop] | None = None
         self._leave_s = math.inf
         self._executor = SingleThreadedExecutor()
@@ -102,7 +103,9 @@ class Ears:
     # --- the graph and the rates --------------------------------------------------------------------------------
 
     def _look(self) -> None:
-        observed = observe(self._node)
+        with suppress(UnicodeDecodeError):  # a program has a name that is not valid UTF-8: the last graph stays
+            self._observed = observe(self._node)
+        observed = self._observed
         now = time.monotonic()
         if now >= self._leave_s:
             self._leave()

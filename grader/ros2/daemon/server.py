@@ -16,6 +16,7 @@ import uuid
 from contextlib import suppress
 from typing import IO, TYPE_CHECKING, Any
 
+from grader.ros.failure import Ros2Error
 from grader.ros2.daemon import socket_path
 
 if TYPE_CHECKING:
@@ -35,8 +36,8 @@ _REQUEST_S = 2.0
 def main() -> int:
     """Run the daemon.
 
-    Return the exit code: 0, or 1 if no private folder for the socket can be created. Return early if another daemon is
-    running.
+    Return the exit code: 0, or 1 if no private folder for the socket can be created or the graph cannot be read. Return
+    early if another daemon is running.
     """
     for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
         signal.signal(number, _end)
@@ -47,8 +48,13 @@ def main() -> int:
     with (folder / f"{name}.lock").open("w") as lock:
         if not socket_path.lock(lock):
             return 0
-        with suppress(KeyboardInterrupt):
+        try:
             _serve(folder, name, _replying())
+        except KeyboardInterrupt:
+            pass
+        except Ros2Error as error:  # the commands then look at the graph themselves, and print the error
+            print(error, file=sys.stderr)
+            return error.exit_code
     return 0
 
 

@@ -15,7 +15,7 @@ from grader.view.guard import Door
 from grader.view.hub import Hub
 from grader.view.page_server import application
 from grader.view.rqt.plotted import Plotted, Sample
-from grader.view.rqt.rosout import MOST_LINES, Line, Rosout
+from grader.view.rqt.rosout import Line, Lines, Rosout
 from grader.view.rqt.service_caller import Answer, Service, ServiceCaller, services
 from grader.view.serving import ended_by_signals, in_loop, serve
 from grader.view.state import State
@@ -52,7 +52,7 @@ class RqtPage:
         self._fields = fields
         self._hub = Hub(self._whole)
         self._graph = GraphNews(self._hub, Show(), State())
-        self._lines: deque[Line] = deque(maxlen=MOST_LINES)
+        self._lines = Lines()
         self._series: dict[str, deque[Sample]] = {}
         self._wanted: dict[str, str] = {}
         self._services: list[Service] = []
@@ -93,7 +93,7 @@ class RqtPage:
                 return await serve(place, app, door, self._hub, ended, stays=stays)
 
     def _logged(self, lines: list[Line]) -> None:
-        self._lines += lines
+        self._lines.add(lines)
         self._hub.tell("log", {"log": lines})
 
     def _plotted(self, new: dict[str, list[Sample]], wanted: dict[str, str]) -> None:
@@ -119,7 +119,7 @@ class RqtPage:
         return {
             "parts": list(self._parts),
             **self._graph.whole(),
-            "log": list(self._lines),
+            "log": self._lines.all(),
             "plot": {"wanted": self._wanted, "whole": {name: list(kept) for name, kept in self._series.items()}},
             "services": self._services,
         }

@@ -1,0 +1,56 @@
+"""Output to a terminal without control characters: names and texts in the ROS graph come from any program.
+
+A terminal executes control sequences in what is printed. Such a sequence can hide a line, write to the clipboard
+(OSC 52), or open a link that is not the printed one (OSC 8).
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import sys
+from typing import TextIO
+
+_CONTROL = re.compile(r"(?!\x1b\[(?:0|1|31|33)m)[\x00-\x08\x0b-\x1f\x7f-\x9f]")
+"""The characters of Unicode's category Cc, except line breaks, tabs, and the colours of our own messages."""
+
+
+def without_control(text: str) -> str:
+    r"""Return the text with a question mark in place of each control character.
+
+    Example:
+        >>> without_control("/a\x1b[2K\tb\n")
+        '/a?[2K\tb\n'
+    """
+    return _CONTROL.sub("?", text)
+
+
+class PlainText(io.TextIOWrapper):
+    """A text stream that writes text without control characters."""
+
+    def write(self, text: str, /) -> int:
+        """Write the text without control characters, and return the length of the text."""
+        super().write(without_control(text))
+        return len(text)
+
+
+def protect_terminal() -> None:
+    """Write all further output of this process to a terminal without control characters.
+
+    A file and a pipe get the text as it is.
+    """
+    sys.stdout, sys.stderr = _protected(sys.stdout), _protected(sys.stderr)
+
+
+def _protected(stream: TextIO) -> TextIO:
+    if not isinstance(stream, io.TextIOWrapper) or not stream.isatty():
+        return stream
+    stream.flush()
+    # The buffer is shared and not detached, because other code may have kept the stream.
+    return PlainText(
+        stream.buffer,
+        stream.encoding,
+        stream.errors,
+        line_buffering=stream.line_buffering,
+        write_through=stream.write_through,
+    )
