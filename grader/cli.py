@@ -193,6 +193,10 @@ book.add_to(app)
 
 def main() -> None:
     """Run the command, and exit."""
+    run_and_exit(_run, _explain)
+
+
+def _run() -> None:
     clean_own()
     make_usable()
     prepare()
@@ -204,7 +208,7 @@ def main() -> None:
         completion_init()
         words = []
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # limits numpy's threads, as in grader.ros.installation
-    run_and_exit(needed_command(app, words), _explain)
+    needed_command(app, words)()
 
 
 def _explain(error: Exception) -> str | None:

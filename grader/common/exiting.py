@@ -6,6 +6,7 @@ import os
 import sys
 from typing import TYPE_CHECKING, NoReturn
 
+from grader.common.interrupts import raise_lost_stops
 from grader.common.quick_exit import QuickExit
 from grader.common.system_errors import refusal
 from grader.common.terminal_text import RED, say
@@ -21,6 +22,7 @@ def run_and_exit(command: Callable[[], object], explain: Callable[[Exception], s
     `explain` is called for an error that is not one of the grader's own errors. It returns a sentence for the user, or
     None if it does not know the error.
     """
+    raise_lost_stops()
     try:
         _run(command)
         QuickExit.code = 0

@@ -9,7 +9,7 @@ import signal
 import sys
 import time
 from collections import Counter
-from contextlib import contextmanager, nullcontext
+from contextlib import ExitStack, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +18,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 
+from grader.common.interrupts import stops_deferred
 from grader.common.system_errors import refusal
 from grader.errors import MachineError
 from grader.graph.announcements import participant_ports, passed_on
@@ -63,8 +64,19 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
             the graph is not valid UTF-8.
         MachineError: the machine has no memory, files or threads left for a node.
     """
+    with ExitStack() as stack:
+        with stops_deferred():
+            node = _create_node(name, use_sim_time, PATIENT_PROFILE if patient else LOOPBACK_PROFILE)
+            stack.callback(_remove, node)
+        try:
+            with readable_names():
+                yield node
+        except ExternalShutdownException as error:
+            raise KeyboardInterrupt from error
+
+
+def _create_node(name: str | None, use_sim_time: bool, profile: Path) -> Node:
     domain = _domain()
-    profile = PATIENT_PROFILE if patient else LOOPBACK_PROFILE
     _leave_shared_memory_out(profile)
     _leave_generator_out()
     announced = passed_on(domain) if os.environ.get(_PROFILE) == str(profile) else nullcontext()
@@ -82,6 +94,7 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
                     Parameter("use_sim_time", value=use_sim_time),
                 ],
             )
+            rclpy.get_global_executor()  # the first rclpy.spin_once would create it, and could be interrupted
     except Exception as error:
         rclpy.try_shutdown()
         lines = str(error).strip().splitlines() or [type(error).__name__]
@@ -90,16 +103,14 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
             raise MachineError(message) from error
         message = f"The ROS 2 node could not be created: {lines[0]}"
         raise Ros2Error(message) from error
-    try:
-        with readable_names():
-            yield node
-    except ExternalShutdownException as error:
-        raise KeyboardInterrupt from error
-    finally:
-        # A second Ctrl-C must not interrupt the clean-up of the node.
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
-        node.destroy_node()
-        rclpy.try_shutdown()
+    return node
+
+
+def _remove(node: Node) -> None:
+    # A second Ctrl-C must not interrupt the clean-up of the node.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    node.destroy_node()
+    rclpy.try_shutdown()
 
 
 def _leave_shared_memory_out(profile: Path) -> None:

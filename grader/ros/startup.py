@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -45,4 +46,5 @@ def see_to_environment(needed: Collection[str]) -> None:
     wanted = shell.users_environment(None, lambda text: say(f"{text} ..."))
     command = str(Path(sys.argv[0]).absolute())
     again = interpreter(command, *sys.argv[1:], env={**wanted, _STARTED_AGAIN: "1"}, searches=True)
+    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])  # until the command can handle Ctrl-C
     os.execve(again.argv[0], again.argv, again.env)

@@ -43,9 +43,8 @@ def run_child(command: Sequence[str]) -> int:
         if os.getppid() != ours:
             os._exit(1)
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     # Block the signals until the program has started and can receive them.
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, _PASSED_ON)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, *_PASSED_ON))
     try:
         process = subprocess.Popen(command, preexec_fn=prepare)
     except (OSError, subprocess.SubprocessError) as error:
@@ -58,6 +57,9 @@ def run_child(command: Sequence[str]) -> int:
     def pass_on(number: int, _: FrameType | None) -> None:
         process.send_signal(number)
 
+    if signal.SIGINT in signal.sigpending():  # Ctrl-C may have been pressed before the program was started
+        process.send_signal(signal.SIGINT)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     for number in _PASSED_ON:
         signal.signal(number, pass_on)
     signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -12,6 +12,7 @@ import sys
 from contextlib import suppress
 from typing import TYPE_CHECKING, NoReturn
 
+from grader.common.interrupts import raise_lost_stops
 from grader.common.own_process import prepare
 from grader.common.plain_output import protect_terminal
 from grader.common.standard_streams import make_usable
@@ -43,6 +44,7 @@ def main() -> NoReturn:
     make_usable()
     prepare()
     protect_terminal()
+    raise_lost_stops()
     code = run()
     with suppress(OSError):
         sys.stderr.flush()

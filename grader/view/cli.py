@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Optional
 
@@ -60,6 +61,7 @@ def sim(
     start = interpreter(
         "-m", "grader.view.turtlesim_node", *options, *context.args, python=str(ros.python), env=env, searches=True
     )
+    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])  # until the program can handle Ctrl-C
     os.execve(start.argv[0], start.argv, start.env)
 
 

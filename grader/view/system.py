@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 
+from grader.common.interrupts import stops_deferred
 from grader.graph.endpoints import Observed, observe
 from grader.graph.graph import DEBUG_TOPICS
 from grader.graph.names import hidden
@@ -74,7 +75,8 @@ class Ears:
         self._observed = Observed((), ())
         self._driver: tuple[str, Teleop] | None = None
         self._leave_s = math.inf
-        self._executor = SingleThreadedExecutor()
+        with stops_deferred():
+            self._executor = SingleThreadedExecutor()
         self._executor.add_node(node)
         node.create_timer(LOOKED_EVERY_S, self._look)
         self._stop = threading.Event()

@@ -28,6 +28,7 @@ def main() -> None:
     """Run turtlesim until Ctrl-C, and exit."""
     # Ctrl-C terminates the program without a traceback, even while ROS 2 is being imported.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
     prepare()
     from grader.turtlesim import standalone
 

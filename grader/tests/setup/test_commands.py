@@ -47,9 +47,22 @@ CODES = {"grader": 130, "ros2": 2, "rqt": 130, "rqt_console": 130, "rqt_graph": 
 """The commands, with their exit codes after Ctrl-C."""
 
 
+with_block_signal = pytest.mark.skipif(
+    subprocess.run(["/usr/bin/env", "--block-signal=INT", "true"], capture_output=True, check=False).returncode != 0,
+    reason="this test needs an `env` with the option --block-signal",
+)
+
+
 @pytest.mark.parametrize(("name", "code"), CODES.items())
 def test_ctrl_c_during_the_import_prints_no_traceback(tmp_path: Path, name: str, code: int) -> None:
     done = run(tmp_path, name, INTERRUPTED)
+    assert (done.returncode, done.stdout, done.stderr) == (code, "", "")
+
+
+@with_block_signal
+@pytest.mark.parametrize(("name", "code"), CODES.items())
+def test_ctrl_c_while_python_itself_starts_prints_no_traceback(tmp_path: Path, name: str, code: int) -> None:
+    done = run(tmp_path, name, "import os, signal\nos.kill(os.getpid(), signal.SIGINT)\n")
     assert (done.returncode, done.stdout, done.stderr) == (code, "", "")
 
 

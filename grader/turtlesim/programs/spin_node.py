@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import signal
 import sys
+from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 import rclpy
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.executors import ExternalShutdownException
 
 if TYPE_CHECKING:
@@ -19,13 +21,17 @@ def run(make: Callable[[], Node]) -> int:
     """Spin a node until Ctrl-C or SIGTERM, neither of which prints a traceback, and return the exit code."""
     # Before this call, Ctrl-C terminates Python immediately. rclpy passes a signal on to the previous handler.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    rclpy.init(args=sys.argv)
-    node = make()
-    try:
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
+    with ExitStack() as stack:
+        stack.callback(rclpy.try_shutdown)
+        try:
+            rclpy.init(args=sys.argv)
+            node = make()
+            stack.callback(node.destroy_node)
+            rclpy.spin(node)
+        except (KeyboardInterrupt, ExternalShutdownException):
+            pass
+        except RCLError:
+            # The signal has shut down the context, so the node could not be created.
+            if rclpy.ok():
+                raise
     return 0

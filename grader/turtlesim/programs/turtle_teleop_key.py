@@ -7,7 +7,7 @@ import signal
 import sys
 import threading
 import time
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +19,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from turtlesim.action import RotateAbsolute
 
+from grader.common.interrupts import stops_deferred
 from grader.turtlesim.programs.raw_terminal import is_terminal, keyboard
 from grader.turtlesim.programs.teleop_keys import Cancel, Drive, Quit, Turn, keys
 
@@ -106,23 +107,21 @@ def main() -> int:
         return 1
     # Python's signal handler must interrupt the wait for a key. The handler of rclpy interrupts only waits of rclpy.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
-    node = Teleop()
-    executor = SingleThreadedExecutor()
-    executor.add_node(node)
-    spinning = threading.Thread(target=_spin, args=[executor], daemon=True)
-    spinning.start()
-    try:
+    with suppress(KeyboardInterrupt), ExitStack() as stack:
+        with stops_deferred():
+            rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
+            stack.callback(rclpy.try_shutdown)
+            node = Teleop()
+            stack.callback(node.destroy_node)
+            executor = SingleThreadedExecutor()
+            executor.add_node(node)
+            spinning = threading.Thread(target=_spin, args=[executor], daemon=True)
+            spinning.start()
+            stack.callback(spinning.join)
+            stack.callback(executor.shutdown)
         with keyboard() as read:
             print(_HELP, flush=True)
             _follow(read, node, executor)
-    except KeyboardInterrupt:
-        pass
-    finally:
-        executor.shutdown()
-        spinning.join()
-        node.destroy_node()
-        rclpy.try_shutdown()
     return 0
 
 

@@ -1,0 +1,64 @@
+"""Ctrl-C, SIGTERM and SIGHUP: no object is left half created, and no signal is lost."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from types import FrameType
+
+_STOPS: tuple[int, ...] = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+_SOON_S = 0.01
+
+
+@contextmanager
+def stops_deferred() -> Iterator[None]:
+    """Handle the signals that stop the command only when the context has been left.
+
+    Some objects of rclpy cannot be destroyed without a traceback if an exception interrupts their `__init__`.
+    """
+    arrived: list[int] = []
+
+    def keep(number: int, _: FrameType | None) -> None:
+        arrived.append(number)
+
+    before = {number: handler for number in _STOPS if callable(handler := signal.getsignal(number))}
+    for number in before:
+        signal.signal(number, keep)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        for number in arrived:
+            signal.raise_signal(number)
+
+
+def raise_lost_stops() -> None:
+    """Raise a KeyboardInterrupt again if Python has discarded it, instead of printing it.
+
+    Python discards an exception that is raised in a callback of `os.fork` or in `__del__`, and the command would
+    continue as if nobody had pressed Ctrl-C.
+    """
+    sys.unraisablehook = _raise_again
+
+
+def _raise_again(discarded: sys.UnraisableHookArgs) -> None:
+    lost = discarded.exc_value
+    if not isinstance(lost, KeyboardInterrupt):
+        sys.__unraisablehook__(discarded)
+        return
+
+    def again(_number: int, _frame: FrameType | None) -> None:
+        signal.signal(signal.SIGALRM, handler)
+        signal.setitimer(signal.ITIMER_REAL, *rest)
+        raise lost
+
+    # The command ends soon. What else Python discards until then is a consequence of the interruption.
+    sys.unraisablehook = lambda _: None
+    handler = signal.signal(signal.SIGALRM, again)
+    rest = signal.setitimer(signal.ITIMER_REAL, _SOON_S)

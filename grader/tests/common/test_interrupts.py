@@ -1,0 +1,85 @@
+"""A signal that stops a command interrupts no `__init__` of rclpy, and is not lost."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from grader.common.interpreter import interpreter
+from grader.common.interrupts import stops_deferred
+
+DISCARDED_AT_A_FORK = """
+import os, signal, time
+from grader.common.interrupts import raise_lost_stops
+
+raise_lost_stops()
+os.register_at_fork(before=lambda: signal.raise_signal(signal.SIGINT), after_in_parent=lambda: 1 / 0)
+try:
+    if not os.fork():
+        os._exit(0)
+    time.sleep(100)
+except KeyboardInterrupt:
+    print("interrupted", signal.getitimer(signal.ITIMER_REAL), signal.getsignal(signal.SIGALRM) == signal.SIG_DFL)
+"""
+NODE_INTERRUPTED = """
+import signal
+import rclpy.executors
+from grader.graph.discovery import cli_node
+
+
+def guard_condition(*_):
+    signal.raise_signal(signal.SIGINT)
+    return real(*_)
+
+
+real = rclpy.executors.SignalHandlerGuardCondition
+rclpy.executors.SignalHandlerGuardCondition = guard_condition
+try:
+    with cli_node():
+        print("not interrupted")
+except KeyboardInterrupt:
+    print("interrupted", rclpy.ok())
+"""
+
+
+def outcome_of(code: str) -> tuple[int, str, str]:
+    start = interpreter("-c", code, python=sys.executable, searches=True)
+    done = subprocess.run(start.argv, env=start.env, capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+def interrupted(done: list[str], error: type[Exception] | None = None) -> None:
+    with stops_deferred():
+        signal.raise_signal(signal.SIGINT)
+        done.append("all of it")
+        if error:
+            raise error
+
+
+def test_a_signal_waits_until_the_context_has_been_left() -> None:
+    done: list[str] = []
+    with pytest.raises(KeyboardInterrupt):
+        interrupted(done)
+    assert done == ["all of it"]
+    assert signal.getsignal(signal.SIGINT) == signal.default_int_handler
+
+
+def test_an_error_in_the_context_does_not_hide_the_signal() -> None:
+    with pytest.raises(KeyboardInterrupt):
+        interrupted([], ValueError)
+
+
+def test_signals_that_terminate_the_process_or_are_ignored_keep_their_handlers() -> None:
+    with stops_deferred():
+        assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
+
+
+def test_an_interrupt_that_python_discards_at_a_fork_is_raised_again_and_nothing_is_printed() -> None:
+    assert outcome_of(DISCARDED_AT_A_FORK) == (0, "interrupted (0.0, 0.0) True\n", "")
+
+
+def test_ctrl_c_while_a_commands_node_is_created_prints_nothing_and_the_node_is_removed() -> None:
+    assert outcome_of(NODE_INTERRUPTED) == (0, "interrupted False\n", "")
