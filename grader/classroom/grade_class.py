@@ -84,7 +84,7 @@ def grade_found(
         trusted=request.trusted,
     )
     assert order.exercises  # report mistakes in private checks before grading
-    with results.opened(request.out) as folder:
+    with results.opened(request.out, request.submissions) as folder:
         tell(f"Reading {count(len(found), 'submission')}")
         kept, todo = sort_out(order, folder)
         say(_reported(kept, todo))

@@ -20,12 +20,13 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from grader.classroom.own_folders import is_among, is_marked, mark
 from grader.errors import DiskError, MachineError, UsageError
 from grader.report.json import from_json, to_data
 from grader.report.suspicion import ERRORS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from grader.classroom.key import Key
@@ -121,17 +122,26 @@ class Results:
 
 
 @contextmanager
-def opened(folder: Path) -> Iterator[Results]:
+def opened(folder: Path, submissions: Sequence[Path] = ()) -> Iterator[Results]:
     """Yield the folder, created if necessary, and lock it against other runs.
+
+    `submissions` are the folders of the class, in which a student could have put a folder with forged results.
 
         with opened(Path("grades")) as results:
             old = results.load("anna", "03-circle-publisher")
 
     Raises:
-        UsageError: another run is using the folder, or it contains files that are not results.
+        UsageError: another run is using the folder, it contains files that are not results, or a student could have
+            created it.
         MachineError: the folder cannot be written.
     """
     lock = folder / _LOCK
+    if os.path.lexists(folder) and is_among(folder, submissions) and (folder.is_symlink() or not is_marked(lock)):
+        message = (
+            f"{folder} is among the submissions, and you did not create it with `grader grade`: a student may have put "
+            "forged results there. Choose another folder with --out."
+        )
+        raise UsageError(message)
     if folder.exists() and not (folder.is_dir() and (lock.exists() or not any(folder.iterdir()))):
         message = f"{folder} contains files that are not results of `grader grade`. Choose a new folder with --out."
         raise UsageError(message)
@@ -139,6 +149,8 @@ def opened(folder: Path) -> Iterator[Results]:
         folder.parent.mkdir(parents=True, exist_ok=True)
         folder.mkdir(mode=0o700, exist_ok=True)  # marks and hidden checks are not for other users of the machine
         (folder / REPORTS).mkdir(exist_ok=True)
+        if not lock.exists():
+            mark(lock)
         file = lock.open("a")
     except OSError as error:
         message = (

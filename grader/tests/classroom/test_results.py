@@ -32,6 +32,44 @@ def test_other_users_cannot_read_the_marks(tmp_path: Path) -> None:
         assert (tmp_path / "new" / "grades").stat().st_mode & 0o777 == 0o700
 
 
+@pytest.fixture
+def of_the_student(tmp_path: Path) -> Path:
+    """Return a folder with forged results that a student has handed in."""
+    with opened(tmp_path / "of the student" / "grades") as results:
+        results.save("mallory", report("passed"), KEY, b"<p>forged")
+    (tmp_path / "class").mkdir()
+    return results.folder
+
+
+def test_results_that_a_student_has_handed_in_are_refused(
+    tmp_path: Path, of_the_student: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "home of the instructor"))
+    handed_in = of_the_student.rename(tmp_path / "class" / "grades")
+    with pytest.raises(UsageError, match="may have put forged results there"), opened(handed_in, [tmp_path / "class"]):
+        pass
+    with opened(tmp_path / "class" / "own", [tmp_path / "class"]):
+        pass
+    with opened(tmp_path / "class" / "own", [tmp_path / "class"]):
+        pass
+
+
+def test_a_student_cannot_choose_the_folder_of_the_results_with_a_link(tmp_path: Path, of_the_student: Path) -> None:
+    link = tmp_path / "class" / "grades"
+    for leads_to in (of_the_student, tmp_path / "nowhere"):
+        link.symlink_to(leads_to)
+        with pytest.raises(UsageError, match="may have put forged results there"), opened(link, [tmp_path / "class"]):
+            pass
+        link.unlink()
+    assert not (tmp_path / "nowhere").exists()
+
+
+def test_an_empty_folder_among_the_submissions_is_not_taken_for_the_results(tmp_path: Path) -> None:
+    (tmp_path / "grades").mkdir()
+    with pytest.raises(UsageError, match="you did not create it"), opened(tmp_path / "grades", [tmp_path]):
+        pass
+
+
 def test_a_result_without_a_page_is_not_complete(tmp_path: Path) -> None:
     with opened(tmp_path / "grades") as results:
         saved = results.save("anna", report("failed"), KEY, b"<p>page")

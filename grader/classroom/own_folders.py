@@ -1,0 +1,52 @@
+"""Recognize the folders that this user has created with `grader grade`.
+
+A class folder can contain a folder of results. A student can hand in a folder that looks like one, with forged results
+in it. Therefore, a new folder gets a mark that only this user knows.
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.common import xdg
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+_BYTES = 16
+
+
+def mark(file: Path) -> None:
+    """Write a mark to the new file, and remember it. The mark is not remembered if the home is not writable."""
+    made = secrets.token_hex(_BYTES)
+    file.write_text(made, "ascii")
+    with suppress(OSError):
+        known = _known()
+        known.parent.mkdir(parents=True, exist_ok=True)
+        descriptor = os.open(known, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+        with os.fdopen(descriptor, "w", encoding="ascii") as opened:
+            opened.write(f"{made}\n")
+
+
+def is_marked(file: Path) -> bool:
+    """Return whether the file contains a mark of this user. A link counts as not marked."""
+    try:
+        if file.is_symlink() or not file.is_file() or file.stat().st_size != 2 * _BYTES:
+            return False
+        return file.read_text("ascii") in _known().read_text("ascii").splitlines()
+    except (OSError, UnicodeDecodeError):
+        return False
+
+
+def is_among(folder: Path, others: Iterable[Path]) -> bool:
+    """Return whether the folder is in one of the other folders. The last part of its path may be a link."""
+    place = Path(os.path.realpath(folder.parent))
+    return any(place.is_relative_to(os.path.realpath(each)) for each in others)
+
+
+def _known() -> Path:
+    return xdg.state() / "results"
