@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup
 
 from grader.report.escaped_template import ASSETS, fill
-from grader.report.output_file import not_written
+from grader.report.output_file import write
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -36,11 +36,8 @@ def make_page(template: str, scripts: Sequence[str], data: object, values: Mappi
 
 
 def save_page(page: str, file: Path) -> None:
-    """Write a page. If the page cannot be written, raises the error that `not_written` returns."""
-    try:
-        file.write_text(page, encoding="utf-8", errors="replace")
-    except OSError as error:
-        raise not_written(file, error) from error
+    """Write a page. If the page cannot be written, raises the errors of `write`."""
+    write(file, page.encode("utf-8", "replace"))
 
 
 def _text(name: str) -> str:

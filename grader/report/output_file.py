@@ -1,4 +1,8 @@
-"""Write files that the user named on the command line."""
+"""Write files that the user named on the command line.
+
+The file may be in the folder of a student, who may have put a symbolic link there that leads to a file of the user.
+Therefore, no such link is followed. The links of the system, such as /dev/stdout, are followed.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +15,9 @@ from grader.errors import MachineError, UsageError
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+
+_OF_THE_SYSTEM = ("/dev/", "/proc/")
 
 
 def check_writable(file: Path | None) -> None:
@@ -27,6 +34,8 @@ def check_writable(file: Path | None) -> None:
     if file is not None and file.is_dir():
         message = f"{file} is a folder. Choose a file name."
         raise UsageError(message)
+    if file is not None and file.is_symlink() and not _is_of_the_system(file):
+        raise UsageError(_link(file))
     if file is not None and not os.access(file if file.exists() else file.absolute().parent, os.W_OK):
         message = f"{file} cannot be written: {os.strerror(errno.EACCES)}."
         raise UsageError(message)
@@ -40,12 +49,25 @@ def write(file: Path, content: bytes) -> None:
         MachineError: the disk is full, or the machine failed in another way.
     """
     try:
-        file.write_bytes(content)
+        no_link = 0 if _is_of_the_system(file) else os.O_NOFOLLOW
+        descriptor = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | no_link, 0o666)
+        with os.fdopen(descriptor, "wb") as opened:
+            opened.write(content)
     except OSError as error:
         raise not_written(file, error) from error
 
 
 def not_written(file: Path, error: OSError) -> UsageError | MachineError:
     """Return the error to raise if a file could not be written: UsageError or MachineError, with the reason."""
+    if error.errno == errno.ELOOP and file.is_symlink():
+        return UsageError(_link(file))
     message = f"{file} cannot be written: {error.strerror or error}."
     return MachineError(message) if of_the_machine(error) else UsageError(message)
+
+
+def _is_of_the_system(file: Path) -> bool:
+    return str(file.absolute()).startswith(_OF_THE_SYSTEM)
+
+
+def _link(file: Path) -> str:
+    return f"{file} is a symbolic link, which can lead to any file. Remove it, or choose another file name."

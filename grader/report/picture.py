@@ -13,7 +13,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from grader.checks.outcome import Status
 from grader.common.words import printable
-from grader.report.output_file import not_written
+from grader.report.output_file import write
 from grader.report.scene import Scene, executables, scene_of
 from grader.report.scene_image import paint
 from grader.report.shapes import DEEP, LOOKS, SEA, SIDE_M, Rgb, Role
@@ -50,12 +50,8 @@ class Panel:
 
 
 def save_picture(evidence: Evidence, report: Report, file: Path) -> None:
-    """Write the picture as a PNG file. If the file cannot be written, raises the error that `not_written` returns."""
-    image = read(_png, evidence, report)
-    try:
-        file.write_bytes(image)
-    except OSError as error:
-        raise not_written(file, error) from error
+    """Write the picture as a PNG file. If the file cannot be written, raises the errors of `write`."""
+    write(file, read(_png, evidence, report))
 
 
 def _png(evidence: Evidence, report: Report) -> bytes:

@@ -39,3 +39,24 @@ def test_a_full_disk_behind_a_file_does_not_hide_the_verdict() -> None:
     assert "Passed: 100 of 100 points." in done.stdout
     assert "/dev/full cannot be written: No space left on device." in done.stderr
     assert done.returncode == 3
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_a_link_in_the_folder_of_a_student_is_not_followed(tmp_path: Path, *, there: bool) -> None:
+    file, link = tmp_path / ".bashrc", tmp_path / "report.json"
+    if there:
+        file.write_text("of the instructor")
+    link.symlink_to(file)
+    with pytest.raises(UsageError, match=r"report\.json is a symbolic link"):
+        output_file.check_writable(link)
+    with pytest.raises(UsageError, match=r"report\.json is a symbolic link"):
+        output_file.write(link, b"forged")
+    assert file.exists() == there
+    assert not there or file.read_text() == "of the instructor"
+
+
+def test_the_links_of_the_system_are_followed(tmp_path: Path) -> None:
+    output_file.check_writable(Path("/dev/stdout"))
+    with (tmp_path / "report.json").open("wb") as opened:
+        output_file.write(Path(f"/dev/fd/{opened.fileno()}"), b"{}")
+    assert (tmp_path / "report.json").read_bytes() == b"{}"
