@@ -11,6 +11,7 @@ import json
 import os
 import sys
 import tempfile
+import time
 from contextlib import suppress
 from dataclasses import asdict, fields
 from functools import cache
@@ -70,13 +71,16 @@ class BuildStore:
             except OSError:
                 Path(name).unlink()
                 raise
-            self._remove_oldest()
+            self._remove_oldest(but=self._path(key))
 
     def _path(self, key: str) -> Path:
         return self._folder / key
 
-    def _remove_oldest(self) -> None:
-        by_age = sorted(self._folder.iterdir(), key=lambda path: path.stat().st_mtime_ns)
+    def _remove_oldest(self, but: Path) -> None:
+        used = {path: path.stat().st_mtime_ns for path in self._folder.iterdir()}
+        now = time.time_ns()
+        # If the system's clock was set back, times in the future are older than all others.
+        by_age = sorted(used, key=lambda path: (path == but, used[path] <= now, used[path]))
         for path in by_age[:-MOST_BUILDS]:
             path.unlink()
 

@@ -192,6 +192,8 @@ def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> 
             *("-G", "Ninja" if shutil.which("ninja", path=env["PATH"]) else "Unix Makefiles"),
             # Without optimization, the build takes half as long, but each message takes a few microseconds longer.
             *("-DCMAKE_BUILD_TYPE=None", "-DBUILD_TESTING=OFF"),
+            # If a source is dated in the future, because the clock was set back, ninja configures again and again.
+            "-DCMAKE_SUPPRESS_REGENERATION=ON",
             f"-DPython3_EXECUTABLE={ros.python}",
             f"-DCMAKE_INSTALL_PREFIX={prefix}",
             # ament would find this folder with a Python program that contains the prefix between apostrophes.

@@ -1,7 +1,7 @@
 """The last part of `make demo`: grade the solution of a step as a learner does, and print the times and the next steps.
 
-`python -m grader.setup.demo --since SECONDS`: SECONDS is the start of `make` in seconds since 1970. The times of the
-set-up are printed only if this run of `make` did the set-up.
+`python -m grader.setup.demo --since SECONDS`: SECONDS is the start of `make`, as a time in /proc/uptime, which does not
+change if somebody sets the clock. The times of the set-up are printed only if this run of `make` did the set-up.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ STAGES = {
 def main(arguments: list[str] | None = None) -> int:
     """Grade the solution of step 03, or the starting point if there is no solution. Return the exit code."""
     parser = argparse.ArgumentParser(description="Grade the solution of a step and print what to type next.")
-    parser.add_argument("--since", type=float, default=time.time(), help="time when the command began (s since 1970)")
+    parser.add_argument("--since", type=float, default=uptime_s(), help="when the command began (the uptime, s)")
     since = parser.parse_args(arguments).since
 
     image, report = FOLDER / f"{STEP}.png", FOLDER / f"{STEP}.json"
@@ -49,9 +49,9 @@ def main(arguments: list[str] | None = None) -> int:
         return done.returncode
     print()
     say("Duration of each stage")
-    for name, seconds in [*set_up_seconds(since), *grading_seconds(ROOT / report)]:
+    for name, seconds in [*set_up_seconds(uptime_s() - since), *grading_seconds(ROOT / report)]:
         print(f"  {name:<40} {seconds:6.1f} s")
-    print(f"  {'in all':<40} {time.time() - since:6.1f} s")
+    print(f"  {'in all':<40} {uptime_s() - since:6.1f} s")
     print(f"\nImage of the turtle's path: {image}")
     print("\nNext, in this folder: source the setup file, and start the first step.\n")
     print("    source .venv/setup.bash")
@@ -68,10 +68,18 @@ def closing_words(exit_code: int) -> str:
     return "\nThe course's own solution did not pass. This is not your mistake. Please report the lines above."
 
 
-def set_up_seconds(since: float) -> list[tuple[str, float]]:
-    """Return the duration of each stage of the set-up (s), or an empty list if an earlier command did the set-up."""
+def uptime_s() -> float:
+    """Return the time since the machine was started (s)."""
+    return float(Path("/proc/uptime").read_text(encoding="ascii").split()[0])
+
+
+def set_up_seconds(elapsed_s: float) -> list[tuple[str, float]]:
+    """Return the duration of each stage of the set-up (s), or an empty list if an earlier command did the set-up.
+
+    `elapsed_s` is the time since this command began.
+    """
     stamp = read_stamp()
-    if stamp is None or STAMP.stat().st_mtime < since:
+    if stamp is None or not 0 <= time.time() - STAMP.stat().st_mtime <= elapsed_s:
         return []
     return [(f"set-up, once: {name}", seconds) for name, seconds in stamp.seconds.items()]
 

@@ -11,6 +11,7 @@ import shlex
 import shutil
 import sys
 import tempfile
+import time
 from contextlib import suppress
 from pathlib import Path
 from typing import Callable, List, Optional
@@ -35,6 +36,7 @@ _OFFLINE = re.compile(
     "Network is unreachable|No route to host|Connection refused|failed to lookup address",
     re.IGNORECASE,
 )
+_CERTIFICATE = re.compile("certificate (?:(?:is )?not (?:yet valid|valid yet)|(?:has )?expired)")
 _INDEXES = re.compile(r"^Looking in indexes: (.+)$", re.MULTILINE)
 _WRITE = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
 
@@ -86,6 +88,12 @@ def of_output(said: str, folder: Path) -> Optional[str]:
         return _of_number(errno.ENOSPC, _fullest([folder, Path(tempfile.gettempdir()), cache()]) or folder)
     if number in _WRITE or number in (errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN):
         return _of_number(number, folder)
+    if _CERTIFICATE.search(said):
+        now = time.strftime("%Y-%m-%d %H:%M")
+        return (
+            f"A certificate of the package index is not valid at {now}, the time of this machine's clock. If this time "
+            f"is wrong, set the clock; {AGAIN}."
+        )
     return None
 
 

@@ -165,7 +165,7 @@ def _conduct(order: dict[str, Any], answers: IO[str], nodes: socket.socket | Non
             pens=trial.turtles.pens,
             tracks=trial.turtles.tracks,
             doubts=doubts,
-            stalls=tuple(stall for stall in trial.stalls if not _own_doing(stall, node, trial)),
+            stalls=trial.unreliable or tuple(each for each in trial.stalls if not _own_doing(each, node, trial)),
             crowded=trial.crowded(),
             seconds=trial.seconds,
         )

@@ -205,7 +205,7 @@ class Recording:
     """The wall time of each part of the trial: discovery, run, stop (s)."""
     stalls: tuple[tuple[float, float], ...] = ()
     """The periods of a trial in wall time in which the machine gave no processor time to the simulator or the node:
-    (from, to) on the trial's clock (s)."""
+    (from, to) on the trial's clock (s). If the system's clock was set, the whole trial is such a period."""
     crowded: bool = False
     """Whether, in a trial in wall time, other programs used the processors so much that the simulator and the node
     often had to wait."""

@@ -55,6 +55,7 @@ class Simulation:
 
     held = False
     """Whether the trial's clock stands still while a frame runs."""
+    unreliable: tuple[tuple[float, float], ...] = ()  # the periods that count as stalls, whatever the node did in them
 
     def __init__(
         self, node: NodeGroup, start: Pose, prefixes: list[Path], inputs: Inputs, judged: Collection[str] = ()

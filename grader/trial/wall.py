@@ -14,6 +14,7 @@ from grader.trial.node_group import GroupThreads
 from grader.trial.patience import HandshakePatience
 from grader.trial.rest import GoneError
 from grader.trial.simulation import Simulation
+from grader.trial.system_clock import SystemClock
 from grader.turtlesim.turtle import FRAME_S
 
 DISCOVERY_S = 10.0
@@ -37,6 +38,7 @@ class WallTrial(Simulation):
     def run(self, duration_s: float) -> float:
         """Run the scenario, and return the time of SIGINT on the trial's clock (s)."""
         self.lap("start")
+        clock = SystemClock()
         self._discover()
         self.lap("discovery")
         self._begun = time.monotonic()
@@ -49,6 +51,7 @@ class WallTrial(Simulation):
                 self.spin(early_s)
                 self.node.read_output(self.now())
                 continue
+            clock.was_set()
             stall = watch.look(self.now())
             if stall is not None:
                 self.stalls.append(stall)
@@ -63,6 +66,8 @@ class WallTrial(Simulation):
         self._crowded = is_crowded(watch.waited_s, others_s, of_s=stopped_s)
         if not is_machines(sum(end - begin for begin, end in self.stalls), others_s):
             self.stalls.clear()
+        if clock.was_set():
+            self.unreliable = ((0.0, stopped_s),)
         self.recorder.snapshot()
         self.lap("run")
         self.wind_down()

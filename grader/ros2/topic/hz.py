@@ -66,6 +66,7 @@ class Arrivals:
             self._gaps_ns.append(now_ns - self._last_ns)
         else:
             self._gaps_ns.clear()
+            self._reported_ns = 0
         self._last_ns = now_ns
 
     def have_news(self) -> bool:

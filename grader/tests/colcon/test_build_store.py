@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -66,6 +67,17 @@ def test_the_oldest_builds_are_removed(tmp_path: Path) -> None:
         os.utime(tmp_path / str(number), (number, number))
     store.put("new", BUILT)
     assert {path.name for path in tmp_path.iterdir()} == {"new", *map(str, range(3, MOST_BUILDS + 2))}
+
+
+def test_builds_from_before_the_clock_was_set_back_are_removed_first(tmp_path: Path) -> None:
+    store = BuildStore(tmp_path)
+    tomorrow = time.time() + 86400
+    for number in range(MOST_BUILDS):
+        store.put(str(number), BUILT)
+        os.utime(tmp_path / str(number), (tomorrow + number, tomorrow + number))
+    store.put("new", BUILT)
+    store.put("newer", BUILT)
+    assert {path.name for path in tmp_path.iterdir()} == {"new", "newer", *map(str, range(2, MOST_BUILDS))}
 
 
 def test_without_a_writable_folder_nothing_is_stored(tmp_path: Path) -> None:

@@ -163,6 +163,20 @@ def test_simulated_time_that_begins_again_begins_the_measuring_again(capsys: pyt
     assert not arrivals.have_news()
 
 
+def test_a_clock_that_is_set_back_does_not_silence_the_reports() -> None:
+    arrivals = Arrivals(window=100)
+    for now_s in (7200, 7201, 7202):
+        arrivals.add(now_s * SECOND)
+        arrivals.have_news()
+    assert arrivals.news().window == 2
+    for now_s in (10, 11):
+        arrivals.add(now_s * SECOND)
+        arrivals.have_news()
+    assert not arrivals.have_news()
+    arrivals.add(12 * SECOND)
+    assert arrivals.have_news()
+
+
 @pytest.mark.parametrize(
     ("size", "reported"),
     [

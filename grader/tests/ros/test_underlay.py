@@ -6,10 +6,12 @@ Finding the built interfaces starts no process.
 from __future__ import annotations
 
 import errno
+import os
 import shutil
 import stat
 import subprocess
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -175,6 +177,24 @@ def test_a_build_that_fails_leaves_nothing_and_says_why(
     with pytest.raises(MachineError, match="so it goes"):
         underlay.ensure(ros)
     assert [path.name for path in cache.iterdir()] == ["turtlesim.lock"]
+
+
+def test_sources_that_are_dated_in_the_future_are_built(
+    ros: installation.Ros, cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As after a clone with a clock that was set back later."""
+    sources = tmp_path / "sources"
+    sources.mkdir()
+    file = sources / "CMakeLists.txt"
+    file.write_text(
+        "cmake_minimum_required(VERSION 3.20)\nproject(a NONE)\ninstall(FILES CMakeLists.txt DESTINATION lib)\n"
+    )
+    os.utime(file, (time.time() + 86400,) * 2)
+    monkeypatch.setattr(underlay, "SOURCES", sources)
+    prefix = underlay.ensure(ros)
+    assert prefix is not None
+    assert prefix.parent == cache
+    assert (prefix / "lib/CMakeLists.txt").is_file()
 
 
 def test_a_build_that_fails_on_a_full_disk_names_the_disk(

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 import os
+import time
 from typing import TYPE_CHECKING
 
 import pytest
@@ -16,12 +17,22 @@ if TYPE_CHECKING:
 def test_tells_the_seconds_of_a_set_up_of_this_command_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     stamp = tmp_path / "stamp.json"
     stamp.touch()
+    now = 1060.0
     os.utime(stamp, (1000, 1000))
+    monkeypatch.setattr(time, "time", lambda: now)
     made = Stamp("/x", "wheels", "/usr/bin/python3", [3, 11, 2], "", [], {"download": 7.0})
     monkeypatch.setattr(demo, "STAMP", stamp)
     monkeypatch.setattr(demo, "read_stamp", lambda: made)
-    assert demo.set_up_seconds(since=999) == [("set-up, once: download", 7.0)]
-    assert demo.set_up_seconds(since=1001) == []
+    assert demo.set_up_seconds(elapsed_s=61) == [("set-up, once: download", 7.0)]
+    assert demo.set_up_seconds(elapsed_s=59) == []
+    now = 900.0
+    assert demo.set_up_seconds(elapsed_s=61) == []  # the clock was set back
+
+
+def test_the_time_of_the_whole_command_does_not_follow_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
+    begun_s = demo.uptime_s()
+    monkeypatch.setattr(time, "time", lambda: 0.0)
+    assert 0 <= demo.uptime_s() - begun_s < 60
 
 
 def test_reads_the_stages_of_the_grading(tmp_path: Path) -> None:

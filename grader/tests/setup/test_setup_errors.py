@@ -22,6 +22,13 @@ HERE = Path("/nowhere/course/.venv")
         ("Error: [Errno 30] Read-only file system: '/x'", "/.venv cannot be written to (Read-only file system): copy"),
         ("Error: [Errno 13] Permission denied: '/x'", "/.venv cannot be written to (Permission denied): copy"),
         ("OSError: [Errno 24] Too many open files", "`ulimit -n 4096`"),
+        (
+            "certificate verify failed: certificate is not yet valid (_ssl.c:992)",
+            "If this time is wrong, set the clock",
+        ),
+        ("certificate verify failed: certificate has expired (_ssl.c:992)", "If this time is wrong, set the clock"),
+        ("certificate not valid yet: verification time 978307200 (UNIX)", "If this time is wrong, set the clock"),
+        ("certificate expired: verification time 2682374400 (UNIX)", "If this time is wrong, set the clock"),
         ("BlockingIOError: [Errno 11] Resource temporarily unavailable", "cannot start more processes for you"),
     ],
 )

@@ -80,6 +80,26 @@ def a_node_that_drives_before_it_is_found() -> int:
     return len(commands)
 
 
+def periods_that_count_as_stalls() -> dict[str, bool]:
+    """Return whether the whole trial counts as a stall, if the system's clock is left alone, set, or set twice."""
+    set_by_s = {"left alone": (0.0,), "set": (-3600.0,), "set and set again": (3600.0, 0.0)}
+    return {name: _counts_as_a_stall(list(ahead_s)) for name, ahead_s in set_by_s.items()}
+
+
+def _counts_as_a_stall(ahead_s: list[float]) -> bool:
+    real = time.time
+    stage: Any = WallTrial.__new__(WallTrial)
+    stage.node = SimpleNamespace(pids=(), ended=lambda: False, read_output=lambda _: 0, worked_s=lambda *_: 0.0)
+    stage.recorder = SimpleNamespace(snapshot=lambda: None)
+    stage.stalls, stage.seconds, stage._since = [], {}, 0.0
+    stage._discover = stage.wind_down = stage.follow_graph = lambda: None
+    stage.is_over, stage.spin = (lambda _: False), time.sleep
+    with patch("time.time", lambda: real() + (ahead_s[0] if stage._begun else 0.0)):
+        stage.frame = lambda _: ahead_s.pop(0) if len(ahead_s) > 1 else None
+        stopped_s = stage.run(0.05)
+    return bool(stage.unreliable == ((0.0, stopped_s),))
+
+
 def who_is_found_after_the_limit() -> dict[str, bool]:
     """Return whether the clock waits for a node that starts after the time limit.
 

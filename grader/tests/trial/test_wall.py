@@ -17,3 +17,8 @@ def test_the_clock_starts_with_the_first_command_whatever_has_not_been_found_yet
 def test_the_clock_waits_longer_for_a_node_that_waits_for_a_processor(in_ros: InRos) -> None:
     found = in_ros.run("trial.scenarios:who_is_found_after_the_limit").result
     assert found == {"asleep": False, "waiting": True}
+
+
+def test_no_time_of_a_trial_counts_during_which_the_clock_of_the_system_was_set(in_ros: InRos) -> None:
+    found = in_ros.run("trial.scenarios:periods_that_count_as_stalls").result
+    assert found == {"left alone": False, "set": True, "set and set again": True}
