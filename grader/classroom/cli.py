@@ -107,7 +107,7 @@ def grade(
         typer.Option(
             "--explain/--no-explain",
             help="Prove the causes of failed checks: fix each cause in a copy of the submission, and run the copy. "
-            "For a failed submission, this takes up to 1.5 times the time of a build and a run.",
+            "For a failed submission, this takes up to 1.5 times as long as a build and a run.",
         ),
     ] = True,
     trusted: Annotated[

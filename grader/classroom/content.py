@@ -37,7 +37,7 @@ class Refused:
 
 
 def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused:
-    """Return the submission to grade. `student` is the person who handed in the submission.
+    """Return the submission to grade. `student` is the id of the student.
 
     Raises:
         DiskError: the disk for temporary files failed.

@@ -65,7 +65,7 @@ class _Running:
 
 
 class DaskEngine:
-    """Grades one submission at a time per thread of each Dask worker."""
+    """Grades submissions with Dask workers. Each thread of a worker grades one submission at a time."""
 
     def __init__(self, address: str, jobs: int | None) -> None:
         try:

@@ -29,7 +29,7 @@ class Key:
     """The version of the grader and the sha256 of its sources."""
     ros: str
     options: str
-    """The clock, the seed, and whether the submission ran in a sandbox."""
+    """The clock, the seed, whether the submission ran in a sandbox, and whether causes were tested."""
 
     def to_data(self) -> dict[str, str]:
         """Return the key as a dictionary for the JSON of a result."""
@@ -37,7 +37,7 @@ class Key:
 
 
 def changed(old: Mapping[str, Any], new: Key) -> tuple[str, ...]:
-    """Return the names of the parts of the key that differ from the stored key in the JSON of a result."""
+    """Return the names of the values in which the key differs from `old`, the key in the JSON of a result."""
     return tuple(name for name, value in new.to_data().items() if old.get(name) != value)
 
 

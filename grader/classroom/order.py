@@ -115,7 +115,7 @@ def sources_for(found: tuple[Found, ...], checks: Path | None) -> dict[str, Sour
 
 @dataclass(frozen=True)
 class Todo:
-    """A submission that must be graded, with a short reason in `why`: "new", "changed", ..."""
+    """A submission that must be graded. `why` is a short reason, such as "new" or "changed"."""
 
     found: Found
     key: Key

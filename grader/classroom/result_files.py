@@ -6,7 +6,7 @@
     gradescope/NAME.json  Gradescope's results.json of each submission
     github-summary.md, github-annotations.txt   for a GitHub Actions step
 
-Students can see the files for CI and Gradescope, so these files do not contain hidden checks.
+Students can see the files for CI and Gradescope. For a hidden check, these files contain only the result.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
     OUT/reports/STUDENT.EXERCISE.json   the report (grader.report.json) with the additional keys student, key (key.py)
                                         and errors (how many times in a row grading ended with an error); it is for
                                         the instructor, because it contains hidden checks
-    OUT/reports/STUDENT.EXERCISE.html   the page of the submission, without hidden checks
+    OUT/reports/STUDENT.EXERCISE.html   the page of the submission, without the details of hidden checks
 
 Each file is written completely or not at all. The JSON is written after the page, so every result with a JSON file is
 complete. A killed run may leave files whose names end in .partial, which the next run removes. Only one run at a time

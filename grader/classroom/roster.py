@@ -29,7 +29,7 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
     The columns in `needed` are never empty, and the values of the first of these columns are unique.
 
     Raises:
-        UsageError: the file is not a roster. The message contains the number of the line and says what to do.
+        UsageError: the file is not a roster. If a single line is wrong, the message contains its number.
     """
     (_, names), *lines = _lines(file) or [(1, [])]
     columns = [name.lower() for name in names]

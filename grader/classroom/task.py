@@ -68,7 +68,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Done:
-    """A graded submission: its complete report, and its page without hidden checks."""
+    """A graded submission: its complete report, and its page without the details of hidden checks."""
 
     report: Report
     page: bytes

@@ -50,7 +50,7 @@ class Member:
 
 
 class Capped(io.RawIOBase):
-    """A stream that returns at most `most` bytes."""
+    """A stream that raises NotUnpackedError after `most` bytes."""
 
     def __init__(self, stream: IO[bytes], most: int) -> None:
         self._stream, self._left = stream, most

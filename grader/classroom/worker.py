@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from grader.classroom.task import Done, Pace, Task
 
 Message = tuple[Literal["tells"], str] | tuple[Literal["now"], "Pace"] | tuple[Literal["done"], "Done"]
-"""The messages that a worker sends, besides ("fails", text) for a MachineError that no submission caused."""
+"""The messages that a worker sends. A worker also sends ("fails", text) for a MachineError that no submission
+caused."""
 
 _LAST_WORDS = 1000
 

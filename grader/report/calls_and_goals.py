@@ -27,7 +27,7 @@ def call_rows(recording: Recording) -> list[tuple[str, ...]]:
 
 
 def goal_rows(recording: Recording) -> list[tuple[str, ...]]:
-    """Return each goal as strings: the time it was sent, the goal, its outcome and end, the result and the action."""
+    """Return each goal as strings: the start time, the goal, its status, the end time, the result and the action."""
     return [
         (
             f"{goal.t_s:.2f}",

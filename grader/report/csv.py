@@ -6,13 +6,14 @@
     max         the points of the whole exercise, including checks that could not be judged
     percent     points as a percentage of max
     status      passed, failed, or error; a submission with an error is graded again by the next run
-    failed      ids of the failed checks in the order of the exercise, separated by spaces
-    diagnoses   the stable ids of their causes
-    first       the observation of the first failed check, in words
+    failed      the ids of the failed checks or, if no check failed, of the checks that could not be judged; in the
+                order of the exercise, separated by spaces
+    diagnoses   the stable ids of the causes of these checks
+    first       the observation of the first of these checks, in words
     clock, seed
     graded_by   the version of the grader and the first digits of the sha256 of its sources
     report      the file with the full report
-    attention   the reason to check a submission: "suspicious" if the grader repeatedly failed to judge it
+    attention   the reason why an instructor should check the submission, or nothing
 
 No cell is ever a formula, regardless of what a student wrote.
 """

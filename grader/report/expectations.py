@@ -27,7 +27,7 @@ def requested(evidence: Evidence) -> Iterator[Requested]:
 
 
 def requested_path(evidence: Evidence) -> Requested | None:
-    """Return the first required path, or None if the turtle may drive anywhere."""
+    """Return the first required path, or None if no check requires one."""
     return next((each for each in requested(evidence) if each.path), None)
 
 

@@ -3,7 +3,7 @@
 The summary and the annotations contain text from a student, which must never be interpreted as Markdown or as a
 command. In the summary, this text is always plain text. In a command, the text is escaped as described in GitHub's
 documentation ("Workflow commands for GitHub Actions") and as implemented by `escapeData` and `escapeProperty` in
-GitHub's toolkit. Hidden checks are left out.
+GitHub's toolkit. For a hidden check, only the result is included.
 """
 
 from __future__ import annotations

@@ -53,7 +53,7 @@ class GraphDrawing:
 def draw_graph(recording: Recording, name: str = "graph") -> GraphDrawing | None:
     """Draw all nodes and topics that were ever in the graph, except for the topics that every node has.
 
-    Returns None if there was no node.
+    Return None if there was no node.
     """
     nodes = sorted({node for graph in recording.graphs for node in graph.nodes})
     ends = {end: None for graph in recording.graphs for end in graph.endpoints}

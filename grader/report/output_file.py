@@ -23,7 +23,7 @@ _OF_THE_SYSTEM = ("/dev/", "/proc/")
 def check_writable(file: Path | None) -> None:
     """Check that the user may write the file, and that the path is not a folder. Call this before doing any work.
 
-    Raises UsageError if the file could not be written, or if it is `-`, which means standard output elsewhere.
+    Raises UsageError if the file could not be written, or if it is `-`, which many programs use for standard output.
     """
     if str(file) == "-":
         message = "The file cannot be -, since standard output contains the verdict. Choose a file name."

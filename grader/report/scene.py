@@ -131,7 +131,7 @@ def _goals(recording: Recording) -> list[str]:
 
 
 def _drawn(evidence: Evidence, points: list[Point]) -> list[Line]:
-    """Return the trajectory as one line per pen.
+    """Return the trajectory as lines, with a new line wherever the pen changed.
 
     Parts that were driven with the pen up are drawn in the same way as another turtle's path.
     """

@@ -19,7 +19,7 @@ Tone = Literal["passed", "failed", "error"]
 
 
 def tone(report: Report) -> Tone:
-    """Return the kind of verdict, which is "error" if the machine failed."""
+    """Return the kind of verdict: "error" if a check could not be judged, or else "passed" or "failed"."""
     if report.with_status(Status.ERROR):
         return "error"
     return "failed" if report.exit_code else "passed"

@@ -32,9 +32,9 @@ class Examination:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     group = parser.add_mutually_exclusive_group()
-    group.add_argument("--report", "-r", action="store_true", help="print all reports instead of the checks")
-    group.add_argument("--report-failed", "-rf", action="store_true", help="print only the reports of failed checks")
-    parser.add_argument("--exclude-packages", "-ep", action="store_true", help="exclude the packages")
+    group.add_argument("--report", "-r", action="store_true", help="print all reports instead of running the checks")
+    group.add_argument("--report-failed", "-rf", action="store_true", help="also print the reports about failed checks")
+    parser.add_argument("--exclude-packages", "-ep", action="store_true", help="exclude the report about packages")
     parser.add_argument(
         "--include-warnings",
         "-iw",
@@ -47,10 +47,11 @@ def run(args: argparse.Namespace) -> int:
     """Print the findings of the checks, or the reports."""
     from grader.graph.discovery import cli_node, settle
 
+    reports = {name: made for name, made in _REPORTS.items() if made[0] != "package" or not args.exclude_packages}
     with cli_node() as node:
         settle(node)
         if args.report:
-            _print_reports(node, _REPORTS)
+            _print_reports(node, reports)
             return 0
         failed = set()
         found = [check(node) for check in _CHECKS]
@@ -67,7 +68,7 @@ def run(args: argparse.Namespace) -> int:
         print(f"\n{len(failed)}/{len(found)} check(s) failed\n")
         print("Failed modules:", *sorted(failed))
         if args.report_failed:
-            _print_reports(node, {name: report for name, report in _REPORTS.items() if report[0] in failed})
+            _print_reports(node, {name: report for name, report in reports.items() if report[0] in failed})
     return 0
 
 

@@ -135,7 +135,7 @@ def _end(number: int, _: FrameType | None) -> None:
 
 
 def _forget_the_terminal() -> None:
-    """Discard the remaining output in the buffer, since the reader has exited."""
+    """Flush standard output. If this fails because its reader has exited, discard the output."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         sys.stdout.flush()

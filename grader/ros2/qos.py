@@ -18,8 +18,8 @@ PROFILES = (
     "action_status_default",
     "best_available",
 )
-"""The names of rclpy's preset profiles. They are copied, so that `--help` need not import rclpy. A test compares
-both."""
+"""The names of rclpy's preset profiles. They are listed here, so that `--help` need not import rclpy. A test compares
+them with rclpy's names."""
 POLICIES = {
     "history": ("system_default", "keep_last", "keep_all", "unknown"),
     "reliability": ("system_default", "reliable", "best_effort", "unknown", "best_available"),

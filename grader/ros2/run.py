@@ -86,7 +86,8 @@ def _path(args: argparse.Namespace) -> Path:
 def _program(path: Path) -> list[str]:
     """Return the command for a script.
 
-    setuptools quotes interpreter paths that contain spaces, but Linux cannot run quoted paths, nor very long ones.
+    setuptools quotes interpreter paths that contain spaces, but Linux accepts neither quoted nor very long paths in the
+    first line of a script.
     """
     try:
         with path.open("rb") as file:

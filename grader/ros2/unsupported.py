@@ -18,7 +18,7 @@ INSTEAD = {
     "unload": "Stop a node with Ctrl-C in its terminal.",
     "standalone": "Start a single node with: ros2 run PACKAGE EXECUTABLE",
 }
-"""Maps each verb that is not supported to a sentence about its alternative."""
+"""Maps each verb that is not supported to a sentence about an alternative."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:

@@ -1,6 +1,6 @@
 """The trials of one submission. The trials start during the build, and all trials in simulated time run in parallel.
 
-The trials start one after the other, so that the build gets most of a processor, because all trials wait for the build.
+All trials wait for the build, so they start one after the other, which leaves most of a processor to the build.
 Simulated time does not depend on the speed of the machine, so parallel trials do not affect each other. A trial in wall
 time needs the processors to itself, so the caller first waits for the other trials (`settle`).
 """
@@ -115,7 +115,7 @@ class Ahead:
             self._under_way[name] = self._pool.submit(self._started[name].run, package, executable, tree)
 
     def trial(self, name: str) -> Runs | None:
-        """Return the trial, whose `run` returns the recording, or None if the trial was not started."""
+        """Return the trial (its `run` returns the recording), or None if it was not started."""
         if name in self._under_way:
             return _UnderWay(self._under_way[name])
         return self._started.get(name)

@@ -17,7 +17,7 @@ calls of services with the same last name, such as the set_pen of every turtle."
 
 
 class CallLog:
-    """Records the calls. Even after thousands of calls of one service, the calls of other services are recorded."""
+    """Records the calls. Even after thousands of calls to one service, calls to other services are recorded."""
 
     def __init__(self, now: Callable[[], float]) -> None:
         """Create an empty log. `now` returns the time of the trial (s)."""
@@ -27,11 +27,11 @@ class CallLog:
 
     @property
     def calls(self) -> tuple[Call, ...]:
-        """The recorded calls. A call is added when the grader answers it, or when a silent server receives it."""
+        """The recorded calls. A call is added when the grader responds to it, or when a silent server receives it."""
         return tuple(self._calls)
 
     def answered(self, service: str, type_name: str, request: Any, response: Any, waited_s: float) -> None:  # noqa: ANN401
-        """Record a call that the grader has answered, `waited_s` (s) after the call arrived."""
+        """Record a call to which the grader has responded, `waited_s` (s) after the call arrived."""
         if self._has_room(service):
             now_s = self._now()
             self._calls.append(Call(now_s - waited_s, service, type_name, plain(request), plain(response), now_s))

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 MOST_TEXT = 20_000
-"""The maximum number of characters of each output that are kept."""
+"""The maximum number of characters that are kept of each output."""
 MOST_VALUES = 10
 TOO_LATE = "too late"
 """The value of `ended` for a call that took too long."""
@@ -49,9 +49,9 @@ def called_from_json(data: dict[str, Any]) -> Called:
 
 
 def read_called(output: bytes, ids: Sequence[str]) -> tuple[Called, ...]:
-    """Return the results of these calls, from the lines that the cell wrote.
+    """Return the results of the calls with these ids, from the output of the cell.
 
-    Other lines are ignored. A call without a line gets an empty result.
+    Lines that are not a valid result are ignored. A call without a valid line gets an empty result.
     """
     found: dict[str, Called] = {}
     for line in output.splitlines():

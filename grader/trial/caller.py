@@ -19,8 +19,7 @@ if TYPE_CHECKING:
 LATE_S = 1.0
 """The maximum time that the trial waits for the service of a call, on the trial's clock (s)."""
 FOUND_S = 0.5
-"""The maximum wall time (s) that the trial waits until it discovers the service of a call, while simulated time stands
-still."""
+"""The maximum wall time (s) to discover the service of a call while simulated time stands still."""
 
 
 class Caller:
@@ -58,7 +57,7 @@ class Caller:
     def _given_up(
         self, call: PlannedCall, client: Client, now_s: float, spin: Callable[[float], object] | None
     ) -> bool:
-        """Wait for the service. Return whether it is available or the maximum time has passed."""
+        """Wait for the service. Return True if it is available or the maximum time has passed."""
         until = time.monotonic() + FOUND_S
         while spin is not None and id(call) not in self._first_s and time.monotonic() < until:
             spin(0.01)

@@ -91,9 +91,9 @@ def _clues(path: str, tree: ast.Module) -> Iterator[Clue]:
 
 
 def _short(node: ast.Attribute) -> str:
-    """Return the source of the expression, or only its last name if the source is long.
+    """Return the source of the expression, or only the name of its attribute if the source is long.
 
-    Each part of the expression may be a clue.
+    Otherwise, a long chain of attributes would be repeated in the clue for each of its parts.
     """
     return ast.unparse(node) if len(list(islice(ast.walk(node), MOST_NODES + 1))) <= MOST_NODES else node.attr
 

@@ -65,7 +65,7 @@ together, they were ready to run for at least the fraction STARTED of the time o
 STARTED_LEAST times the length of the trial. A single process cannot reach these limits.
 """
 SIMULATORS = ("/pose", "/color_sensor")
-"""In each frame, the simulator publishes on the topics with these endings, for each turtle."""
+"""In each frame, the simulator publishes on topics whose names end with these strings, for each turtle."""
 
 
 class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grader

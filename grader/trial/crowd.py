@@ -17,7 +17,7 @@ that the node causes in the simulator counts as work of the node: if the simulat
 late, but not because of the machine.
 """
 SIMULATOR = 0.3
-"""The share of a processor that the simulator may use for itself. It was measured to use a tenth of a processor. CPU
+"""The share of a processor that the simulator may use for itself. In measurements, it used a tenth of a processor. CPU
 time beyond this share counts as work for the node."""
 OTHERS = 0.2
 """Other programs are considered to use the machine if they take at least this share of one processor."""

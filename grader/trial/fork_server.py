@@ -5,7 +5,7 @@ A grader has two fork servers: one forks the conductors of its trials, and the o
 be able to find out the memory layout of the conductor. A server has no data about the trials. Its forks enter the
 sandbox before they read anything, and student code never runs outside the sandbox.
 
-The server runs outside the sandbox. It reads requests of the grader from a socket, each with descriptors:
+The server runs outside the sandbox. It reads requests from the grader on a socket, each with descriptors:
 
 - **conductor**: JSON with the control groups, the user, the limits and HOME. The descriptors are a process in the room
   (pidfd_open(2)), standard input, output and error, the socket on which the conductor requests nodes, and the socket
@@ -172,7 +172,7 @@ def _enter_cell(order: dict[str, Any], problem: str, conductors: int, result: in
 
 
 def _report_to(stderr: int, problem: str) -> None:
-    """Redirect standard error to this descriptor. Print the server's start-up problem, if any, and exit."""
+    """Redirect standard error to this descriptor. If the server had a problem at start-up, print it and exit."""
     os.dup2(stderr, 2)
     if problem:
         os.write(2, problem.encode())

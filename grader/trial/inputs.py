@@ -36,9 +36,9 @@ class PlannedCall:
 class Inputs:
     """The inputs of a trial.
 
-    `drives` contains rows of a start time (s) and the speeds from that time on (m/s, rad/s). `arguments` are additional
-    ROS arguments of the node, and `params_file` is the text of a file with parameters. All other fields have the same
-    meaning as in Scenario.
+    Each row of `drives` contains a start time (s) and the speeds from that time on (m/s, rad/s). `arguments` are
+    additional ROS arguments of the node, and `params_file` is the text of a file with parameters. All other fields have
+    the same meaning as in Scenario.
     """
 
     drives: tuple[tuple[float, float, float], ...] = ()
@@ -73,7 +73,7 @@ class Inputs:
 
 
 def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
-    """Draw random speeds until the trajectory stays at least 0.5 m away from every wall."""
+    """Return the inputs of a trial, with random speeds that keep the turtle at least 0.5 m away from every wall."""
     draw = random.Random(seed)
     inputs = Inputs(
         rename=scenario.rename,

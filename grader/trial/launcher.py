@@ -49,7 +49,7 @@ _NOT_NEEDED = "rosidl_generator_py.generate_py_impl"
 """A module that creates Python code from interfaces and imports a parser. Messages can be used without this module."""
 _SIMULATED = "use_sim_time:=true"
 DELIVERY_S = 0.5
-"""The maximum time for which a publisher exists longer, until its messages have been acknowledged (s)."""
+"""The maximum time for which a publisher is kept until its messages have been acknowledged (s)."""
 _TYPES_AHEAD = (("geometry_msgs.msg", "Twist"), ("rosgraph_msgs.msg", "Clock"), ("turtlesim.msg", "Pose"))
 
 
@@ -117,9 +117,9 @@ def _initialize_with(ours: list[str]) -> None:
 def deliver_before_destroying() -> None:
     """Keep each publisher until its messages have been acknowledged, or until DELIVERY_S has passed.
 
-    A reader drops a message that it receives after the notice that the publisher is gone. Whether the last message of a
-    node arrives before this notice would depend on the machine. The loops do not sleep, so that a simulated
-    clock stands still.
+    A reader drops a message that it receives after the notice that the publisher is gone. Without the delay, it would
+    depend on the machine whether the last message of a node arrives before this notice. The loops keep the node busy
+    instead of sleeping, so that simulated time does not advance.
     """
     from rclpy.duration import Duration
     from rclpy.publisher import Publisher

@@ -128,7 +128,7 @@ class LauncherInCell(Launcher):
     in_cell = True
 
     def __init__(self, view: bubblewrap.View, limits: Limits, nodes: socket.socket) -> None:
-        """Create the cell, and request a fork on the socket `nodes`."""
+        """Create the cell, and request a fork through the socket `nodes`."""
         with call_filter() as filter_fd:
             self._cell = Holder(
                 lambda info_fd: bubblewrap.cell(

@@ -80,7 +80,7 @@ class NodeGroup:
 class GroupThreads:
     """The threads of several processes, with the methods of `Threads`.
 
-    All methods raise GoneError if one of the processes has exited.
+    All methods except `close` raise GoneError if one of the processes has exited.
     """
 
     def __init__(self, pids: Sequence[int], wanted: Callable[[str], bool] = lambda _: True) -> None:
@@ -111,7 +111,7 @@ class GroupThreads:
         return sum((threads.runs() for threads in self._each), ())
 
     def main_asleep(self) -> bool:
-        """Return whether all main threads sleep."""
+        """Return whether all main threads are sleeping."""
         return all(threads.main_asleep() for threads in self._each)
 
     def run_time_s(self) -> float:

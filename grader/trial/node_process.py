@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from grader.trial.launchers import Launcher
 
 KEPT = 256 * 1024
-"""The maximum number of bytes of each output stream that are kept."""
+"""The maximum number of bytes that are kept of each output stream."""
 PIPE = 1024 * 1024
 """The size of the node's pipes (bytes). The size is large, so that the node need not wait until the grader has read its
 output."""
@@ -33,14 +33,15 @@ STOP_S = 3.0
 """The maximum time that the node may take to exit after SIGINT (s). After this time, the grader sends SIGTERM and, 1 s
 later, SIGKILL. The time for which the node waits for a processor does not count."""
 MOST_WAITED_S = 12.0
-"""At most this much of the time for which the node waits for a processor (s) is left out of the time that it takes to
-exit."""
+"""The time for which the node waits for a processor is subtracted from the time that it takes to exit, up to this
+maximum (s)."""
 
 
 def enlarge(pipe: int) -> int:
     """Make a pipe as large as the kernel allows, up to PIPE, and return its size (bytes).
 
-    The kernel refuses if the user's pipes are too large in total (fs.pipe-user-pages-soft, see pipe(7)).
+    The kernel refuses a size if it would make the user's pipes too large in total (fs.pipe-user-pages-soft, see
+    pipe(7)).
     """
     size = PIPE
     while size > (given := fcntl.fcntl(pipe, fcntl.F_GETPIPE_SZ)):
@@ -159,7 +160,7 @@ class NodeProcess:
 
     @property
     def ended_itself(self) -> bool:
-        """Whether the process has not received a signal from the grader."""
+        """True until the grader sends a signal to the process."""
         return self._by == "itself"
 
     def interrupt(self) -> None:

@@ -19,7 +19,7 @@ class Call:
 
     If `by_trial` is False, a node made the call: either to the simulator, or to another node of the trial (then
     `response` and `answered_s` are None). If `by_trial` is True, the trial called the node. In a call by the trial,
-    `response` and `answered_s` are None until the response arrives, and `missing` says that no node offered the
+    `response` and `answered_s` are None until the response arrives, and `missing` is True if no node offered the
     service.
     """
 

@@ -42,9 +42,9 @@ class HandshakePatience:
     def ended(self, now_s: float, *, asleep: bool, wrote: bool, worked_s: float) -> bool:
         """Return whether the node has taken too long.
 
-        `now_s` is the time of the monotonic clock (s). `asleep` says whether all threads sleep. A thread that waits for
-        a processor does not sleep. `wrote` says whether there was output to read. A node that writes a lot sleeps until
-        the output is read. `worked_s` is the CPU time (s) that the node has used.
+        `now_s` is the time of the monotonic clock (s). `asleep` says whether all threads are sleeping. A thread that is
+        waiting for a processor is not sleeping. `wrote` says whether there was output to read. A node that writes a lot
+        sleeps until the output is read. `worked_s` is the CPU time (s) that the node has used.
         """
         if asleep and not wrote:
             self._asleep_s += now_s - self._cpu_observed_s

@@ -221,7 +221,7 @@ class Recorder(Node):
     def _own_participant(self) -> bytes:
         """Return the recorder's participant.
 
-        No other node can publish on the topic that identifies it, since the student's node does not exist yet.
+        No other node can publish on the topic /_grader/whoami, since the student's node does not exist yet.
         """
         topic = f"{OWN_NAMESPACE}/whoami"
         publisher = self.create_publisher(Log, topic, 1)

@@ -181,7 +181,7 @@ class Recording:
     """The grader's nodes, and the additional nodes that the exercise requires. Every other node in the graph counts as
     the node of the trial."""
     interventions: tuple[str, ...] = ()
-    """The services and actions of the simulator that were called, in order: "reset", "spawn", "teleport_absolute".
+    """The services and actions of the simulator that were called, in order, such as "spawn" or "teleport_absolute".
     After a maximum number of calls, each further name is recorded only once."""
     interventions_dropped: int = 0
     """The number of calls that were not kept because there were too many."""

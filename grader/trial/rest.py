@@ -61,7 +61,7 @@ class DoubtError(Exception):
 
 @dataclass(frozen=True)
 class Look:
-    """One observation of some threads: whether all of them sleep, and the number of times that each of them has run."""
+    """One observation of some threads: whether all of them are sleeping, and how many times each of them has run."""
 
     asleep: bool
     runs: tuple[bytes, ...]
@@ -160,7 +160,7 @@ class Threads:
             return ()
 
     def main_asleep(self) -> bool:
-        """Return whether the main thread sleeps, without checking the other threads.
+        """Return whether the main thread is sleeping, without checking the other threads.
 
         Raises:
             GoneError: the process has exited.
@@ -187,7 +187,7 @@ class Threads:
     def waits(self) -> list[Wait]:
         """Return the reason why each thread is waiting, except for the threads of Fast DDS.
 
-        A running thread waits for nothing.
+        The reason for a thread that is running is "running".
         """
         self._refresh()
         found = []

@@ -36,7 +36,8 @@ QUIET_S = 0.02
 between two announcements (fastdds.xml). If the value were larger, the announcements of the simulator and the node might
 leave no gap of this length for many seconds."""
 WAKE_S = 1.0
-"""The maximum time to wait until the node notices /clock (s). A node that uses create_rate never wakes up at time 0."""
+"""The maximum time to wait until each node has reacted to /clock at time 0 (s). A node that uses create_rate never
+does."""
 MOST_CPU = 2.0
 """If the CPU time of a node exceeds this multiple of the trial's duration, the node would also be too slow in wall
 time, so its result must come from a trial in wall time."""
@@ -275,7 +276,7 @@ class SimulatedTrial(Simulation):
     def _is_ending(self) -> bool:
         """Return whether the node exits within a short time.
 
-        Threads also sleep while rclpy shuts down after an exception.
+        A sleeping thread may also belong to a node that is shutting down after an exception.
         """
         deadline = time.monotonic() + ENDING_S
         while time.monotonic() < deadline:

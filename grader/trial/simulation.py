@@ -278,7 +278,7 @@ class Simulation:
             self._carry_out_last_command(from_s + frames * FRAME_S)
 
     def _carry_out_last_command(self, from_s: float) -> None:
-        """Run the frames in which the turtle outlives the node, however soon the exit of the node was noticed."""
+        """After the node has exited on its own, run the frames that carry out its last command (OUTLIVES_S)."""
         for frame in range(round(OUTLIVES_S / FRAME_S) + 2):
             self.turtlesim.world.step(from_s + frame * FRAME_S)
             self._keep_frame(from_s + frame * FRAME_S)

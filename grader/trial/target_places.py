@@ -39,7 +39,7 @@ class Target:
 def draw_targets(count: int, start: Pose, seed: int) -> tuple[Target, ...]:
     """Return `count` targets, sorted by name.
 
-    Places are drawn until they meet the conditions in the module's docstring, at most MOST_DRAWS times.
+    Places are drawn, at most MOST_DRAWS times, until they meet the conditions in the module's docstring.
     """
     draw = random.Random(f"targets {seed}")
     targets: tuple[Target, ...] = ()

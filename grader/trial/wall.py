@@ -82,7 +82,7 @@ class WallTrial(Simulation):
         """Wait until the node is in the graph and its topics are recorded, or has exited, or DISCOVERY_S has passed.
 
         The first command ends the wait immediately, since the turtle moves after this command. On a crowded machine, a
-        node may need much longer to start, and the time for which it waits for a processor does not count.
+        node may need much longer to start, so the time for which it waits for a processor does not count.
         """
         patience = HandshakePatience(time.monotonic(), DISCOVERY_S)
         with suppress(GoneError), closing(GroupThreads(self.node.pids)) as threads:

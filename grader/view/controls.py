@@ -104,7 +104,7 @@ class Hands:
             self._ears.drive(topic, key)
 
     def request(self, what: str) -> None:
-        """Request the simulator to pause, resume, clear or reset."""
+        """Send the simulator a request to pause, resume, clear or reset."""
         if what in BUTTONS and self._simulator is not None:
             # A simulator that is exiting no longer reads requests.
             with suppress(OSError):

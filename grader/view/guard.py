@@ -80,7 +80,7 @@ POLICY = (
 def answer_headers(host: str) -> dict[str, str]:
     """Return the headers of every response.
 
-    With them, the page cannot load from other sites, nor be embedded in them.
+    With these headers, the page loads nothing from other sites, and other sites cannot embed the page.
     """
     return {
         "content-security-policy": POLICY.format(host=host),

@@ -62,7 +62,7 @@ class View:
 
 
 def see_that_it_can_be_served(instead: str = "--view terminal works without it") -> None:
-    """Raise MachineError if a library for the page is not installed. `instead` names an alternative."""
+    """Raise MachineError if a library for the page is not installed. `instead` describes an alternative."""
     missing = [name for name in _SERVED_WITH if find_spec(name) is None]
     if missing:
         message = (

@@ -97,7 +97,7 @@ class _Server(uvicorn.Server):
         self._ends = asyncio.Event()
 
     def end(self) -> None:
-        """Request the server to end, without waiting for it."""
+        """Make the server exit soon, without waiting for the exit."""
         self.should_exit = True
         self._ends.set()
 

@@ -94,7 +94,10 @@ class State:
 
 
 def _numbers(values: tuple[Any, ...]) -> list[object]:
-    """Round to four decimal places, which are sufficient for a view. Replace infinity, which JSON does not support."""
+    """Round to four decimal places, which are sufficient for a view.
+
+    Infinity and NaN become None, because JSON does not support them.
+    """
     return [_number(value) if isinstance(value, float) else value for value in values]
 
 

@@ -44,10 +44,10 @@ class Recorder:
         self._ended = False
 
     def run(self) -> None:
-        """Record until Ctrl-C or SIGTERM.
+        """Record until Ctrl-C, SIGTERM or SIGHUP.
 
         Raises:
-            Ros2Error: the disk is full.
+            Ros2Error: the bag cannot be written, for example because the disk is full.
         """
         with bag_keys.pressed(enabled=not self._args.disable_keyboard_controls) as key:
             if bag_keys.available() and not self._args.disable_keyboard_controls:
@@ -133,7 +133,7 @@ class Recorder:
         return write
 
     def _write(self, act: Callable[[], None]) -> None:
-        """Write to the bag, unless an earlier write failed because the disk was full."""
+        """Write to the bag, unless an earlier write failed."""
         if self._full is not None:
             return
         try:
@@ -160,7 +160,7 @@ class Recorder:
 
 @contextmanager
 def _ending(end: Callable[[], None]) -> Iterator[None]:
-    """Call `end` on Ctrl-C and SIGTERM instead of raising an exception, which could truncate a message.
+    """Call `end` on Ctrl-C, SIGTERM and SIGHUP instead of raising an exception, which could truncate a message.
 
     Later signals have no effect, so that the bag can be completed.
     """

@@ -31,8 +31,8 @@ _VERSION: Literal[9] = 9
 INFORMATION = "rosbag2_bagfile_information"
 """The only top-level key of metadata.yaml."""
 _KEEP_S = 1.0
-"""The interval at which messages are flushed to the file (s). If the recorder is killed, at most the messages of this
-time are lost."""
+"""The interval at which messages are flushed to the file (s). If the recorder is killed, at most the messages of one
+interval are lost."""
 _NO_HASH = f"RIHS01_{64 * '0'}"
 """The hash that is stored for a type that is not installed, since the hash cannot be computed from the type's name."""
 

@@ -104,7 +104,7 @@ def _typed(found: Iterator[tuple[str, int, bytes]], kinds: dict[str, str]) -> It
 def _compression(options: dict[str, Any]) -> str:
     mode = str(options.get("compression_mode") or "none").lower()
     if mode not in ("none", "file", "message"):
-        message = f"[ERROR] [ros2bag]: compression_mode is none, file or message, not '{mode}'"
+        message = f"[ERROR] [ros2bag]: compression_mode must be none, file or message, not '{mode}'"
         raise Ros2Error(message)
     return mode
 

@@ -29,7 +29,7 @@ NOT_HERE = (
     "qos_profile_overrides_path",
     "custom_data",
 )
-"""The options that are not supported here. docs/ros2-differences.md gives the reasons."""
+"""The options that this `ros2 bag record` does not support. docs/ros2-differences.md gives the reasons."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -50,7 +50,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--use-sim-time",
         action="store_true",
-        help="stamp messages with the time from /clock; nothing is recorded before its first message",
+        help="stamp messages with the time from /clock; nothing is recorded before the first message on /clock",
     )
     parser.add_argument(
         "--node-name", default="rosbag2_recorder", help="name of the recording node (default: rosbag2_recorder)"
@@ -161,7 +161,7 @@ def run(args: argparse.Namespace) -> int:
     """Record until Ctrl-C.
 
     Raises:
-        Ros2Error: no topic is selected, the folder already exists, or the disk is full.
+        Ros2Error: no topic is selected, the folder already exists, or the bag cannot be written.
     """
     folder = Path(args.output or time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
     args.topics = absolute(args.topics or args.topics_positional)

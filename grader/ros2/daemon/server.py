@@ -116,7 +116,7 @@ def _answer_all(listening: socket.socket, node: Node, settling: Settling, wanted
 
 
 def _answer(connection: socket.socket, node: Node, settling: Settling, debug: IO[str] | None) -> bool:
-    """Respond to a request. Return False if the daemon was requested to stop."""
+    """Respond to a request. Return False if it was a request to stop."""
     from grader.graph.snapshot import snapshot
 
     connection.settimeout(_REQUEST_S)

@@ -20,10 +20,10 @@ def add(parser: argparse.ArgumentParser) -> None:
     add_look(parser)
     completes(parser.add_argument("node_name", nargs="?", help="name of a node (default: all nodes)"), nodes)
     parser.add_argument(
-        "--filter", nargs=1, help="only parameters whose names begin with a match of this regular expression"
+        "--filter", nargs=1, help="print only parameters whose names match this regular expression from the beginning"
     )
     parser.add_argument("--include-hidden-nodes", action="store_true", help="include nodes whose names start with _")
-    parser.add_argument("--param-prefixes", nargs="+", default=[], help="only parameters with these prefixes")
+    parser.add_argument("--param-prefixes", nargs="+", default=[], help="print only parameters with these prefixes")
     parser.add_argument("--param-type", action="store_true", help="also print the types")
 
 

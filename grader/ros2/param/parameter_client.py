@@ -140,5 +140,5 @@ def value_text(value: ParameterValue, *, hide_type: bool) -> str:
 
 
 def not_set(name: str) -> Parameter:
-    """Return a Parameter that deletes the parameter of this name when it is set."""
+    """Return a Parameter without a value. Setting it deletes the parameter of this name."""
     return Parameter(name=name, value=ParameterValue(type=ParameterType.PARAMETER_NOT_SET))

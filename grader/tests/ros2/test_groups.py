@@ -82,6 +82,8 @@ def test_doctor_reports(here: World) -> None:
     assert re.search(r"^middleware name +: rmw_fastrtps_cpp$", report, re.MULTILINE)
     assert re.search(r"^distribution name +: jazzy$", report, re.MULTILINE)
     assert "\n   TOPIC LIST\n" in report
+    assert "\n   PACKAGE VERSIONS\n" in report
+    assert "PACKAGE" not in here.run("ros2 doctor -r --exclude-packages").stdout
 
 
 def test_a_multicast_packet_is_sent_or_the_network_is_named(here: World) -> None:

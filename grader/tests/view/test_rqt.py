@@ -127,7 +127,7 @@ def test_a_service_is_called_from_the_page(driven: World, whole: Page) -> None:
     whole.locator('#graph [data-name="/leo/pose"]').wait_for()
     whole.get_by_label("Request").fill("{x: two}")
     whole.get_by_role("button", name="Call").click()
-    whole.get_by_text("/spawn was not called.").wait_for()
+    whole.get_by_text("The call to /spawn failed.").wait_for()
     assert "The field 'x' has the type float." in whole.get_by_role("group", name="Response").inner_text()
     driven.run("ros2 service call /kill turtlesim/srv/Kill '{name: leo}'")
 

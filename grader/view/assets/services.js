@@ -33,7 +33,7 @@ export class Services {
     if (id !== this.waits?.id) return;
     this.response.textContent = text;
     this.response.className = ok ? "" : "failed";
-    this.status.textContent = ok ? `${this.waits.name} has responded.` : `${this.waits.name} was not called.`;
+    this.status.textContent = ok ? `${this.waits.name} has responded.` : `The call to ${this.waits.name} failed.`;
     this.waits = null;
   }
 }

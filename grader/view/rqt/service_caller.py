@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 TIMEOUT_S = 5.0
 """The maximum time for a service to respond (s)."""
 MOST_WAITING = 20
-"""The maximum number of calls that may wait for their responses."""
+"""The maximum number of pending calls."""
 _EVERY_NODES = "rcl_interfaces/srv/"
 """The parameter services, which every node has. These services are at the end of the list."""
 
 Answer = dict[str, object]
-"""The `id` of a call, whether it got a response (`ok`), and its `text`: the response as YAML, or the error message."""
+"""The `id` of a call, whether there was a response (`ok`), and a `text`: the response as YAML, or the error message."""
 Service = dict[str, str]
 """A service: its name, its type, and a request as YAML with all values zero ("" if the type is not installed)."""
 
