@@ -51,7 +51,7 @@ class Row:
 
 @dataclass(frozen=True)
 class InF:
-    """The wall time and the CPU time of a measurement, each divided by the time of the reference F."""
+    """The wall time and the CPU time of a measurement, divided by the wall time and the CPU time of F."""
 
     wall: float
     cpu: float

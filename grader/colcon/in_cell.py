@@ -241,7 +241,7 @@ def _starting_with(forks: Forks) -> type[subprocess.Popen[Any]]:
 
 
 def _evaluate_condition(condition: str | None, context: Mapping[str, str]) -> Any:  # noqa: ANN401 - catkin_pkg's
-    """Replace this function of catkin_pkg, and import its slow parser only if a package.xml has a condition."""
+    """Evaluate a condition as catkin_pkg does, but import its slow parser only if there is a condition."""
     if condition is None:
         return True
     sys.modules.pop(_CONDITION)

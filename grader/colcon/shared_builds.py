@@ -128,8 +128,7 @@ def build_for(*, marks: bool) -> Callable[..., runner.Built]:
 class Usual:
     """A package of the usual form with empty modules, and the files that colcon is expected to install from it.
 
-    The folder of the package has the name of the package, because colcon installs the same files whatever the folder is
-    called.
+    The folder of `empty` has the name of the package. The name of the folder does not affect what colcon installs.
     """
 
     empty: Submission

@@ -1,4 +1,4 @@
-"""Command lines for Python that never import a module from the current folder, which may belong to a student.
+"""Command lines for a Python that never imports from the current folder, which may belong to a student.
 
 `python -m` and `python -c` put the current folder first on sys.path, and empty or relative entries in PYTHONPATH also
 refer to the current folder or a folder below it. A `numpy.py` or a package `grader` in the folder where a user typed a

@@ -17,7 +17,7 @@ _SOON_S = 0.01
 
 @contextmanager
 def stops_deferred() -> Iterator[None]:
-    """Handle the signals that stop the command only when the context has been left.
+    """Defer the signals that stop the command until the end of the context.
 
     Some objects of rclpy cannot be destroyed without a traceback if an exception interrupts their `__init__`.
     """
@@ -39,7 +39,7 @@ def stops_deferred() -> Iterator[None]:
 
 
 def raise_lost_stops() -> None:
-    """Raise a KeyboardInterrupt again if Python has discarded it, instead of printing it.
+    """From now on, raise a KeyboardInterrupt again if Python discards it, instead of printing it.
 
     Python discards an exception that is raised in a callback of `os.fork` or in `__del__`, and the command would
     continue as if nobody had pressed Ctrl-C.

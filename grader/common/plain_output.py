@@ -1,7 +1,7 @@
-"""Output to a terminal without control characters: names and texts in the ROS graph come from any program.
+"""Output to a terminal without control characters: names and texts in the ROS graph can come from any program.
 
-A terminal executes control sequences in what is printed. Such a sequence can hide a line, write to the clipboard
-(OSC 52), or open a link that is not the printed one (OSC 8).
+A terminal executes the control sequences in its output. Such a sequence can hide a line, write to the clipboard
+(OSC 52), or make the printed address a link to another one (OSC 8).
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class PlainText(io.TextIOWrapper):
 def protect_terminal() -> None:
     """Write all further output of this process to a terminal without control characters.
 
-    A file and a pipe get the text as it is.
+    Files and pipes get the unchanged text.
     """
     sys.stdout, sys.stderr = _protected(sys.stdout), _protected(sys.stderr)
 

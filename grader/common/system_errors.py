@@ -43,7 +43,7 @@ def refusal(error: BaseException) -> Optional[str]:
 def _refusal_behind(error: BaseException) -> Optional[str]:
     """Return the sentence for the system error that Python was handling when `error` was raised, or None.
 
-    Removing a temporary folder that may not be opened recurses endlessly in Python 3.10 to 3.12.
+    Removing a temporary folder that the user is not allowed to open recurses endlessly in Python 3.10 to 3.12.
     """
     behind = error.__context__
     while behind is not None and not isinstance(behind, OSError):

@@ -49,8 +49,8 @@ def columns(stream: TextIO) -> Optional[int]:
 def wrapped(text: str, width: Optional[int]) -> str:
     """Return the text with line breaks between words, so that its lines have at most `width` columns.
 
-    Text that users may copy is not broken: long words such as paths, commands, and indented lines, which contain
-    commands or code. The terminal itself breaks such text, and joins it again when it is copied.
+    Text that users may copy is not broken: long words (such as paths), commands, and indented lines (which contain
+    commands or code). The terminal itself breaks such text, and joins it again when it is copied.
     """
     return "\n".join(line if line[:1].isspace() else hanging(line, width) for line in text.split("\n"))
 

@@ -77,8 +77,8 @@ def _jumped(recording: Recording, first: int) -> bool:
 class _Path:
     """A part of a trajectory: some successive frames.
 
-    `x`, `y` (m) and `theta` (rad) begin before the first of these frames. `turned_otherwise` is true for the frames in
-    which the turtle did not turn at its turning speed.
+    The first values of `x`, `y` (m) and `theta` (rad) are those before the first of these frames. `turned_otherwise` is
+    true for the frames in which the turtle did not turn at its turning speed.
     """
 
     frames: slice

@@ -28,7 +28,7 @@ class Announcement:
 
     @property
     def names(self) -> list[str]:
-        """The announced names, which are the words of the text."""
+        """The announced names: the words of the text."""
         return self.text.split()
 
 

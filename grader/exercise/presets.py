@@ -7,8 +7,8 @@
     start = { points = 2 }
 
 creates the checks `eight-entry-point`, `eight-start` and `eight-node-name`. Checks of the first trial have no prefix.
-The titles of these checks begin with `title`. A key with the name of a check, such as `start`, changes keys of that
-check.
+The titles of these checks begin with `title`. A table with the name of a check, such as `start`, changes the keys of
+that check.
 """
 
 from __future__ import annotations
@@ -73,9 +73,9 @@ def expand(checks: object, trials: object) -> Any:  # noqa: ANN401 - TOML, not y
 
 
 def problem_of(table: Mapping[str, Any], trials: Sequence[Mapping[str, Any]]) -> str | None:
-    """Return a description of the mistake in a check with a preset.
+    """Return a description of the mistake in a `[[check]]` table with a preset.
 
-    Return an empty string if there is no mistake, and None if the check is not a preset.
+    Return an empty string if there is no mistake, and None if the check has no preset.
     """
     if "preset" not in table:
         return None

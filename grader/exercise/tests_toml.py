@@ -53,7 +53,7 @@ def unknown_numbers(trials: Sequence[TrialSpec], numbers: NumbersSpec | None) ->
             drawn = options.get(name, ())
             if not drawn or isinstance(drawn[0], str) or not isinstance(getattr(tests.right, name, None), float):
                 found = f'[trial.tests]: "own" contains {shorten(name)}'
-                yield f"{found}; it must be the name of a number of the node and of a list of numbers in [numbers]."
+                yield f"{found}; the node must have a number, and [numbers] a list of numbers, with this name."
 
 
 def _broken(table: Table, right: Behaviour) -> NodeUnderTest:

@@ -71,7 +71,7 @@ def unconfirmed(
     steps: Collection[str] = (),
     unread: Collection[Name] = (),
 ) -> list[Unconfirmed]:
-    """Return the cells that no grader result confirms, by exercise and student, except those graded manually.
+    """Return the cells whose scores no grader result confirms, by exercise and student, except those graded manually.
 
     `steps` selects the exercises. If `steps` is empty, all exercises are used. `unread` are submissions that could not
     be read this time, so their stored results do not count.

@@ -60,8 +60,8 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
     A `patient` node announces itself less often than other nodes, because it runs for hours.
 
     Raises:
-        Ros2Error: the node could not be created, for example because the domain id is wrong. In the context: a name in
-            the graph is not valid UTF-8.
+        Ros2Error: the node could not be created, for example because the domain id is wrong. Inside the context: a name
+            in the graph is not valid UTF-8.
         MachineError: the machine has no memory, files or threads left for a node.
     """
     with ExitStack() as stack:

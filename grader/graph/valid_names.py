@@ -1,4 +1,4 @@
-"""Names in the graph that ROS 2 accepts. Any program of the domain can announce other names, with DDS or by mistake.
+"""Names in the graph that ROS 2 accepts. Any program in the domain can also announce other names, through DDS.
 
 rclpy raises an error if one of its functions gets such a name. Therefore, without a filter, one program could stop
 every command that looks at the graph.
@@ -56,7 +56,7 @@ class ObservingNode(Node):  # type: ignore[misc]
 
 @contextmanager
 def readable_names() -> Iterator[None]:
-    """Report a name of another program that is not valid UTF-8. rclpy then reads no part of the graph with this name.
+    """Report a name in the graph that is not valid UTF-8, because rclpy cannot read a graph with such a name.
 
     Raises:
         Ros2Error: there is such a name.

@@ -42,7 +42,7 @@ class Program:
 
 
 def program_of(step: str | None, executable: str | None, workspace: Path | None) -> Program:
-    """Return the program that is to be run. The default is the program of the current step.
+    """Return the program to run. The default is the program of the current step.
 
     Raises:
         UsageError: the step has no node, was not started, or does not run this executable.
@@ -65,7 +65,7 @@ def program_of(step: str | None, executable: str | None, workspace: Path | None)
 
 
 def _refuse_program_as_step(name: str) -> None:
-    """Raise UsageError if the name is the name of a program, and not the name of a step."""
+    """Raise UsageError if the name is that of a program, and not that of a step."""
     if name.isdigit() or any(each.startswith(name) for each in catalogue()):
         return
     owner = next((each for each, file in catalogue().items() if name in executables(load_exercise(file))), None)

@@ -69,4 +69,4 @@ def _guard() -> None:
 
 
 _guardians: list[subprocess.Popen[bytes]] = []
-"""The guardian, referenced for the lifetime of the kernel. If the object were deleted, its pipe would close."""
+"""Holds the guardian until the kernel exits. If the object were deleted, its pipe would close."""

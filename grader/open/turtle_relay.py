@@ -25,7 +25,7 @@ trail of the turtle."""
 
 
 async def relay(page: WebSocket, address: Address) -> None:
-    """Forward messages in both directions until one side closes. The guard has already accepted the page."""
+    """Forward messages in both directions until one side closes. grader.view.guard has already accepted the page."""
     here = f"{HOST}:{address.port}"
     try:
         async with connect(

@@ -1,8 +1,8 @@
 """Enter a sandbox room or cell: a fork of a process that has imported everything becomes a process of the cell.
 
-bubblewrap creates the room or cell. The first program in the room or cell is `cat`, which keeps it open. setns(2) moves
-a process into the namespaces of `cat`, and the forks of this process are processes of the room or cell. A fork must
-then give up the same rights that bubblewrap takes from the programs that it starts.
+bubblewrap creates the room or cell. `cat`, the first program in the room or cell, keeps it open. setns(2) moves a
+process into the namespaces of `cat`, and the forks of this process are processes of the room or cell. A fork must then
+give up the same rights that bubblewrap takes from the programs that it starts.
 
 Like the scripts that run in a cell, this module needs only the standard library and grader.common.linux_calls.
 """

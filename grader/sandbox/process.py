@@ -41,7 +41,7 @@ class Finished:
 
 
 class _Tail:
-    """The beginning and the end of an output, half of the limit each, since they are the most useful parts of a log."""
+    """The beginning and the end of an output, the most useful parts of a log. Each has half of the limit."""
 
     def __init__(self, most: int) -> None:
         self._half = most // 2

@@ -104,7 +104,7 @@ def offline(said: str) -> Optional[str]:
 
 
 def configured_indexes(said: str) -> str:
-    """Return a sentence with the indexes that pip printed because they are configured, or an empty string."""
+    """Return a sentence with the configured package indexes that pip printed, or an empty string."""
     found = _INDEXES.search(said)
     return f" pip is configured to use {found.group(1)} (`pip config list`)." if found else ""
 

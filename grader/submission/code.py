@@ -64,7 +64,7 @@ class Module:
 
 
 ALIKE = {"create_lifecycle_publisher": "create_publisher"}
-"""Maps a method of lifecycle nodes to the method of all nodes that has the same arguments."""
+"""Maps a method that only lifecycle nodes have to the method of all nodes that has the same arguments."""
 
 
 @dataclass(frozen=True)

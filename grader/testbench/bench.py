@@ -162,7 +162,7 @@ class _Queue:
     def put(self, run: _Next, ended: Ended) -> None:
         """Store the result of a run.
 
-        A run that exceeded the short time limit `DOUBT_S` without being stuck is repeated later instead.
+        A run that exceeded the short time limit `DOUBT_S` without being stuck is not stored, but repeated later.
         """
         with self._lock:
             if self._closed or self.is_settled:

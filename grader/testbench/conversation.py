@@ -155,6 +155,6 @@ class Conversation:
 
 
 def _pid_of(process: int) -> int:
-    """Return the pid of the process to which a pidfd refers, as this process sees it in its own namespace."""
+    """Return the pid, in this process's pid namespace, of the process to which a pidfd refers."""
     lines = Path(f"/proc/self/fdinfo/{process}").read_text("ascii").splitlines()
     return next(int(line.split()[1]) for line in lines if line.startswith("Pid:"))

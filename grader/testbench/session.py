@@ -7,8 +7,8 @@ socket, the session sends STARTED with a descriptor of the process that runs the
 session sends the exit code of pytest, the duration (s), the report's size, and the report. The session does not know
 whether a run uses the correct node or a broken one.
 
-bubblewrap creates the cell, and a fork of the session enters it (grader.sandbox.entering). The session itself learns
-nothing about its runs: the fork reports to the grader, and ends together with its cell. Therefore, neither a cell nor
+bubblewrap creates the cell, and a fork of the session enters it (grader.sandbox.entering). The session itself receives
+nothing from its runs: the fork reports to the grader, and ends together with its cell. Therefore, neither a cell nor
 the memory of a run contains a trace of an earlier run.
 """
 

@@ -85,7 +85,7 @@ def _frame_time(before_s: float, last_command_s: float | None, *, timed_out: boo
     """Return the time of the next frame.
 
     The frames of the recorded turtlesim followed the wall clock, so a time-out occurred 62 to 64 frames after the
-    command. In the replay, the time is stretched so that the last command of our turtle times out in the same frame.
+    command. In the replay, the times of the frames are adjusted so that the last command times out in the same frame.
     """
     now_s = before_s + FRAME_S
     if last_command_s is None:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class _DeferringActionServer(ActionServer):
-    """An action server whose goals are executed by the turtle's frames instead of a callback.
+    """An action server whose goals are executed frame by frame instead of in a callback.
 
     In rclpy, one callback runs from the acceptance of a goal to its result. A callback that waits for the end of a goal
     would block an executor. Therefore, a goal is only marked as executing, and the callback runs when the result is
