@@ -19,6 +19,9 @@ SEARCHED = (
     *("CMAKE_MODULE_PATH", "PKG_CONFIG_PATH", "PYTHONHOME", "PYTHONUSERBASE", "PYTHONPYCACHEPREFIX", "PYTHONSTARTUP"),
 )
 """Variables that contain a path or a list of paths from which programs, libraries or modules are loaded."""
+OF_ANOTHER_PYTHON = ("_PYTHON_SYSCONFIGDATA_NAME", "_PYTHON_HOST_PLATFORM", "_PYTHON_PROJECT_BASE")
+"""Variables that make sysconfig describe another Python, so that most other Pythons cannot import it. The compilers of
+conda and tools for cross-compilation set them."""
 _CODE = "import sys; sys.path[:] = filter(None, sys.path)\n"
 """Code that removes the current folder from sys.path. The option -P of Python 3.11 does the same, but with -P, IPython
 does not let the cells of a notebook import modules from the notebook's folder."""
@@ -72,8 +75,11 @@ def interpreter(
 
 
 def clean(env: Mapping[str, str]) -> Dict[str, str]:
-    """Return the environment without empty or relative entries in search paths, which depend on the current folder."""
-    cleaned = dict(env)
+    """Return the environment without empty or relative entries in search paths, which depend on the current folder.
+
+    The result has no variables that describe another Python.
+    """
+    cleaned = {name: value for name, value in env.items() if name not in OF_ANOTHER_PYTHON}
     for name in SEARCHED:
         if name in cleaned:
             cleaned[name] = os.pathsep.join(entry for entry in cleaned[name].split(os.pathsep) if entry.startswith("/"))

@@ -9,6 +9,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common.interpreter import OF_ANOTHER_PYTHON
 from grader.errors import MachineError, UsageError
 from grader.ros import installation, underlay
 
@@ -46,8 +47,9 @@ def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sour
     lines = [f"# For `source <(grader env)`: ROS 2 Jazzy, in domain {wanted['ROS_DOMAIN_ID']}."]
     lines += [f"export {name}={shlex.quote(value)}" for name, value in wanted.items() if env.get(name) != value]
     lines += [
-        # With another Python's library, no `python3` of .venv would start; `activate` of a venv does the same.
-        "unset PYTHONHOME",
+        # With another Python's library, no `python3` of .venv would start; `activate` of a venv does the same. With the
+        # properties of another Python, colcon fails.
+        " ".join(["unset PYTHONHOME", *OF_ANOTHER_PYTHON]),
         # zsh cannot complete words before its own completion system has been initialized.
         'if [ -n "${ZSH_VERSION-}" ]; then',
         "  whence compdef > /dev/null || { autoload -Uz compinit && compinit -u; }",

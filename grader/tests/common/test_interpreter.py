@@ -74,6 +74,14 @@ def test_what_leads_to_the_current_folder_goes_and_the_rest_stays() -> None:
     assert clean(env) == {"PATH": "/usr/bin", "LD_LIBRARY_PATH": "/a:/b", "LANG": "C"}
 
 
+def test_variables_that_describe_another_python_go() -> None:
+    """As the compilers of conda set them."""
+    env = {**os.environ, "_PYTHON_SYSCONFIGDATA_NAME": "_sysconfigdata_x86_64_conda_cos6_linux_gnu"}
+    code = "import sysconfig; print(sysconfig.get_config_var('EXT_SUFFIX') is not None)"
+    asking = interpreter("-c", code, env=env)
+    assert subprocess.check_output(asking.argv, env=asking.env, text=True) == "True\n"
+
+
 COMMANDS = ("grader", "ros2", "rqt", "rqt_console", "rqt_graph", "rqt_plot")
 
 

@@ -215,10 +215,12 @@ def test_one_line_from_any_folder_brings_ros_2_and_our_commands(tmp_path: Path, 
     env = {**SOURCED_ENV, "PATH": PATH, "HOME": str(tmp_path)}
     env["XDG_CACHE_HOME"] = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     env["PYTHONHOME"] = "/usr"  # with this, no command of .venv would start
-    what = f"source {sys.prefix}/setup.{name} && echo $ROS_DISTRO && command -v ros2 grader && python3 -c 'print(3)'"
+    env["_PYTHON_SYSCONFIGDATA_NAME"] = "_of_conda"  # with this, colcon would fail
+    python = "python3 -c 'import sysconfig; print(len(sysconfig.get_config_vars()) > 0)'"
+    what = f"source {sys.prefix}/setup.{name} && echo $ROS_DISTRO && command -v ros2 grader && {python}"
     done = subprocess.run([name, "-c", what], cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
     ros2 = f"{HERE.prefix}/bin/ros2" if REAL_ROS2 else f"{BIN}/ros2"
-    assert done.stdout.splitlines() == ["jazzy", ros2, f"{BIN}/grader", "3"], done.stderr
+    assert done.stdout.splitlines() == ["jazzy", ros2, f"{BIN}/grader", "True"], done.stderr
 
 
 def test_the_words_of_grader_are_completed() -> None:
