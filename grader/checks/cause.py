@@ -29,5 +29,5 @@ class Cause:
         return self if self.where is not None else replace(self, where=where)
 
     def fixed_by(self, edits: tuple[Edit, ...]) -> Cause:
-        """Return the cause with the change that would fix it."""
+        """Return the cause with the change that would fix the mistake."""
         return replace(self, fix=edits)

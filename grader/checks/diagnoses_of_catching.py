@@ -18,7 +18,7 @@ OF_CATCHING: dict[str, dict[Diagnosis, str]] = {
         "silent-when-empty": "no message is published when no turtle is left",
         "not-killed": "a turtle that was caught is not removed",
         "killed-uncaught": "a turtle is removed although nobody caught it",
-        "loop-variable": "a function created in a loop uses the loop variable, which then has its last value",
+        "loop-variable": "a function created in a loop uses the loop variable, whose value has changed before the call",
         "never-drives": "the turtle does not move at all",
         "stands-still": "the turtle stands still although a target is left",
         "too-slow": "the turtle drives until the end of the trial but does not reach all targets",

@@ -1,4 +1,4 @@
-"""The ids of mistakes in two nodes, one of which spawns turtles that the other node catches."""
+"""The ids of mistakes in nodes that spawn and catch turtles, as a type. diagnosis.py lists all ids."""
 
 from __future__ import annotations
 

@@ -79,7 +79,7 @@ def load_exercise(path: Path) -> Exercise:
 
 
 def title_of(path: Path) -> str:
-    """Return the title of the exercise in a file exercise.toml. If possible, only its beginning is parsed.
+    """Return the title of the exercise in a file exercise.toml. If possible, parse only the beginning of the file.
 
     Raises UsageError, which lists every problem in the file.
     """

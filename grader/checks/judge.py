@@ -27,7 +27,7 @@ class Judgement:
     """The findings of all checks, judged from the evidence that exists so far.
 
     `findings` contains a finding for every check. The findings in `settled` are final, because the evidence of their
-    stage was complete. A finding that is not in `settled` says that the node was not run, or that a required check has
+    stage was complete. Any other finding is an error, or means that the node was not run, or that a required check has
     not passed yet.
     """
 
@@ -130,7 +130,7 @@ def judge_early(evidence: Evidence) -> Early:
 def _judges_trial(exercise: Exercise, spec: CheckSpec, trial: str) -> bool:
     """Return whether the check uses the recording of this trial.
 
-    It is the check's own trial, or the trial that `beside` refers to in the check's own trial.
+    A check uses its own trial, and the trial whose id is the value of `beside` in its own trial.
     """
     return KINDS[spec.kind].stage == "trial" and trial in (spec.trial, exercise.trial(spec.trial).beside)
 
@@ -188,8 +188,8 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
 def unreadable(how: str) -> Finding:
     """Return a failed finding about a submission that the grader cannot read.
 
-    The status of this finding is not `error`: a check reads only data from the submission, so only the submission can
-    make the check fail.
+    The status of this finding is not `error`: a check reads only data from the submission, so the submission is the
+    cause of an exception in the check.
     """
     observed = f"The submission could not be read: {shorten(how, 150)}."
     expected = "The grader can read the submitted files and the data that the node sends."

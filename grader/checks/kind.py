@@ -1,8 +1,8 @@
 """A kind is a type of check, with the parameters that exercise.toml may set.
 
 A dataclass next to the check function defines the parameters of a kind. The functions `number`, `string`, `strings` and
-`choice` create the fields of the dataclass with their defaults and allowed values. The author of a new exercise that
-uses these kinds writes no Python code.
+`choice` create the fields of the dataclass with their defaults and allowed values. A new exercise that uses these
+kinds needs no Python code.
 """
 
 # ruff: noqa: ANN401 (the functions below return what dataclasses.field returns)
@@ -148,7 +148,7 @@ def strings(*, about: str) -> Any:
 
 
 def table(*, about: str, optional: bool = False) -> Any:
-    """Create a field for a table of numbers, strings and booleans. The field's value is a tuple of pairs (name, value).
+    """Create a field for a table that is not empty. The field's value is a tuple of pairs (name, value).
 
     If the field is optional, the default is an empty table.
     """

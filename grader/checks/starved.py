@@ -29,7 +29,7 @@ def too_busy() -> Finding:
 def unless_starved(finding: Finding, recording: Recording, off: float, per_s: float) -> Finding:
     """Return the finding, or an error finding if stalls of the machine can explain the wrong value.
 
-    `off` is the distance of the value from its tolerance range, and `per_s` is how much a second changes the value.
+    `off` is the distance of the value from its tolerance range, and `per_s` is the change of the value per second.
     While the machine stalls, the turtle continues with its last command.
     """
     if finding.status is Status.FAILED and recording.stalls and off <= per_s * recording.stalled_s:

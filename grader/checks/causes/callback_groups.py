@@ -1,4 +1,4 @@
-"""Find callbacks that wait for a response but are in the same callback group as the client: always a deadlock."""
+"""Find deadlocks: callbacks that wait for a response although they are in the same callback group as the client."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 REGISTERS = {"create_timer": 2, "create_subscription": 4, "create_service": 3}
-"""Methods of a node that register a callback, each with the number of its arguments before the callback group."""
+"""Maps a method that registers a callback to the number of its arguments before `callback_group`."""
 SELF = "self."
 
 
 def in_default_group(evidence: Evidence, wait: Wait) -> bool:
-    """Return whether the client of this wait and the callback that waits are both in the node's default group.
+    """Return whether the client of this wait and the callback that waits are both in the node's default callback group.
 
     The executor never calls two callbacks of this group at the same time. The result is True only if one class creates
     the client, registers the callback and defines it as a method.

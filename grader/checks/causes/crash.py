@@ -26,7 +26,8 @@ PACKAGES = ("site-packages", "dist-packages")
 FRAME = re.compile(r'\s*File "(?P<file>[^"]*)", line (?P<line>\d{1,7})(?:, in (?P<function>.*))?')
 ERROR = re.compile(r"(?P<type>[A-Za-z_][\w.]*)(?:: (?P<message>.*))?")
 GUESS = re.compile(r" \(/[^)]*\)$|\.? Did you mean: .*| The following argument types are supported:.*")
-"""Suggestions in messages, which differ between Python versions. They are removed, because a diagnosis has its own."""
+"""Matches a path, a suggestion or a list of types at the end of a message. These texts are removed, because they may
+differ on another machine."""
 STOPS = frozenset({"KeyboardInterrupt", "ExternalShutdownException"})
 """The exceptions that Ctrl-C raises in a node that is written as in the tutorial."""
 
@@ -58,8 +59,8 @@ MEANINGS = {
 class Crash:
     """An exception in the student's node.
 
-    `error` is the exception's class or, without an exception, the signal or exit code. `where` is the last line of the
-    student's own code, and `callers` are the lines that called it, the nearest caller first.
+    `error` is the exception's class or, without an exception, the signal, the exit code or the exceeded limit. `where`
+    is the last line of the student's own code, and `callers` are the lines that called it, the nearest caller first.
     """
 
     error: str

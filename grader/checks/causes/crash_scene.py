@@ -52,7 +52,7 @@ class CrashScene:
 
     @cached_property
     def on_line(self) -> tuple[ast.AST, ...]:
-        """The nodes of the syntax tree on the line."""
+        """The nodes of the syntax tree on the line, except statements that contain a block."""
         return tuple(
             node for node in self.nodes if getattr(node, "lineno", 0) <= self.line <= _end(node) and _small(node)
         )
@@ -113,7 +113,7 @@ def methods(of: ast.ClassDef) -> list[Function]:
 
 
 def attributes_set(of: ast.ClassDef) -> Iterator[tuple[str, int]]:
-    """Yield every attribute of self that is assigned, with its line. Operators such as += do not count."""
+    """Yield every attribute of self that is assigned, with its line. Assignments such as += do not count."""
     raised = {id(node.target) for node in ast.walk(of) if isinstance(node, ast.AugAssign)}
     for node in ast.walk(of):
         if id(node) in raised:

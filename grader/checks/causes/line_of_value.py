@@ -1,4 +1,4 @@
-"""The line that a value in a message comes from: the assignment, a constant, or the call of a helper function."""
+"""Find the line that contains the value of a message field: a constant, or the call of a helper function."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ OTHER_FIELD = {
     "linear": re.compile("ang|turn|rot|yaw|omega|steer", re.IGNORECASE),
     "angular": re.compile("lin|forw|drive|speed$", re.IGNORECASE),
 }
-"""Maps a part of a Twist to patterns of names that belong to the other part.
+"""Maps a part of a Twist to a pattern for the names of variables that belong in the other part.
 
-If a value comes from such a name, the mistake is in the assignment to the field, not in the value."""
+If such a variable is assigned to a field, the mistake is in the assignment, not in the value of the variable."""
 
 
 def line_of_value(evidence: Evidence, field: str, value: float) -> Where | None:
-    """Return the line that contains this value, if a field such as "linear.x" gets the value from there, else None.
+    """Return the line from which a field such as "linear.x" gets this value, or None.
 
     The value must reach the field through a named constant, or through an argument of a function that sets the field.
     If the field is assigned the number itself, or if there are several such lines, return None.

@@ -28,7 +28,7 @@ TAGS = (
     *("name", "version", "description", "maintainer", "license", "url", "author", "export"),
     *("depend", "exec_depend", "build_depend", "build_export_depend", "buildtool_depend", "test_depend"),
 )
-"""The tags that a learner's package.xml may contain."""
+"""The tags that the grader suggests in place of an unknown tag."""
 TWICE = re.compile(r"dependency on ['\"](?P<name>[^'\"]{1,100})['\"] is redundant")
 ROS_1_TAGS = re.compile(r"must not contain the following tags: .*\b(?P<tag>run_depend)\b")
 

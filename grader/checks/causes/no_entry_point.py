@@ -26,7 +26,7 @@ FORM = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION in the list c
 
 
 def line(evidence: Evidence) -> Where:
-    """Return the line of setup.py that contains the entry point, or else `console_scripts`, or else setup()."""
+    """Return the line of setup.py with the entry point, or else with `console_scripts`, or else with setup()."""
     setup = evidence.setup_py
     if setup is None:
         return Where("setup.py")

@@ -30,7 +30,7 @@ MODULE_OF = {
     "find_packages": "setuptools",
     "glob": "glob",
 }
-"""Maps a class to the module that it is usually imported from."""
+"""Maps a class or function to the module from which it is usually imported."""
 SHARED_NAMES = frozenset({"Pose", "Color", "Empty", "setup", "find_packages", "glob"})
 """The names in `MODULE_OF` that also exist in other packages, such as Pose in geometry_msgs."""
 
@@ -79,7 +79,7 @@ OF_ROS_1 = {
     "logwarn": "In ROS 2, the logger has the method warning.",
     "logerr": "In ROS 2, the logger has the method error.",
 }
-"""Maps a name in rospy to its replacement in ROS 2."""
+"""Maps a name in rospy to a sentence about its replacement in ROS 2."""
 
 NODE = (
     "create_publisher",
@@ -116,7 +116,7 @@ FIELDS = {
     "Pose": ("x", "y", "theta", "linear_velocity", "angular_velocity"),
     "String": ("data",),
 }
-"""Maps the name of a message to its fields."""
+"""Maps a message type to the names of its fields."""
 
 OTHERS = {
     "Publisher": ("publish",),
@@ -124,7 +124,7 @@ OTHERS = {
     "Timer": ("cancel", "reset"),
     "RcutilsLogger": ("debug", "info", "warning", "warn", "error", "fatal"),
 }
-"""Maps each other class of objects, such as a logger, to the methods of this class."""
+"""Maps other classes, such as the class of a logger, to their methods."""
 
 CONSTANTS = {
     "GoalStatus": (

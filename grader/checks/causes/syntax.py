@@ -73,11 +73,11 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
     (r"forgot a comma", "comma-missing", "Put a comma between two arguments and between two items of a list."),
     (r"instead of '='|cannot assign", "equals", "= assigns a value to a name. == compares two values."),
 )
-"""(pattern of Python's message, diagnosis, cause). The first pattern that matches is used."""
+"""Tuples (pattern of Python's message, diagnosis, cause). The first pattern that matches is used."""
 NOT_CLOSED = re.compile(r"does not match opening parenthesis '(?P<bracket>.)' on line (?P<line>\d+)")
 NO_BODY = re.compile(r"expected an indented block after .* on line (?P<line>\d+)")
 OUTSIDE = re.compile(r"\s*(?:def|class|async def|@|if __name__)\b|\s*@")
-"""Matches a line that begins something new, so it cannot be the body that Python expects."""
+"""Matches a line with a definition, a decorator or `if __name__`. Such a line is not the body that Python expects."""
 ENTRY_POINT = re.compile(r"\s*\w+\s*=\s*[\w.]+:\w+\s*,?\s*")
 OTHER_LANGUAGES = (
     (r"\s*else\s+if\b.*", "Python spells else if as one word: elif."),
@@ -91,7 +91,7 @@ OTHER_LANGUAGES = (
     ),
     (r"\s*else\s*:.*", "An else needs an if, for, while or try before it, with the same indentation."),
 )
-"""(pattern of a line that Python cannot read, cause): syntax of other languages, and an else without an if."""
+"""Tuples (pattern of an unreadable line, cause) for syntax of other languages, and for an else without an if."""
 GAP = re.compile(r"""(?P<left>[\w.]+|"[^"]*"|'[^']*')(?=\s+(?P<right>[\w.]+|"[^"]*"|'[^']*'))""")
 """Matches a value that is followed by spaces and another value. The match ends before the spaces."""
 NO_SPACE = re.compile(r"\s*(?P<keyword>def|class)(?P<rest>\w+\s*[(:].*)")
@@ -108,10 +108,10 @@ COMMA_FOR_DOT = (
         "A comma separates {left} from {right}. Write a dot: {left}.{right}.",
     ),
 )
-"""(pattern of a line that Python cannot read, cause): a comma in place of a dot."""
+"""Tuples (pattern of an unreadable line, cause) for a comma in place of a dot."""
 CONFLICT = r"^(<<<<<<<|>>>>>>>)"
 MIDDLE = "======="
-"""The line that Git writes between two versions. In a docstring, the same line can underline a heading."""
+"""The line that Git writes between two conflicting versions. In a docstring, the same line can underline a heading."""
 OTHERWISE = "The mistake is often at the end of the previous line: a bracket, a colon or the indentation."
 
 

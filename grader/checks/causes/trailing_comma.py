@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
 REFUSED = re.compile(r"\btuple\b|The '\w+' field must be of type|incompatible function arguments")
-"""Python's and rclpy's messages about a tuple, and messages that do not contain the type of the rejected value."""
+"""Matches messages about a tuple, and messages that do not contain the type of the rejected value."""
 
 
 def trailing_comma(scene: CrashScene) -> Cause | None:
-    """Return the cause if a value on the line of the crash is a tuple only because of a comma after it, else None."""
+    """Return the cause if the line of the crash uses a variable that is a tuple only because of a comma, else None."""
     if not REFUSED.search(scene.crash.message):
         return None
     used = {dotted(node) for node in scene.on_line if isinstance(node, ast.Name | ast.Attribute)} - {None}

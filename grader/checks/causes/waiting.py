@@ -28,7 +28,7 @@ SERVERS = ("wait_for_service", "wait_for_server")
 SLEEPS = ("sleep", "sleep_for", "sleep_until")
 WAITS = (*RESPONSES, *SPINS, *SERVERS, *SLEEPS)
 LOOP = "while"
-"""The `name` of a `Wait` in the form of a loop that runs until done() returns True."""
+"""The `name` of a `Wait` that is a loop until done() returns True."""
 THREADS = frozenset({"MultiThreadedExecutor", "Thread", "ThreadPoolExecutor", "Timer", "start_new_thread"})
 """If the source uses one of these, another thread can receive the response while a callback waits."""
 STARTS = frozenset({"Thread", "Timer", "start_new_thread", "submit", "to_thread", "run_in_executor"})
@@ -42,7 +42,7 @@ OTHER_CALLS = frozenset({"subprocess", "self", "super", "cls"})
 
 @dataclass(frozen=True)
 class Wait:
-    """A wait in a callback: the `name` of the function that waits, as `written` in the source, and the place."""
+    """A wait in a callback: the `name` of the function that waits, the name `written` in the source, and the place."""
 
     name: str
     written: str

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from grader.submission.pytest_files import TestCode, TestFunction
 
 CLOCKS = frozenset({"time", "monotonic", "perf_counter", "monotonic_ns", "time_ns", "perf_counter_ns"})
-"""Functions of Python's module `time` that return the wall time."""
+"""Functions of Python's module `time` that measure wall time."""
 RAISING = frozenset({"raises", "fail", "warns"})
-"""Pytest functions that make a test fail."""
+"""Functions of pytest that can make a test fail."""
 CATCHES_ALL = frozenset({"AssertionError", "Exception", "BaseException"})
 
 
@@ -86,7 +86,7 @@ def swallowed(code: TestCode) -> Cause | None:
 
 
 def _asserted_later(module: Module, tried: ast.Try, handler: ast.ExceptHandler) -> bool:
-    """Return whether an assert outside the try statement uses a name that the except clause sets or appends to."""
+    """Return whether an assert outside the try statement uses a name that the except clause assigns or appends to."""
     kept = {each.id for each in ast.walk(handler) if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)}
     calls = (each.func for each in ast.walk(handler) if isinstance(each, ast.Call))
     kept |= {_last(each.value) for each in calls if isinstance(each, ast.Attribute) and each.attr in ("append", "add")}
@@ -151,7 +151,7 @@ def _functions(modules: tuple[Module, ...]) -> list[tuple[str, ast.AST]]:
 
 
 def _asserts(node: ast.AST) -> bool:
-    """Return whether the function itself can make a test fail, with pytest or with unittest."""
+    """Return whether a function or an except clause can itself make a test fail, with pytest or with unittest."""
     for each in ast.walk(node):
         if isinstance(each, ast.Assert | ast.Raise):
             return True

@@ -1,4 +1,4 @@
-"""Explain why a node calls a service again and again for the same target, although it waits for the response."""
+"""Explain why a node calls a service again and again for the same target."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NOTHING = (None, False)
 
 
 def why_again(evidence: Evidence) -> Cause:
-    """Return the cause of repeated calls: the response is not awaited, or the target is not forgotten afterwards."""
+    """Return the cause of repeated calls: the node does not wait for the response, or does not forget the target."""
     where = evidence.place(CALL)
     waiting = {name for _, method in methods_of(evidence) if _calls(method) for name, _ in _set(method, empty=False)}
     ended = [
@@ -38,7 +38,7 @@ def why_again(evidence: Evidence) -> Cause:
             "too, or else this target is still the nearest one."
         )
         return Cause("catch-again", text, ended[0])
-    text = "Until the response arrives, store in an attribute that the node has called the service."
+    text = "Store in an attribute whether the node is waiting for a response. While it is waiting, do not call again."
     return Cause("catch-again", text, where)
 
 

@@ -37,7 +37,7 @@ OF_THE_NODE = re.compile(
     r"^(\w+) cannot be modified after node creation|property '(\w+)' of '\w+' object has no setter"
     r"|can't set attribute '(\w+)'"
 )
-"""Error messages of rclpy, and of Python 3.10 to 3.14, for an attribute name that every rclpy node already uses."""
+"""Error messages of rclpy, and of Python 3.10 to 3.14, about a property that cannot be set."""
 MANGLED = re.compile(r"^_(?P<of>[A-Za-z]\w*?)__(?=[a-zA-Z])")
 """The prefix that Python adds to an attribute whose name begins with two underscores."""
 PLAIN = {
@@ -80,7 +80,7 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
 
 
 def _without_setter(scene: CrashScene, name: str) -> Cause | None:
-    """Return the cause if a property of the student or of rclpy's nodes cannot be set, else None."""
+    """Return the cause if the attribute is a property without a setter or belongs to every node, else None."""
     own = next((each for each in scene.functions(name) if "property" in map(dotted, each.decorator_list)), None)
     if own is not None:
         text = f"{name} is a property without a setter, so it cannot be assigned. Store the value under another name."
@@ -91,7 +91,7 @@ def _without_setter(scene: CrashScene, name: str) -> Cause | None:
 
 
 def _written_name(scene: CrashScene, name: str) -> str:
-    """Return the name as it is in the source: without the prefix of a student's class that Python has added to it."""
+    """Return the name as it is in the source, without the prefix that Python adds to a name such as __speed."""
     mangled = MANGLED.match(name)
     own = mangled is not None and any(each.name.lstrip("_") == mangled["of"] for each in scene.classes)
     return MANGLED.sub("__", name) if own else name
@@ -130,7 +130,7 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
 
 
 def _of_class_elsewhere(scene: CrashScene, owner: str, name: str) -> Cause:
-    """Return the cause of a missing attribute of a class of ROS 2. A field belongs to a message, not to its class."""
+    """Return the cause if a ROS 2 class lacks the attribute, such as a field, which only its objects have."""
     if owner in ros_names.FIELDS:
         return class_for_object(scene, owner, name)
     text = f"The class {shorten(owner)} has no constant or method with that name."
@@ -171,7 +171,7 @@ def _misspelt(scene: CrashScene, name: str, known: Iterable[str]) -> Cause | Non
 
 
 def _of_own_type(scene: CrashScene, owner: str, name: str) -> Cause:
-    """Return the cause of an AttributeError about a class in the student's file or about an instance of this class."""
+    """Return the cause if a class in the student's file, rather than an object of this class, lacks the attribute."""
     own = scene.class_named(owner)
     assert own is not None
     outside = next((each for each in scene.top_functions() if each.name == name), None)

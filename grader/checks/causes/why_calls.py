@@ -37,7 +37,7 @@ MAKERS = {
     "add_done_callback": 0,
     "add_on_set_parameters_callback": 0,
 }
-"""Methods that take a callback, with the position of the callback among the arguments."""
+"""Maps a method that takes a callback to the position of the callback among the arguments."""
 TAKES = {
     "create_publisher": "the type, the topic and the queue size",
     "create_subscription": "the type, the topic, the callback and the queue size",
@@ -192,7 +192,7 @@ def _too_few(scene: CrashScene, function: str, names: str) -> Cause:
 
 
 def _init_misspelt(scene: CrashScene) -> Cause | None:
-    """Return the cause if the class of the new object has a method with a misspelt name of __init__, else None."""
+    """Return the cause if the class of the new object has a method whose name is a misspelt __init__, else None."""
     for own in (each for each in scene.classes if scene.calls_on_line(each.name)):
         names = {each.name: each for each in methods(own)}
         found = [name for name in names if name.strip("_") in ("init", "int", "inti") or name == "__intit__"]

@@ -56,7 +56,7 @@ def _why_no_topic(scene: CrashScene) -> Cause:
 
 
 def _topic_given(scene: CrashScene) -> tuple[str, int] | None:
-    """Return the string on the line of the crash that names a topic, service or action, with its line, or None."""
+    """Return the topic, service or action name that the line of the crash contains, with its line, or None."""
     for maker in ("create_publisher", "create_subscription", "create_client", "create_service", "ActionClient"):
         for call in scene.calls_on_line(maker):
             for given in (*call.args, *(keyword.value for keyword in call.keywords)):
@@ -129,7 +129,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "exit code 2": _why_usage,
     "ValueError": _why_value,
 }
-"""Maps an exception to the function that finds its cause in the source code, or returns None."""
+"""Maps an exception to a function that returns its cause, or None if the source code does not show the cause."""
 
 
 def why_crashed(evidence: Evidence, crash: Crash) -> Cause:

@@ -20,7 +20,7 @@ SPINS = ("spin", "spin_once", "spin_until_future_complete")
 
 
 def why_ended(evidence: Evidence) -> Cause:
-    """Return the reason why the program exited before Ctrl-C without an exception."""
+    """Return the reason why the program exited on its own, without an exception."""
     code = evidence.code
     bare = named_only(evidence, "rclpy.init", "rclpy.spin", "main")
     if bare is not None:
@@ -55,7 +55,7 @@ def _returns_before_spin(evidence: Evidence) -> Cause | None:
 
 
 def _spins_only_as_script(evidence: Evidence) -> Cause | None:
-    """Return the cause if all calls of rclpy.spin are below `if __name__ == "__main__"`, else None."""
+    """Return the cause if all calls of rclpy.spin are in the block of `if __name__ == "__main__"`, else None."""
     spins = evidence.code.calls("spin") if evidence.entry_point() is not None else []
     for module in evidence.code.modules:
         for node in module.body:
@@ -104,7 +104,7 @@ def why_no_node(evidence: Evidence) -> Cause:
 
 
 def _stored_class(evidence: Evidence) -> Cause | None:
-    """Return the cause if a variable that nothing reads gets a node's class instead of an object, else None."""
+    """Return the cause if a node's class, not an object, is assigned to a variable that nothing reads, else None."""
     nodes = [(module, node) for module in evidence.code.modules for node in module.nodes]
     classes = {node.name for _, node in nodes if isinstance(node, ast.ClassDef) and _is_node(node)}
     read = {node.id for _, node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
@@ -118,7 +118,7 @@ def _stored_class(evidence: Evidence) -> Cause | None:
 
 
 def _named(node: ast.AST) -> str:
-    """Return the name or the attribute that an expression reads, or an empty string."""
+    """Return the name, or the last part of a dotted name, or an empty string for other expressions."""
     return getattr(node, "id", "") if isinstance(node, ast.Name) else getattr(node, "attr", "")
 
 

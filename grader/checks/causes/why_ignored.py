@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 CATCHES = ("KeyboardInterrupt", "BaseException")
-"""The exceptions with which an except clause can catch Ctrl-C. A bare except clause also catches it."""
+"""The exceptions whose except clause catches Ctrl-C. A bare except clause also catches it."""
 LEAVES = ast.Break | ast.Return | ast.Raise
 
 

@@ -18,7 +18,7 @@ NOT_HERE = {
     "_tkinter": "tkinter is Python's module for graphical windows.",
     "example_interfaces": "example_interfaces is a package of ROS 2.",
 }
-"""Modules that a correct program may import but that are not available where the grader runs it."""
+"""Maps a module that a correct program may import, but that the grader does not have, to a sentence about it."""
 NO_MODULE = re.compile(r"No module named '(?P<name>[\w.]+)'")
 NO_NAME = re.compile(r"cannot import name '(?P<name>\w+)' from '(?P<module>[\w.]+)'")
 

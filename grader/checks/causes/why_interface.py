@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
 WRAPPED = {"_FeedbackMessage": "feedback", "_GetResult_Response": "result"}
-"""Maps the ending of an rclpy message's type name to the field with the content of the message."""
+"""Maps the end of a type name to the field of this type that contains the feedback or the result."""
 OF_A_RESULT = ("status", "result")
 NO_OBJECT = re.compile(r"^(Action|Service) classes can not be instantiated")
 OF_AN_ACTION = re.compile(r"service type provided is not valid \(<class '\w+\.action\.")

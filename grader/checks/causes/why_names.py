@@ -148,7 +148,7 @@ def _of_import(scene: CrashScene, name: str) -> Cause | None:
 
 
 def _in_other_capitals(scene: CrashScene, name: str) -> Cause | None:
-    """Return the cause if an argument on the line is, in lower case, a local variable of the function, else None."""
+    """Return the cause if an argument on the line is a local variable written with capital letters, else None."""
     passed = any(
         isinstance(argument, ast.Name) and argument.id == name
         for call in scene.on_line
@@ -205,7 +205,7 @@ def _stores(scene: CrashScene, name: str) -> Iterator[tuple[int, Function | None
 
 def _alike(scene: CrashScene, name: str) -> Cause | None:
     if name == "this":
-        text = "In other languages, the object is called this. In a Python method, the object is called self."
+        text = "Other languages use the name this for the object. A Python method uses the name self."
         return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, "this", "self"))
     if name in CONSTANTS:
         text = f"In Python, the spelling is {CONSTANTS[name]}. Upper and lower case matter."
@@ -270,7 +270,7 @@ def why_unbound(scene: CrashScene) -> Cause:
 
 
 def _only_raised(scene: CrashScene, name: str) -> bool:
-    """Return whether the function that crashed changes the variable only with operators such as +=."""
+    """Return whether the function that crashed changes the variable only with assignments such as +=."""
     inside = list(ast.walk(scene.function)) if scene.function is not None else []
     raised = {id(node.target) for node in inside if isinstance(node, ast.AugAssign)}
     stored = [

@@ -103,7 +103,10 @@ def _parts(test: ast.expr, operator: type[ast.boolop]) -> list[ast.expr]:
 
 
 def _tested(test: ast.expr, *, missing: bool) -> str | None:
-    """Return the attribute of self that is not None (with `missing`: that is None) if the test is true, else None."""
+    """Return the attribute of self that is not None if the test is true, or None if there is no such attribute.
+
+    With `missing`, return the attribute that is None if the test is true.
+    """
     if isinstance(test, ast.Compare) and len(test.ops) == 1 and _is_none(test.comparators[0]):
         wanted = (ast.Is, ast.Eq) if missing else (ast.IsNot, ast.NotEq)
         return _attribute(test.left) if isinstance(test.ops[0], wanted) else None

@@ -42,7 +42,7 @@ def _has_test(node: ast.ClassDef) -> bool:
 
 
 def _misnamed(nodes: tuple[ast.AST, ...]) -> Function | None:
-    """Return a function with an assert that is neither called nor named like a test, or None."""
+    """Return a function that has an assert but is neither called nor named like a test, or None."""
     called = {node.id for node in nodes if isinstance(node, ast.Name)}
     called |= {node.attr for node in nodes if isinstance(node, ast.Attribute)}
     for node in nodes:

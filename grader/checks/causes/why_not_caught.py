@@ -1,4 +1,4 @@
-"""Explain why some targets were not caught: the turtle does not move, stops, or does not have enough time."""
+"""Explain why some targets were not caught, for example because the turtle does not move, or stops too early."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Explain, from what happened in the node under test, why a student's test has received no message."""
+"""Explain with the events in the node under test why a student's test has received too few messages, or none."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ NOTHING_RECEIVED = re.compile(
 )
 """pytest's message about a test that reads a command although the test has received none."""
 COUNTED = re.compile(r"assert (?P<received>\d{1,6}) (?:==|>=|>) (?P<wanted>\d{1,6})\n +\+  where \d+ = len\(\[")
-"""pytest's message about a test that counts messages."""
+"""pytest's message about an assert that compares the number of received messages with another number."""
 
 
 def why_not_heard(run: NodeRun, code: TestCode, right: Behaviour) -> Cause | None:
-    """Return the reason why a test has received no command from the correct node, or None if this did not happen."""
+    """Return the reason why a test has received too few commands, or none, from the correct node, or None."""
     events = run.events
     if run.over or events is None:
         return None
@@ -54,7 +54,7 @@ def why_not_heard(run: NodeRun, code: TestCode, right: Behaviour) -> Cause | Non
 
 
 def _too_few(events: NodeEvents, run: NodeRun, code: TestCode, right: Behaviour) -> Cause | None:
-    """Return the reason why a test has received too few commands, if the node's timer shows the reason."""
+    """Return the reason why a test has received too few commands, if the calls of the timer show it, else None."""
     counted = COUNTED.match(run.message)
     if counted is None or int(counted["received"]) >= int(counted["wanted"]):
         return None

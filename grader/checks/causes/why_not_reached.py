@@ -29,7 +29,7 @@ ASIDE_RAD = 0.3
 """A target within this angle (rad) is considered straight ahead or straight behind, so a turn in either direction is
 right."""
 MOST = 0.8
-"""The cause is reported only if the turtle turned away or faced away in at least this share of the commands."""
+"""The cause is reported only if the turtle turned away or faced away in at least this fraction of the commands."""
 FEWEST, FEWEST_AWAY = 10, 3
 """The minimum number of turns, and of turns away from the target, that are needed for a conclusion."""
 

@@ -48,7 +48,7 @@ class Call:
         return Cause("arguments-swapped", text, Where(self.module.file, self.line))
 
     def passed(self, node: ast.expr) -> ast.expr | None:
-        """Return the expression whose value the call passes for this parameter, or None if it is not a parameter."""
+        """Return the expression that the call passes for this parameter, or None if `node` is not a parameter."""
         given = self.arguments.get(node.id) if isinstance(node, ast.Name) else None
         return written(given, self.module.names)
 
@@ -89,7 +89,7 @@ def _creates(function: Function) -> bool:
 
 
 def _field(scene: CrashScene, call: Call) -> Cause | None:
-    """Return the cause if an argument that is not a float was assigned to a field of a message, else None."""
+    """Return the cause if an argument that is not a float was assigned to a float field, else None."""
     match = FIELD.search(scene.crash.message)
     value = assigned(scene, match["field"]) if match is not None and match["type"] in FLOAT else None
     given = call.passed(value) if value is not None else None

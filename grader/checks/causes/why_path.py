@@ -61,7 +61,7 @@ def why_elsewhere(evidence: Evidence) -> Cause:
 
 
 def why_replaced(evidence: Evidence) -> Cause | None:
-    """Return the cause if each command that drives the turtle is immediately replaced by another one, else None."""
+    """Return the cause if each command that drives the turtle is followed at once by one that does not, else None."""
     commands = evidence.commands
     after = {id(command): later for command, later in pairwise(commands)}
     driving = [command for command in commands[:-1] if command.linear[0]]
@@ -83,7 +83,7 @@ def all_zero(evidence: Evidence) -> str:
 
 
 def line_of_values(evidence: Evidence) -> Where | None:
-    """Return the line that sets angular.z (or linear.x, if only linear.x changes), or None."""
+    """Return the line that sets angular.z (or linear.x, if only linear.x changes), a line that publishes, or None."""
     code = evidence.code
     if len({command.angular for command in evidence.commands}) == 1 < len({each.linear for each in evidence.commands}):
         return code.assigned("linear", "x") or evidence.place("Twist", "publish")

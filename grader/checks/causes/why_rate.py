@@ -1,6 +1,6 @@
 """Explain why messages or log lines arrive too often, for example because of a loop without a pause.
 
-The wrong period of a timer is in grader.checks.causes.why_period.
+grader.checks.causes.why_period explains wrong periods of timers.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ NO_PAUSE_S = 0.05
 """If the mean interval (s) is longer than this, something in the loop takes time, for example an inner loop that
 waits."""
 SEVERAL = 0.1
-"""Successive calls explain a wrong rate if their number differs from the number of messages per period by at most this
-share."""
+"""Several calls in a function explain a wrong rate if their number differs from the number of messages per period by at
+most this fraction."""
 PAUSES = ("sleep", "sleep_for", "sleep_until", "spin_once", "wait", "get", "join", "input")
 """Functions and methods whose purpose is to wait."""
 FRAME_S = 0.016

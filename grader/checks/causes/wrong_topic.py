@@ -48,7 +48,7 @@ def _why(wanted: str, topic: str, evidence: Evidence, maker: str) -> Cause:
 
 
 def _has_turtle(evidence: Evidence, topic: str) -> bool:
-    """Return whether the simulator uses the topic, so that there is a turtle with that name."""
+    """Return whether the simulator uses the topic, which means that there is a turtle with that name."""
     ends = (end for graph in evidence.recording.graphs for end in graph.endpoints)
     return any(end.topic == topic and end.node == "/turtlesim" for end in ends)
 

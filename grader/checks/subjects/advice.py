@@ -32,7 +32,7 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
         return Finding(Status.SKIPPED, "Not judged, because the file of the node cannot be read, or contains no code.")
     cause = "A timer calls a method periodically, with a period that the node chooses."
     if loops(evidence) and not evidence.code.calls("spin_once"):
-        cause = "A node that runs its own loop receives no messages. With a timer, rclpy.spin does the waiting."
+        cause = "While a node runs its own loop, it receives no messages. With a timer, rclpy.spin does the waiting."
     if evidence.code.calls("create_rate"):
         cause = (
             "A rate from create_rate works only while another thread spins the node. A timer does not need an "
@@ -70,6 +70,6 @@ USES_TIMER = Kind(
     NoParams,
     uses_timer,
     advice=True,
-    about="Advises the student to use `create_timer` if the submission never calls it, "
-    "or if it sends its messages in a loop that sleeps.",
+    about="Advises the student to use a timer if the submission never calls `create_timer`, or sends its messages in a "
+    "loop that sleeps.",
 )

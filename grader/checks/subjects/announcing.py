@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 LATE_S = 1.05
 """The maximum time (s) until a message shows a change: slightly more than two periods of the topic."""
 AT_ONCE_S = 0.1
-"""If a turtle appears or disappears within this time (s) after a message, the message may contain its name or not."""
+"""If a turtle appears or disappears within this time (s) after a message, its name may be in the message or not."""
 EMPTY = "At this time, no target was left. Even then, the node must publish a message with an empty string."
 NOT_IN_NAMES = re.compile(r"\W")
 OFTEN = 3
@@ -96,7 +96,7 @@ def _has_targets(evidence: Evidence, gap_s: float, begin_s: float, most: Band) -
 
 
 def _wrong_names(evidence: Evidence, message: Announcement, heard: list[Announcement], expected: str) -> Finding | None:
-    """Return a failed finding if the announcement was wrong for more than a second, or else None."""
+    """Return a failed finding if a name in the message was wrong or missing for more than LATE_S, else None."""
     tracks = evidence.recording.tracks
     from_s, to_s = message.t_s - LATE_S, message.t_s
     where = evidence.place("publish")
@@ -152,7 +152,7 @@ def _not_there(evidence: Evidence, message: Announcement, strange: list[str], ex
 
 
 def _is_of_parts(name: str, known: set[str]) -> bool:
-    """Return whether a word of an announcement has punctuation, or consists of several names."""
+    """Return whether a word of an announcement contains punctuation, or more than one name."""
     return NOT_IN_NAMES.search(name) is not None or sum(each in name for each in known) > 1
 
 

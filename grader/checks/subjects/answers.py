@@ -153,7 +153,7 @@ def _right_answers(recording: Recording, params: GraphQuestion) -> tuple[str, ..
 
 
 def _all(recording: Recording, find: str) -> set[str]:
-    """Return all topics, types or nodes of the graph, as `find` says."""
+    """Return all topics, types or nodes of the graph, depending on `find`."""
     return {getattr(end, find) for graph in recording.graphs for end in graph.endpoints}
 
 

@@ -175,7 +175,7 @@ def _expected(params: Arc) -> str:
 
 
 def _chosen(evidence: Evidence, params: Arc) -> Steps:
-    """Return a boolean array: whether each step of the trajectory belongs to the arc."""
+    """Return a boolean array that is True for each step of the trajectory that belongs to the arc."""
     trajectory = evidence.trajectory
     chosen = (trajectory.steps > RESTS_M) & (trajectory.t_s > params.from_s) & (trajectory.t_s <= params.until_s)
     if params.color is None:
@@ -188,7 +188,7 @@ def _chosen(evidence: Evidence, params: Arc) -> Steps:
 
 
 def _pieces(evidence: Evidence, chosen: Steps) -> int:
-    """Return the number of pieces of the trajectory that are separated by other movements of the turtle."""
+    """Return the number of pieces into which other movements of the turtle divide the chosen steps."""
     moves = evidence.trajectory.steps > RESTS_M
     return int((np.diff(np.flatnonzero(chosen[moves])) > 1).sum()) + 1
 

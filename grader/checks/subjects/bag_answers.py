@@ -42,8 +42,8 @@ class BagAnswer:
         "duration",
         "rate",
         "radius",
-        about="The quantity: the number of messages of the topic, the time from the first to the last one (s), their "
-        "rate (Hz), or the radius of their circle (m).",
+        about="The quantity: the number of messages on the topic, the time (s) from the first message to the last one, "
+        "the rate (Hz) of the messages, or the radius (m) of the circle on which the poses lie.",
     )
     tolerance_percent: float = number(2.0, at_least=0, at_most=100, about="The maximum error of the answer.")
 

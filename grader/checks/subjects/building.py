@@ -150,7 +150,7 @@ def _raised(evidence: Evidence) -> Finding | None:
 
 
 def _other_type(evidence: Evidence) -> Where | None:
-    """Return the line of the build type in package.xml if the package has another build type, else None."""
+    """Return the line of the build type in package.xml if this type is not ament_python, else None."""
     manifest = evidence.manifest
     if manifest is None or manifest.problem is not None or manifest.build_type == "ament_python":
         return None

@@ -193,7 +193,7 @@ NO_GOAL_AFTER = Kind(
     "No goal follows a cancelled one",
     NoGoalAfter,
     no_goal_after,
-    about="After a `[[trial.call]]` of the service, the node sends no more goals to `/turtle1/rotate_absolute`.",
+    about="After a `[[trial.call]]` to the service, the node sends no more goals to `/turtle1/rotate_absolute`.",
 )
 SAYS_WHETHER_ACTIVE = Kind(
     "says_whether_active",
@@ -201,6 +201,6 @@ SAYS_WHETHER_ACTIVE = Kind(
     "The response says whether there was a goal",
     SaysWhetherActive,
     says_whether_active,
-    about="In the response to each `[[trial.call]]` of the service, `success` shows whether a goal of "
+    about="In the response to each `[[trial.call]]` to the service, `success` shows whether a goal of "
     "`/turtle1/rotate_absolute` was active.",
 )

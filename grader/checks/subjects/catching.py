@@ -56,7 +56,7 @@ class Catches:
 
 @dataclass(frozen=True, kw_only=True)
 class WithinReach:
-    """The service that removes a target, and the distance from which the node may call it (m)."""
+    """The service that removes a target, and the maximum distance (m) from which the node may call the service."""
 
     service: str = string("the full name of a service", start="/", about="The service that the node calls.")
     reach_m: float = number(above=0, about="The maximum distance of turtle1 from the target.")
@@ -115,7 +115,7 @@ def _uncaught(recording: Recording, gone: list[Track], service: str) -> Track | 
 def _without_driving(evidence: Evidence) -> tuple[str, str] | None:
     """Return how the node caught a target without driving to it, and the cause, or None.
 
-    A spawner of the submission may move and remove its own targets.
+    If the submission itself spawns the targets, it may move and remove them, so the result is None.
     """
     recording = evidence.recording
     if not evidence.trial.scenario.targets:
@@ -214,7 +214,7 @@ def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
     unseen = _uncaught(recording, caught(recording), params.service)
     if unseen is not None:
         observed = f"{shorten(unseen.turtle)} was removed, but the recording has no call to {params.service} for it."
-        text = "A recording keeps a limited number of calls. The node made too many."
+        text = "The node made more calls than a recording keeps."
         return failed(observed, expected, Cause("catch-again", text, where))
     return passed(f"Each time the node called {params.service}, the target was near.")
 

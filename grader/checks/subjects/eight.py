@@ -124,7 +124,7 @@ def _why_wall(evidence: Evidence, params: Eight) -> str:
 
 
 def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: bool) -> tuple[Finding | None, bool]:
-    """Return the failed finding about a lobe or None, and whether a value is near an edge of its tolerance."""
+    """Return a failed finding or None for a lobe, and whether a value is near an edge of its tolerance."""
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
     recording = evidence.recording
     subject = f"The {name} lobe, to the {lobe.side},"

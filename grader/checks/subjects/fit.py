@@ -28,12 +28,12 @@ if TYPE_CHECKING:
 IN_MODULE = ", in <module>"
 """The end of a traceback entry for code outside of functions."""
 SIGMAS = 6.0
-"""The maximum error of a correct result, in standard deviations of the best fit. Rounding errors are added to it."""
+"""The maximum error that noise may cause in a correct result, in standard deviations of the best fit."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class OneCall:
-    """One call that the trial makes to the student's function."""
+    """One call that the trial makes to the student's function or program."""
 
     call: str = string("the id of a call", about="The id of a `[[trial.points]]` or a `[[trial.bag]]`.")
 
@@ -127,7 +127,7 @@ def _missing(evidence: Evidence, called: Called, expected: str, name: str) -> Fi
 
 
 def _late(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
-    """Return a finding if a call did not return, or was not made because an earlier call was late, or None."""
+    """Return a finding if a call did not return, or was not made because an earlier call did not return, or None."""
     late = any(each.ended == TOO_LATE for each in evidence.run.called or ())
     if not late or called.ended not in (TOO_LATE, ""):
         return None

@@ -41,7 +41,7 @@ class SendsGoals:
     Each heading is `turn_deg` to the left of the previous heading.
     """
 
-    heading_deg: float = number(about="The heading of the goal, in degrees: 0 is to the right, 90 is up.")
+    heading_deg: float = number(about="The heading of the first goal, in degrees: 0 is to the right, 90 is up.")
     nth: float = number(1, at_least=1, about="The number of the first goal that is compared, counted from 1.")
     total: float = number(1, at_least=1, about="The number of goals that are compared.")
     turn_deg: float = number(0.0, about="The angle to the left from one goal to the next.")
@@ -87,7 +87,7 @@ def goals_of(evidence: Evidence) -> list[Goal]:
 
 
 def first_call_s(evidence: Evidence) -> float:
-    """Return the time of the trial's first call to a service of the node (s)."""
+    """Return the time (s) of the trial's first call to a service of the node."""
     return min((call.t_s for call in evidence.recording.calls if call.by_trial), default=math.inf)
 
 
@@ -141,7 +141,7 @@ def _no_more(evidence: Evidence, goals: list[Goal], expected: str) -> Finding:
 
 
 def _drove_until_s(evidence: Evidence, goal: Goal) -> float | None:
-    """Return the time of the last command that drove the turtle after the end of this goal (s), or None."""
+    """Return the time (s) of the last command that drove the turtle after the end of this goal, or None."""
     ended_s = math.inf if goal.ended_s is None else goal.ended_s
     return max((each.t_s for each in evidence.commands if each.t_s >= ended_s and any(each.linear)), default=None)
 

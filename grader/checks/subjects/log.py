@@ -50,7 +50,7 @@ def log_lines(evidence: Evidence, params: LogFormat) -> Finding:
 
 
 def lines_in(evidence: Evidence, params: LogFormat, when: str = "") -> Finding:
-    """Return the finding about the log lines. `when` describes the part of the log that the evidence contains."""
+    """Return the finding about the log lines. If the evidence has only part of the log, `when` describes this part."""
     example = student_log.Format(params.format).example()
     expected = f'The log contains lines such as "{example}".'
     if student_log.in_format(evidence.recording, params.format):

@@ -247,5 +247,5 @@ LOG_DISTANCE = Kind(
     "The log shows how far the turtle has driven",
     LogDistance,
     log_distance,
-    about="Each log line in the format shows how far the turtle had driven when the line was logged.",
+    about="Each log line that matches `format` shows how far the turtle had driven when the line was logged.",
 )

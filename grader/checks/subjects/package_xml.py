@@ -74,12 +74,12 @@ class Dependencies:
     imports: str = choice(
         "any",
         "declared",
-        about='"declared": the ROS 2 packages that the nodes of the exercise import must be declared too.',
+        about='With "declared", the ROS 2 packages that the nodes of the exercise import must be declared too.',
     )
 
 
 def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
-    """package.xml declares these packages, and if required all imported ones, as <depend> or <exec_depend>."""
+    """package.xml declares these packages and, if required, all imported packages as <depend> or <exec_depend>."""
     manifest = evidence.manifest
     imported = _imported(evidence) if params.imports == "declared" else {}
     needed = tuple(dict.fromkeys((*params.packages, *imported)))
@@ -176,7 +176,7 @@ def _why_not_declared(
 
 
 def _used(evidence: Evidence, package: str) -> bool:
-    """Return whether any Python file of the submission imports the package, so its name is not a typo."""
+    """Return whether any Python file of the submission imports the package. If so, its name is not a typo."""
     line = re.compile(rf"^\s*(from|import)\s+{re.escape(package)}\b".encode(), re.MULTILINE)
     return any(path.endswith(".py") and line.search(data) for path, data in evidence.submission.files.items())
 

@@ -197,7 +197,7 @@ DECLARES = Kind(
     "The parameter has a description and a range",
     Declares,
     declares,
-    about="In the response to a `[[trial.call]]` of `/NODE/describe_parameters`, the parameter is a float with a "
+    about="In the response to a `[[trial.call]]` to `/NODE/describe_parameters`, the parameter is a float with a "
     "description and the given range.",
 )
 SETS = Kind(

@@ -40,7 +40,7 @@ MOVED_M = 0.05
 """A turtle with a shorter trajectory than this (m) did not move."""
 TURNED_RAD = 0.1
 STRAIGHT_RADIUS_M = 50.0
-"""A circle with a larger radius than this (m) looks straight on an 11 m canvas."""
+"""A circle with a larger radius than this (m) looks straight on a field that is 11 m wide."""
 LIVES_S = 1.0
 """The time for which one command moves a turtle (s)."""
 LATE_S = 3.0

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from grader.trial.recording import Command
 
 EARLY_S = 0.1
-"""The trial may make a call this much earlier than planned because of rounding (s)."""
+"""Because of rounding, the trial may make a call earlier than planned by up to this time (s)."""
 BEFORE_S = 1.0
-"""The turtle must move during this time before the pause (s)."""
+"""The turtle must move at least once within this time (s) before the pause."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +38,7 @@ class Pause:
     until_s: float = number(above=0, about="The end of the pause, on the trial's clock.")
     within_s: float = number(0.5, above=0, about="The maximum time until the turtle stops, and until it continues.")
     goes_on: float = number(
-        1.0, at_least=0, at_most=1, about="1 if the turtle must continue after the pause, and 0 if it must not."
+        1.0, at_least=0, at_most=1, about="1 if the turtle must continue after the pause, and 0 if it need not."
     )
 
 

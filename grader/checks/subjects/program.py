@@ -85,7 +85,7 @@ def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
     expected = f"{name} prints one sentence about what is missing, and ends with an exit code other than 0."
     crash = read_traceback(called.stderr, evidence.submission.files)
     if crash is not None:
-        cause = "A user cannot read a traceback. If there are no poses, call sys.exit with a sentence."
+        cause = "A traceback does not help a user. If there are no poses, call sys.exit with a sentence."
         if "Twist" in crash.message:
             cause = "The program used a command as a pose. AnyReader.messages([]) returns the messages on all topics."
         observed = f"For a bag without poses, {name} ended with {crash.observed}."

@@ -25,9 +25,9 @@ STILL_M = 0.05
 MOVES_M = 1e-4
 """The minimum distance (m) between two successive poses of a turtle that moves."""
 FASTEST_HZ = 110.0
-"""One turtlesim publishes 62.5 poses per second.
+"""If the rate of the poses is higher than this (Hz), more than one turtlesim published them.
 
-If the rate of the poses is higher than this, more than one turtlesim published them.
+One turtlesim publishes 62.5 poses per second.
 """
 SHORTEST_S = 2.0
 ROUND_M = 0.05
@@ -157,13 +157,13 @@ def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:
 
 
 def _rate_hz(poses: Poses) -> float:
-    """Return the mean rate of the poses (Hz), or 0 if the bag is so short that a delay changes the rate."""
+    """Return the mean rate of the poses (Hz), or 0 if the bag is so short that a delay may change the rate."""
     took_s = poses.t_s[-1] - poses.t_s[0]
     return (len(poses.t_s) - 1) / took_s if took_s > SHORTEST_S else 0.0
 
 
 def _speed(poses: Poses) -> float:
-    """Return the mean speed from the first movement to the last (m/s)."""
+    """Return the mean speed (m/s) from the first movement to the last."""
     steps = np.hypot(np.diff(poses.x), np.diff(poses.y))
     moving = np.nonzero(steps > MOVES_M)[0]
     if not len(moving):
@@ -187,7 +187,7 @@ TOPIC = Kind(
     "The bag contains the topic",
     TopicInBag,
     topic_in_bag,
-    about="The bag contains messages of a topic, with the right type.",
+    about="The bag contains messages on the given topic, which has the given type.",
 )
 CIRCLE = Kind(
     "bag_circle",

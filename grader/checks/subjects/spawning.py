@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from grader.trial.observed import Call, Track
 
 ALIKE_M = 0.01
-"""Places that differ by less than this are the same (m)."""
+"""Places that differ by less than this (m) count as the same place."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -135,7 +135,7 @@ def places_differ(evidence: Evidence, params: PlacesDiffer) -> Finding:
 
 
 def _spawns(evidence: Evidence) -> list[Call]:
-    """Return the requests to /spawn."""
+    """Return the node's calls to /spawn."""
     return [call for call in calls_of(evidence) if not call.by_trial and call.service == "/spawn"]
 
 
@@ -227,7 +227,7 @@ SPAWNS = Kind(
     "The node spawns turtles",
     Spawns,
     spawns,
-    about="The node spawns a number of turtles with the right names, on the field and in different places.",
+    about="The node spawns the given number of turtles with the right names, on the field and in different places.",
 )
 PLACES_DIFFER = Kind(
     "places_differ",

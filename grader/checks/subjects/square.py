@@ -62,7 +62,7 @@ class Sides:
 
 
 def sides_of(trajectory: Trajectory, amount: int = SIDES) -> Sides:
-    """Split the trajectory of a figure with this number of sides at its corners."""
+    """Split the trajectory at its corners. `amount` is the number of sides of the required figure."""
     moves = trajectory.steps > RESTS_M
     straight = moves & (np.abs(trajectory.turn) <= STRAIGHT_RAD_M * trajectory.steps)
     curved = moves & ~straight

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 REST_S = 0.5
 """The turtle must stand still for at least this time at the end (s)."""
 STILL = 1e-3
-"""Below this speed (m/s, rad/s), a turtle stands still."""
+"""A turtle with a lower speed (m/s or rad/s) is considered to stand still."""
 ZEROS = "Publish a command with all values 0, and keep publishing it or stop the timer."
 
 
@@ -38,7 +38,7 @@ def no_standstill(evidence: Evidence, expected: str) -> Finding | None:
 
 
 def silent_while_moving(evidence: Evidence) -> bool:
-    """Return whether the last command moves the turtle, and the trial continues for at least one second after it."""
+    """Return whether the last command moves the turtle, and arrives at least one second before the end of the trial."""
     last = evidence.commands[-1] if evidence.commands else None
     if last is None or max(abs(last.linear[0]), abs(last.angular[2])) <= STILL:
         return False

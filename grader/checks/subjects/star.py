@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 BY_GOALS = "rotate_absolute"
 TOGETHER_S = 0.03
-"""Two commands that arrive within this time were sent in the same call (s)."""
+"""Two commands that arrive within this time (s) were sent in the same call of a method."""
 
 
 @dataclass(frozen=True, kw_only=True)

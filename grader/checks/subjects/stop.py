@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Stop:
-    """The maximum time from SIGINT to the exit of the node (s of wall time)."""
+    """The maximum wall time (s) from SIGINT to the exit of the node."""
 
     within_s: float = number(
         3.0, above=0, at_most=60, about="The maximum time that the node may run after Ctrl-C (wall time)."

@@ -26,8 +26,8 @@ TEXT = (
     "pose on its topic, advance the clock, and look at the messages that arrive."
 )
 NUMBERS = (
-    "A test that takes the expected number from the node accepts every number, wrong ones too. Write the numbers into "
-    "the tests."
+    "A test that takes the expected number from the node accepts every number, even a wrong one. Write the numbers "
+    "into the tests."
 )
 
 

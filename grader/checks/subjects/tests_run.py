@@ -28,7 +28,7 @@ MOST_TEXT = 120
 
 
 def found(evidence: Evidence, _: NoParams) -> Finding:
-    """Pytest finds tests in the package."""
+    """The package contains tests that pytest finds."""
     runs = evidence.bench.runs
     most = max((run.collected for run in runs), default=0)
     code = code_of(evidence)

@@ -106,7 +106,7 @@ def _all_hold(bands: tuple[Band, ...], six: Six) -> bool:
 
 
 def _right_values(evidence: Evidence, wanted: Six, off: list[int]) -> tuple[Edit, ...]:
-    """Return the edits that correct the wrong fields: they change assignments on separate lines, or add them."""
+    """Return the edits that correct the wrong fields: each changes an assignment on a separate line, or adds one."""
     edits: list[Edit] = []
     sets: list[tuple[Where, str]] = []
     for index, field in enumerate(FIELDS):

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 EXPECTED = "No callback of the node waits."
 SILENT_S = 2.0
-"""A node hangs if it does nothing for this long (s) after a response."""
+"""A node is considered to hang if it does nothing for this time (s) after a response."""
 ALSO_S = 0.05
-"""Anything that arrives at most this long (s) after a response may have been sent before the response."""
+"""Anything that arrives within this time (s) after a response may have been sent before the response."""
 SAME_GROUP = (
     "Several threads do not help here. The executor never runs two callbacks of the same callback group at the same "
     "time, so nothing receives the response: a deadlock. Use call_async, or give the client its own callback group."

@@ -65,7 +65,7 @@ def cause(line: str, error: str) -> str:
             NO_NAME.format("Node"),
         ),
         ("This is a future.", "x = answer.name", None, NO_ATTRIBUTE.format("'Future' object", "name")),
-        ("the object is called this", "this.count = 1", None, NO_NAME.format("this")),
+        ("use the name this for the object", "this.count = 1", None, NO_NAME.format("this")),
         ("A method can use self only if", "self.count = 1", None, NO_NAME.format("self")),
         (
             "is called here without a value for 'step'.",

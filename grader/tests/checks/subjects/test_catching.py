@@ -258,7 +258,11 @@ OFTEN = tuple(catch(1.3 + 0.01 * number, "near") for number in range(5))
         ("The targets were far and near. The name is a field of the request.", (catch(1.4, "mouse"),), OFTEN),
         ("The node called /catch for near repeatedly.", OFTEN, OFTEN[:3]),
         ("One call is enough.", OFTEN, OFTEN[:3]),
-        ("Until the response arrives, store in an attribute that the node has called the service.", OFTEN, OFTEN[:3]),
+        (
+            "Store in an attribute whether the node is waiting for a response. While it is waiting, do not call again.",
+            OFTEN,
+            OFTEN[:3],
+        ),
     ],
 )
 def test_a_sentence_about_the_reach_is_true(words: str, true: tuple[Call, ...], near: tuple[Call, ...]) -> None:

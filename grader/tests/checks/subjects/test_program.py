@@ -145,9 +145,9 @@ CRASH = raised("no-poses", "IndexError: list index out of range")
             TAKEN,
             CRASH,
         ),
-        ("A user cannot read a traceback.", CRASH, TAKEN),
+        ("A traceback does not help a user.", CRASH, TAKEN),
         (
-            "A user cannot read a traceback. If there are no poses, call sys.exit with a sentence.",
+            "A traceback does not help a user. If there are no poses, call sys.exit with a sentence.",
             CRASH,
             ended("exit 1"),
         ),
