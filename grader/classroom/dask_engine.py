@@ -2,8 +2,8 @@
 
 The machines need only this project, and receive submissions as bytes. Each thread of a Dask worker runs one of our
 worker processes (worker.py), so a submission that kills that process does not kill the Dask worker. This module decides
-which Dask worker gets which submission. Each thread gets one submission at a time, without a queue. Therefore, the
-engine knows which submissions were running on a machine that was lost, and does not blame other submissions.
+which Dask worker gets which submission. Each thread gets one submission at a time, without a queue. Therefore, if a
+machine is lost, only the submissions that were running on this machine count as failed attempts.
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 UNKNOWN = ""
 """The exercise id of a submission whose exercise cannot be determined from the names of the folders."""
 OWN = "exercises"
-"""The folder of a clone in which the student works."""
+"""The folder of a clone that contains the student's work."""
 _OF_PROGRAMS = (".git", ".github", ".gitlab", ".idea", ".ipynb_checkpoints", ".venv", ".vscode", "__MACOSX")
 """Folders that programs create next to submissions."""
 _OF_THE_COURSE = ("course", "docs", "grader", "solutions")

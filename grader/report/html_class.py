@@ -182,7 +182,7 @@ def _link(file: Path, folder: Path) -> str:
 
 
 def failures(entries: Iterable[Entry]) -> list[FailedCheck]:
-    """Return the failed checks, most frequently failed first."""
+    """Return the failed checks, beginning with the check that most submissions failed."""
     checks: dict[tuple[str, str], FailedCheck] = {}
     for entry in entries:
         for outcome in entry.failed:

@@ -1,4 +1,4 @@
-"""The trials of one submission. The trials start during the build, and all trials in simulated time run in parallel.
+"""The trials of one submission. The trials start during the build, and several trials can run in parallel.
 
 All trials wait for the build, so they start one after the other, which leaves most of a processor to the build.
 Simulated time does not depend on the speed of the machine, so parallel trials do not affect each other. A trial in wall

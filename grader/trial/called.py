@@ -1,4 +1,4 @@
-"""Called: the result of calling a student's function, or of running a student's program, once."""
+"""Called: the result of one call of a student's function, or of one run of a student's program."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ TOO_LATE = "too late"
 class Called:
     """The result of the call with this id.
 
-    `ended` describes how the process ended: "exit 0", "signal 9", TOO_LATE, or an empty string if this is unknown.
-    `values` are the numbers that a function returned, if there are at most MOST_VALUES. `kind` is the type of the
-    returned value.
+    `ended` describes how the process ended, such as "exit 0" or "signal 9". It is TOO_LATE if the call took too long,
+    and an empty string if this is unknown. `values` are the numbers that a function returned, if there are at most
+    MOST_VALUES. `kind` is the type of the returned value.
     """
 
     id: str

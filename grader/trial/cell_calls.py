@@ -2,9 +2,9 @@
 
 This file runs as a separate script. The script reads one line of JSON (`calls`, `script`, `function`, `python_path`,
 `env`, `install`, `files`) and then the install tree, a tar stream, from standard input. The script writes one line of
-JSON for each call. A call cannot write such lines itself: the process is not dumpable, so its child processes cannot
-open its standard output, and it is the first process of the cell, so that no other process has this standard output.
-All processes that a call has started are killed before the next call, because they could change its result.
+JSON for each call. A call cannot write such lines itself: this process is not dumpable, so its child processes cannot
+open its standard output, and it is the first process of the cell, so no other process has this standard output. All
+processes that a call has started are killed before the next call, because they could change its result.
 """
 
 from __future__ import annotations

@@ -73,7 +73,7 @@ class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grad
 
 
 class RefusedError(Exception):
-    """The machine denied a request of the simulator, such as opening a file. The node is never the cause of this."""
+    """The machine refused an operation of the simulator, such as opening a file. The node is never the cause."""
 
 
 def main(nodes: socket.socket | None = None) -> None:

@@ -72,10 +72,10 @@ class Postponed(types.ModuleType):
 
 @contextmanager
 def postponed(names: Iterable[str] = POSTPONED) -> Iterator[list[Postponed]]:
-    """Postpone the import of these modules by other modules that are imported inside the context.
+    """Give placeholders for these modules to all modules that are imported inside the context.
 
-    Modules that are imported later get the real modules. Inside the context, the part of ROS 2 that generates the code
-    of messages is not imported at all.
+    A placeholder imports its module when it is used. Modules that are imported after the context get the real modules.
+    Inside the context, the part of ROS 2 that generates the code of messages is not imported at all.
     """
     modules = [Postponed(name) for name in names if name not in sys.modules]
     sys.modules.update({module.__name__: module for module in modules})

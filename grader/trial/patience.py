@@ -1,6 +1,7 @@
 """Time limits for a node.
 
-The limits apply to CPU time and to the time for which the node sleeps, so the load of the machine has no effect.
+The limits apply to CPU time and to the time for which the node sleeps, so the load of the machine has hardly any
+effect.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""The JSON of a recording, which the conductor sends to the grader, and which is stored in a recording on the disk."""
+"""Convert a recording to JSON and back.
+
+The conductor sends this JSON to the grader, and recordings on the disk contain it.
+"""
 
 from __future__ import annotations
 

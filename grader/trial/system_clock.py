@@ -1,4 +1,4 @@
-"""Detect whether the system's clock was set while a trial ran, or whether the machine was suspended.
+"""Detect whether the system's clock was set while a trial was running, or whether the machine was suspended.
 
 The timers of a node in wall time follow this clock. If it is set back by an hour, each timer pauses for an hour.
 """
@@ -21,7 +21,7 @@ class SystemClock:
         self._was_set = False
 
     def was_set(self) -> bool:
-        """Return whether the clock is different now, or was different in an earlier call."""
+        """Return whether this call or an earlier call has found that the clock was set."""
         self._was_set = self._was_set or abs(_ahead_s() - self._ahead_s) > SET_S
         return self._was_set
 

@@ -1,4 +1,4 @@
-"""The time limit of a whole trial, which only ends trials that would never end on their own."""
+"""The time limit of a whole trial. Only a trial that would never end on its own should reach it."""
 
 from __future__ import annotations
 

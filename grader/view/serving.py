@@ -79,7 +79,7 @@ async def serve(
 
 
 async def _open(place: Place, door: Door, hub: Hub, *, opens: bool) -> bool:
-    """Open the page if `opens` is true, unless a tab from an earlier view reconnects. Return False if this failed."""
+    """Open the page if `opens` is true, unless a tab from an earlier view reconnects. Return False on failure."""
     if not opens:
         return True
     for _ in range(_TIMES if place.before else 0):

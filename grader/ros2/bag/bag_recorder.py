@@ -145,7 +145,7 @@ class Recorder:
         """Write the messages that arrived before the recording ended but have not been written yet.
 
         Messages that have already arrived are read directly from the subscriptions, since an executor handles callbacks
-        in any order. The depth of the queue limits the number of waiting messages.
+        in any order. The depth of the queue limits the number of these messages.
         """
         for subscription in self._node.subscriptions:
             for _ in range(bag_qos.DEPTH):

@@ -18,7 +18,7 @@ MOST_LINES = 2000
 MOST_TEXT = 4000
 """The maximum length of a log message in characters."""
 MOST_NAME = 300
-"""The maximum length of the name of a node, a file or a function in characters."""
+"""The maximum length of the names of nodes, files and functions (characters)."""
 MOST_CHARACTERS = 1_000_000
 """The maximum length of all log messages that are kept. As JSON, a character takes up to 12 bytes, and turtle_relay.py
 accepts 16 MiB."""
