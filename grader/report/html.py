@@ -76,7 +76,7 @@ class ShownCheck:
 
 
 def save_html(evidence: Evidence, report: Report, file: Path) -> None:
-    """Write the page. Raises UsageError if the file cannot be written."""
+    """Write the page. If the file cannot be written, raises the errors of `output_file.write`."""
     save_page(html_page(evidence, report), file)
 
 

@@ -222,7 +222,12 @@ def class_page(reports: ClassReports) -> str:
 
 
 def save_class_page(folder: Path, file: Path) -> None:
-    """Write the page for the reports below a folder. Raises UsageError if the page cannot be written."""
+    """Write the page for the reports below a folder.
+
+    Raises:
+        UsageError: there is no report, or the path of the page is not valid or not writable.
+        MachineError: the disk is full, or the machine failed in another way.
+    """
     save_page(class_page(read(read_class, folder)), file)
 
 

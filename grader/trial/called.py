@@ -23,7 +23,7 @@ class Called:
     """The result of the call with this id.
 
     `ended` describes how the process ended, such as "exit 0" or "signal 9". It is TOO_LATE if the call took too long,
-    and an empty string if this is unknown. `values` are the numbers that a function returned, if there are at most
+    and empty if the call has no result. `values` are the numbers that a function returned, if there are at most
     MOST_VALUES. `kind` is the type of the returned value.
     """
 

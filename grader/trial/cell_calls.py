@@ -118,7 +118,7 @@ def _ended(child: int) -> str:
 
 
 def _end_processes(child: int) -> None:
-    """Kill the processes that a call has started: in a cell, all of them, and otherwise its process group."""
+    """Kill all processes that a call has started. Without a cell, kill only its process group."""
     with suppress(ProcessLookupError):
         if os.getpid() == 1:
             os.kill(-1, signal.SIGKILL)  # all processes of the cell, except this one

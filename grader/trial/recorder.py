@@ -132,7 +132,7 @@ class Recorder(Node):
 
     @property
     def offers(self) -> tuple[Offer, ...]:
-        """The services of other nodes, as found in snapshots, if `follows_services` is set."""
+        """The services that other nodes offered when a snapshot was taken, if `follows_services` is set."""
         return tuple(sorted(self._offers, key=lambda offer: (offer.service, offer.type, offer.node)))
 
     def follow_services(self) -> None:

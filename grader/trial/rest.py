@@ -74,7 +74,7 @@ class Look:
 
 @dataclass(frozen=True)
 class Wait:
-    """The reason why a thread is waiting: the name of a system call, "futex", "running" and so on.
+    """The reason why a thread is waiting, such as "futex" or "nanosleep", or "running" if it is not waiting.
 
     `timed` says whether the wait has a timeout.
     """
