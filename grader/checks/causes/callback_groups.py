@@ -21,8 +21,8 @@ SELF = "self."
 def in_default_group(evidence: Evidence, wait: Wait) -> bool:
     """Return whether the client of this wait and the callback that waits are both in the node's default callback group.
 
-    The executor never calls two callbacks of this group at the same time. The result is True only if one class creates
-    the client, registers the callback and defines it as a method.
+    The executor never calls two callbacks of this group at the same time. The result is True only if the same class
+    defines the callback as a method, registers it, and creates the client.
     """
     modules = [module for module in evidence.code.modules if module.file == wait.where.file]
     if any(getattr(node, "attr", "").endswith("default_callback_group") for each in modules for node in each.nodes):

@@ -198,8 +198,8 @@ def _init_misspelt(scene: CrashScene) -> Cause | None:
         found = [name for name in names if name.strip("_") in ("init", "int", "inti") or name == "__intit__"]
         if "__init__" not in names and found:
             text = (
-                f"The class has a method {found[0]}, but Python calls only __init__ when it creates an object: "
-                "init with two underscores on each side."
+                f"The class has a method {found[0]}, but only __init__ is called when an object is created. Write two "
+                "underscores on each side."
             )
             place = scene.at(names[found[0]])
             return Cause("init-misspelt", text, place).fixed_by(at(place, found[0], "__init__"))

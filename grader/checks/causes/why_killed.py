@@ -21,7 +21,7 @@ LONGEST_S = 1.0
 
 
 def why_killed(evidence: Evidence, track: Track, service: str) -> Cause:
-    """Return the cause for a target that was removed before a node called the service that catches targets."""
+    """Return the cause for a target that was removed before `service`, which catches targets, was called for it."""
     name = shorten(track.turtle)
     text = f"Remove a target only in the callback of {service}."
     gone_s = track.gone_s or 0.0

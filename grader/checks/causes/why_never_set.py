@@ -1,4 +1,4 @@
-"""Explain why a node sends nothing: the method waits for an attribute that always stays None."""
+"""Explain why a node sends nothing: its methods wait for an attribute that always stays None."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def why_no_error(evidence: Evidence) -> Cause:
-    """Return the cause: an exception that is created but not raised, or no check at all."""
+    """Return the cause: the exception is created but not raised, its line is not reached, or there is no check."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.Return) and _is_error(node.value):

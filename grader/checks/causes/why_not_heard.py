@@ -1,4 +1,4 @@
-"""Explain with the events in the node under test why a student's test has received too few messages, or none."""
+"""Explain, with the events in the node under test, why a student's test has not received enough messages."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ COUNTED = re.compile(r"assert (?P<received>\d{1,6}) (?:==|>=|>) (?P<wanted>\d{1,
 
 
 def why_not_heard(run: NodeRun, code: TestCode, right: Behaviour) -> Cause | None:
-    """Return the reason why a test has received too few commands, or none, from the correct node, or None."""
+    """Return the reason why a test has not received enough commands from the correct node, or None."""
     events = run.events
     if run.over or events is None:
         return None

@@ -19,7 +19,7 @@ CREATE_OBJECT = "Add parentheses after the class name to create an object."
 
 
 def class_for_object(scene: CrashScene, owner: str, attribute: str) -> Cause:
-    """Return the cause for a class `owner` that is used like an object, and the line that assigns it to a name."""
+    """Return the cause for a class `owner` that is used like an object, with the line that assigns it, if known."""
     text = f"{shorten(owner)} is a class. {CREATE_OBJECT}"
     used = [each for each in scene.on_line if isinstance(each, ast.Attribute) and each.attr == attribute]
     holders = {dotted(each.value) for each in used} - {owner}

@@ -33,7 +33,7 @@ NEARER_M = 0.5
 A smaller difference does not count, because the turtle moves while the node decides.
 """
 SLACK_M = 0.1
-"""The additional distance that is allowed because a pose is slightly old when the node decides (m)."""
+"""The additional distance (m) that is allowed because a pose is slightly old when the node decides."""
 OFTEN = 3
 """The maximum number of calls to the service for one target. A node may call again if a response is late."""
 

@@ -31,7 +31,7 @@ DATA = (ast.Constant, ast.List, ast.Tuple, ast.Dict, ast.Set, ast.JoinedStr)
 
 
 def entry_point(evidence: Evidence, _: NoParams) -> Finding:
-    """The executable is installed where `ros2 run` looks, and its entry point names a callable in a readable module."""
+    """`ros2 run` finds the executable, and its entry point names a callable in a module that Python can read."""
     executable, build = evidence.trial.executable, evidence.built
     target = build.entry_points.get(executable)
     if target is None:

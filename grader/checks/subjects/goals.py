@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 TYPE = "turtlesim/action/RotateAbsolute"
 SAME_RAD = 0.02
 HALF_TURN_S = 3.2
-"""The longest time that the turtle needs to reach a goal: it turns by at most pi rad, at 1 rad/s."""
+"""The longest time (s) that the turtle needs to reach a goal: it turns by at most pi rad, at 1 rad/s."""
 STILL_DRIVES_S = 0.5
 """If the node drives the turtle within this time (s) before the end of the trial, its drive has not ended."""
 LARGE_RAD = 7.0

@@ -39,7 +39,7 @@ LEVELS = ("info", "warning", "warn", "error", "fatal")
 
 @dataclass(frozen=True, kw_only=True)
 class LogFormat:
-    """The format of a log line with its numbers in braces: "Hello {counter}", "x={x:.2f}"."""
+    """The format of a log line with its numbers in braces, such as "Hello {counter}" or "x={x:.2f}"."""
 
     format: str = string("a log line with its numbers in braces", about=FORMAT)
 

@@ -137,7 +137,7 @@ def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:
         return failed("The path in the bag is not a circle.", expected, Cause("not-round", cause, where))
     driven = abs(turns_about(x, y, circle.x, circle.y))
     if not Band.around(params.radius_m, params.radius_m * params.tolerance_percent / 100.0).holds(circle.radius):
-        cause = "The radius is speed / turning speed. Compare the result with your numbers."
+        cause = "The radius is the speed divided by the turning speed. Compare the result with your numbers."
         observed = f"The circle in the bag has a radius of {circle.radius:.2f} m."
         return failed(observed, expected, Cause("wrong-radius", cause, where))
     if not driven >= params.turns - 0.01:
