@@ -72,7 +72,8 @@ def grade(
     out: Annotated[
         Path,
         typer.Option(
-            help="Folder for the results. Submissions with a result in this folder are not graded again.", metavar="DIR"
+            help="Folder for the results. Submissions with a valid result in this folder are not graded again.",
+            metavar="DIR",
         ),
     ] = Path("grades"),
     fail_under: Annotated[

@@ -44,7 +44,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the findings of the checks, or the reports."""
+    """Print the results of the checks, the reports, or both."""
     from grader.graph.discovery import cli_node, settle
 
     reports = {name: made for name, made in _REPORTS.items() if made[0] != "package" or not args.exclude_packages}
