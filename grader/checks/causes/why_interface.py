@@ -31,7 +31,8 @@ def why_interface(scene: CrashScene) -> Cause | None:
         text = f"You can create objects only of the parts of this type: add .{part} before the parentheses."
         return Cause("interface-part", text)
     if OF_AN_ACTION.search(scene.crash.message):
-        return Cause("wrong-type", "This is the type of an action. create_client is for services; see ActionClient.")
+        text = "This is the type of an action. create_client is for services. For an action, use ActionClient."
+        return Cause("wrong-type", text)
     match = NO_ATTRIBUTE.search(scene.crash.message)
     if match is None:
         return None

@@ -56,9 +56,9 @@ def why_rejected(run: NodeRun, code: TestCode, numbers: str = "") -> Cause:
     false = always_false(code)
     if false is not None:
         return false
-    text = "Compare the test with the promise in wall_guard.py. Does the test give the node enough time?"
+    text = "Compare the test with the promises in wall_guard.py. Does the test give the node enough time?"
     if numbers:
-        text = f"Compare the test with the promise, and with your numbers: {numbers}. Does the node get enough time?"
+        text = f"Compare the test with the promises, and with your numbers: {numbers}. Does the node get enough time?"
     return Cause("rejects-right", text, where)
 
 

@@ -59,7 +59,7 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
         if last is not None and moving is None and not (last.linear[0] or last.angular[2]):
             cause = (
                 "The last command has all values 0, as if the turtle had arrived. "
-                "Compare the numbers of the goal in the code with those of the task."
+                "Compare the position of the goal in the code with the position in the task."
             )
             if end <= NEARLY_M and _in_code(evidence, params.x_m, params.y_m):
                 cause = (

@@ -38,7 +38,7 @@ class Spawns:
     name: str = string(
         "the beginning of a name",
         default="target",
-        about="The prefix of the names of the turtles. A number follows the prefix.",
+        about="The prefix of the turtles' names. A number follows the prefix.",
     )
     low_m: float = number(1.0, at_least=0, about="The smallest allowed x or y of a turtle.")
     high_m: float = number(10.0, at_least=0, about="The largest allowed x or y of a turtle.")
@@ -49,7 +49,7 @@ class PlacesDiffer:
     """The id of another trial in which the same node ran, and the prefix of its turtles' names."""
 
     other: str = string("the id of a trial", about="The id of another trial of the same node.")
-    name: str = string("the beginning of a name", default="target", about="The prefix of the names of the turtles.")
+    name: str = string("the beginning of a name", default="target", about="The prefix of the turtles' names.")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -23,7 +23,7 @@ SERVICE = "RuntimeError: The service type provided is not valid (<class 'turtles
             "self.create_client(RotateAbsolute, '/turtle1/rotate_absolute')",
             SERVICE.format("action._rotate_absolute.Metaclass_RotateAbsolute"),
             SERVICE.format("msg._pose.Metaclass_Pose"),
-            "This is the type of an action. create_client is for services; see ActionClient.",
+            "This is the type of an action. create_client is for services. For an action, use ActionClient.",
         ),
         (
             "print(future.name)",

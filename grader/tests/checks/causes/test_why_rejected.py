@@ -54,7 +54,8 @@ def cause(message: str, *, over: bool = False) -> str:
 )
 def test_the_message_of_pytest_decides(message: str, near: str, words: str) -> None:
     assert cause(message).startswith(words)
-    assert cause(near) == "Compare the test with the promise in wall_guard.py. Does the test give the node enough time?"
+    text = "Compare the test with the promises in wall_guard.py. Does the test give the node enough time?"
+    assert cause(near) == text
 
 
 @pytest.mark.parametrize("over", [True, False])

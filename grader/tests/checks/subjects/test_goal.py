@@ -75,8 +75,8 @@ def test_a_turtle_that_is_no_nearer_in_the_end_has_driven_away_and_no_wall_is_na
 
 
 def test_a_node_that_stops_somewhere_else_has_another_goal() -> None:
-    assert "the numbers of the goal" in goal(ahead(3.0)).cause
-    assert "the numbers of the goal" not in goal(ahead(3.0), stops=False).cause
+    assert "the position of the goal" in goal(ahead(3.0)).cause
+    assert "the position of the goal" not in goal(ahead(3.0), stops=False).cause
 
 
 def test_a_turtle_at_the_wall_learns_about_angles() -> None:
