@@ -10,6 +10,7 @@ import pytest
 from grader.checks.causes.crash import START, end_observed
 from grader.checks.outcome import Status
 from grader.tests.checks.made import (
+    BUILD,
     NODE_FILE,
     TOPIC,
     evidence,
@@ -33,6 +34,14 @@ OTHER = "geometry_msgs/msg/TwistStamped"
 
 def of(shape: str, *changes: tuple[str, str]) -> Evidence:
     return evidence(SHAPES[shape](), node(*changes))
+
+
+def test_an_executable_that_is_not_installed_does_not_crash() -> None:
+    """An exercise may have no check of the entry point."""
+    found = finding(
+        "start", evidence(SHAPES["crash at the start"](), build=replace(BUILD, executables=(), entry_points={}))
+    )
+    assert found.observed == "The package has no executable draw_circle."
 
 
 @pytest.mark.parametrize("check", ["start", "node-name", "topic", "type", "stop", "timer"])
