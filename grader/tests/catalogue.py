@@ -67,8 +67,8 @@ To add a mistake:
 python -m pytest -m "" grader/tests/test_mistakes.py -k NNN
 ```
 
-A message has at most 60 words. It says what was observed, what was expected and where, and it never contains a line of
-the solution. Tests check these rules. A false diagnosis is worse than none. In `expected.toml`, list under `never`
+A message has at most 60 words: what was observed, what was expected, and where. It never contains a line of the
+solution. Tests check these rules. A false diagnosis is worse than none. In `expected.toml`, list under `never`
 what the report must not contain.
 """
 

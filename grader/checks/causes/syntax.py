@@ -116,7 +116,7 @@ OTHERWISE = "The mistake is often at the end of the previous line: a bracket, a 
 
 
 def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
-    """Return the cause of a SyntaxError, with the line to look at if Python reports a different line."""
+    """Return the cause of a SyntaxError, with the line that must change if Python reports a different line."""
     line = _line(unreadable, data)
     conflict = line_of(data, CONFLICT) or (unreadable.line if line.rstrip() == MIDDLE else None)
     open_string = "unterminated string" in unreadable.message and unreadable.line != conflict

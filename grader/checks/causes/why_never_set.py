@@ -57,7 +57,7 @@ def _why(evidence: Evidence, module: Module, held: Held, sends: Sequence[str]) -
 
 
 def _local(own: ast.ClassDef, name: str) -> int | None:
-    """Return the first line of a method of the class that assigns to a local variable of this name, or None."""
+    """Return the first line in the methods of the class that assigns a local variable with this name, or None."""
     for method in own.body:
         inside = ast.walk(method) if isinstance(method, ast.FunctionDef) and method.name != "__init__" else ()
         for node in inside:
