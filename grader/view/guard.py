@@ -8,6 +8,7 @@ In addition, pages of other sites do not have the token.
 from __future__ import annotations
 
 import hmac
+import re
 import secrets
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 NAMES = ("127.0.0.1", "localhost")
 """The host names that a request for this machine may contain. All ports are allowed, since ssh may forward another
 one."""
+_HOST = re.compile(rf"({'|'.join(map(re.escape, NAMES))})(:\d+)?", re.ASCII)
+"""The policy of each response contains the host, so the host must contain nothing else."""
 
 
 def refusal(headers: Mapping[str, str], *, live: bool) -> str | None:
@@ -27,7 +30,7 @@ def refusal(headers: Mapping[str, str], *, live: bool) -> str | None:
     `live` is True if the request opens the connection for reading the state and driving the turtles.
     """
     host = headers.get("host", "")
-    if host.rpartition(":")[0] not in NAMES and host not in NAMES:
+    if not _HOST.fullmatch(host):
         return f"This page is only served to {' and '.join(NAMES)}."
     origin = headers.get("origin")
     if origin is None and live:

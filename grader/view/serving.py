@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import uvicorn
 
 from grader.view import browser
+from grader.view.connections import MOST, Connection
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -35,8 +36,9 @@ _SETTINGS: dict[str, Any] = {
     # Do not trust an address that the client sends in a header.
     "proxy_headers": False,
     "timeout_graceful_shutdown": 1,
-    # Limit the connections, so that clients that never finish cannot use up the process's files.
-    "limit_concurrency": 200,
+    "http": Connection,
+    # Connections that are not idle are limited, too, so that they cannot use up the process's files.
+    "limit_concurrency": 2 * MOST,
 }
 
 

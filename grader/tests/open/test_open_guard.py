@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import socket
+from contextlib import ExitStack
 from http.client import HTTPConnection
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -14,7 +16,9 @@ from websockets.typing import Origin
 
 from grader.open.desk_server import LARGEST
 from grader.tests.open.course import CIRCLE
+from grader.tests.ros2.world import children
 from grader.tests.waiting import HANG_S
+from grader.view.connections import MOST
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -167,6 +171,30 @@ def test_clients_that_never_finish_do_not_stop_the_page(begun: Course) -> None:
     assert b" 408 " in slow[-1].recv(65536)
     for each in slow:
         each.close()
+
+
+def test_many_idle_connections_do_not_keep_the_page_out(begun: Course) -> None:
+    """Another user of the machine can connect, too."""
+    port = int(begun.host.partition(":")[2])
+    with ExitStack() as stack:
+        for number in range(2 * MOST + 100):
+            idle = stack.enter_context(socket.create_connection(("127.0.0.1", port), HANG_S))
+            if number % 3 == 1:
+                idle.sendall(f"GET /assets/book.js HTTP/1.1\r\nHost: {begun.host}\r\n\r\n".encode())
+            elif number % 3 == 2:
+                idle.sendall(b"GET / HTTP/1.1\r\nHost: ")
+        assert answer(begun, "GET", "/verdict", own(begun))[0] == 200
+        assert len(list(Path(f"/proc/{server_of(begun)}/fd").iterdir())) < 1.5 * MOST
+
+
+def server_of(course: Course) -> int:
+    """Return the process that serves the page."""
+    (pid,) = (pid for pid in children(course.processes[-1].pid) if b"grader.open" in command_line(pid))
+    return pid
+
+
+def command_line(pid: int) -> bytes:
+    return Path(f"/proc/{pid}/cmdline").read_bytes()
 
 
 def test_a_wrong_address_says_so(begun: Course, browser: Browser) -> None:

@@ -25,7 +25,10 @@ def test_the_page_itself_may_come_in(host: str) -> None:
 
 @pytest.mark.parametrize(
     "host",
-    ["", "evil.example", "evil.example:4711", "127.0.0.1.evil.example:4711", "0.0.0.0:4711", "localhost.:1", "::1"],
+    [
+        *("", "evil.example", "evil.example:4711", "127.0.0.1.evil.example:4711", "0.0.0.0:4711", "localhost.:1"),
+        *("::1", "127.0.0.1:4711; script-src *", "127.0.0.1:x", "localhost:"),
+    ],
 )
 def test_another_name_for_this_machine_is_refused(host: str) -> None:
     assert refusal({"host": host, "origin": f"http://{host}"}, live=True)
