@@ -50,14 +50,14 @@ class ClassFolders:
         Raises MachineError if the database cannot be read or written.
         """
         from nbgrader.api import Gradebook
-        from sqlalchemy.exc import OperationalError, SAWarning
+        from sqlalchemy.exc import DatabaseError, SAWarning
 
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SAWarning)
             try:
                 with Gradebook(self.course.db_url, self.course.course_id) as opened:
                     yield opened
-            except OperationalError as error:
+            except DatabaseError as error:
                 message = f"The gradebook of {self.course.root} could not be read or written: {error.orig}."
                 raise MachineError(message) from error
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Status
@@ -158,6 +158,8 @@ def _put_together(
     for student, step in submissions:
         exercise, submitted = find_exercise(step), folders.submitted(student, step)
         try:
+            if submitted.is_symlink() or submitted.parent.is_symlink():
+                _refuse_link(student)
             graded = graded_folder(exercise, submitted, folders.handed_in(student, step))
             found.append(Found(student, step, graded.parent.resolve() / graded.name))
         except Exception as error:
@@ -167,6 +169,11 @@ def _put_together(
             why[student, step] = f"it could not be read ({_in_words(error)})"
             found.append(Found(student, step, submitted, f"The submission could not be read ({_in_words(error)})."))
     return tuple(found), why
+
+
+def _refuse_link(student: str) -> NoReturn:
+    message = f"the folder of {shorten(student)} is a symbolic link, which could lead to another student's work"
+    raise UnreadableError(message)
 
 
 def _of_the_machine(error: BaseException | None) -> bool:

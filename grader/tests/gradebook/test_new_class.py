@@ -107,3 +107,8 @@ def test_a_gradebook_without_noise_or_the_reason_why_there_is_none(tmp_path: Pat
     (tmp_path / "new/class/gradebook.db").mkdir()
     with pytest.raises(MachineError, match="could not be read or written: unable to open database file"):
         folders.gradebook().__enter__()
+
+    (tmp_path / "new/class/gradebook.db").rmdir()
+    (tmp_path / "new/class/gradebook.db").write_bytes(b"no database" * 1000)
+    with pytest.raises(MachineError, match="could not be read or written: file is not a database"):
+        folders.gradebook().__enter__()

@@ -68,6 +68,16 @@ def test_each_is_graded_or_reported_and_the_others_continue(tmp_path: Path) -> N
     assert "a file below a file" in {student for student, _ in why}
 
 
+def test_a_link_to_the_work_of_another_student_is_reported(tmp_path: Path) -> None:
+    folders = Folders(tmp_path)
+    (tmp_path / "submitted").mkdir()
+    handed_in(folders.submitted("zoe", ""), "mine", {"my_robot_controller/package.xml": "<package/>"})
+    folders.submitted("mallory", "").symlink_to("zoe")
+    mallory, zoe = _put_together(folders, [("mallory", CIRCLE.id), ("zoe", CIRCLE.id)])[0]  # type: ignore[arg-type]
+    assert "the folder of mallory is a symbolic link" in mallory.refused
+    assert not zoe.refused
+
+
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS])
 def test_a_full_disk_of_the_grader_stops_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int) -> None:
     folders = make(tmp_path)
