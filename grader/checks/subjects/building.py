@@ -216,7 +216,7 @@ def installs(evidence: Evidence, _: NoParams) -> Finding:
         return passed("ROS 2 finds the installed package.")
     where = Where("setup.py", _setup_line(evidence))
     observed = f"Not installed: {a_list(missing)}."
-    expected = "data_files in setup.py installs the marker file into the resource index and package.xml into share."
+    expected = "data_files in setup.py installs the marker file into the resource index, and package.xml into share."
     diagnosis: Diagnosis = "resource-marker" if "marker" in missing[0] else "package-xml-not-installed"
     return failed(
         observed, expected, Cause(diagnosis, "`ros2 run` and other tools use these files to find a package.", where)

@@ -104,12 +104,12 @@ def _other_request(evidence: Evidence, params: CallsService, calls: list[Call], 
 
 @dataclass(frozen=True, kw_only=True)
 class AnswersCall:
-    """The node's response to a call by the trial: the `nth` call to the service, counted from 1."""
+    """The node's response to the `nth` call of the trial to the service, counted from 1."""
 
     service: str = string("the full name of a service", start="/", about="The name of the service.")
     type: str = string("a service type, as in std_srvs/srv/SetBool", about="The type of the service.")
     nth: float = number(
-        1, at_least=1, about="The number of the call that is judged, among all calls to this service, counted from 1."
+        1, at_least=1, about="The number of the judged call, counted from 1 among the trial's calls to this service."
     )
     within_s: float = number(1.0, above=0, about="The maximum time until the response.")
     fields: tuple[tuple[str, Any], ...] = table(about="The relevant fields of the response, with their values.")

@@ -93,8 +93,8 @@ def _measured(evidence: Evidence, params: Star, sides: Sides, expected: str) -> 
             )
         if length < params.side_m and _is_cut(evidence):
             text = (
-                "The command with zeros arrives together with the last command of the side, so the latter has no "
-                "effect. Send the zeros when the timer fires the next time."
+                "The command with zeros arrives together with the last command of the side, and replaces it. Send the "
+                "zeros when the timer fires the next time."
             )
         return failed(observed, expected, Cause("side-length", text, where), near_edge=near)
     for index, heading in enumerate(sides.headings[:amount]):
