@@ -39,7 +39,7 @@ MEANINGS = {
     "EOFError": "input() waits for the keyboard, but the grader does not type. A node must not ask for input.",
     "ImportError": "That name cannot be imported from this module. Compare the name letter by letter.",
     "IndentationError": "All lines of a block must have the same indentation.",
-    "IndexError": "The list has fewer items than this index needs.",
+    "IndexError": "The list has no item with this index.",
     "InvalidNodeNameException": "A node name may contain only letters, digits and underscores.",
     "InvalidTopicNameException": "A topic name may contain only letters, digits, underscores and slashes.",
     "KeyError": "The dictionary has no such key.",

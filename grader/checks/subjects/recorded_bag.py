@@ -49,7 +49,7 @@ def readable(evidence: Evidence, params: InBag) -> Finding:
         return failed(
             f"There is no folder {params.bag}.",
             expected,
-            Cause("no-bag", "`ros2 bag record` creates the folder in the current folder."),
+            Cause("no-bag", "`ros2 bag record` creates the bag in the current folder."),
         )
     if bag.problem == "elsewhere":
         observed = f"There is no bag in {params.bag}, but {shorten(bag.detail)} belongs to a bag."

@@ -44,7 +44,7 @@ def _no_node(evidence: Evidence) -> Finding:
     observed = f"{evidence.trial.executable} ran, but no node appeared in the ROS graph."
     expected = "The program creates a node and spins it."
     if crash is not None:
-        observed = f"{evidence.trial.executable} crashed, and no node had appeared in the ROS graph: {crash.observed}."
+        observed = f"{evidence.trial.executable} crashed before a node appeared in the ROS graph: {crash.observed}."
         return crash_finding(evidence, crash, observed, expected)
     why = why_no_node(evidence)
     return failed(observed, expected, why)

@@ -123,7 +123,7 @@ def test_a_bag_that_is_missing_is_told_from_a_bag_elsewhere(tmp_path: Path, else
     moved = {path.replace("circle_bag/", "other/"): data for path, data in bag_of(WHOLE, tmp_path).items()}
     given = told(judged("bag", files=moved if elsewhere else {}, has_bag=False))
     assert ("There is no folder circle_bag." in given) == found
-    assert ("`ros2 bag record` creates the folder in the current folder." in given) == found
+    assert ("`ros2 bag record` creates the bag in the current folder." in given) == found
     assert ("There is no bag in circle_bag, but other/" in given) != found
 
 

@@ -87,7 +87,7 @@ def test_a_program_that_crashed_while_its_node_was_waited_for_is_reported_to_hav
     assert found.diagnosis == "crash"
     assert (
         found.observed
-        == "draw_circle crashed, and no node had appeared in the ROS graph: ZeroDivisionError: division by zero."
+        == "draw_circle crashed before a node appeared in the ROS graph: ZeroDivisionError: division by zero."
     )
 
 
@@ -259,7 +259,7 @@ LATER = replace(SILENT, end=crashed(4.5), stderr=Output(TRACEBACK.partition('  F
     [
         ("draw_circle ran, but no node appeared in the ROS graph.", SILENT, good()),
         ("The program creates a node and spins it.", SILENT, good()),
-        ("draw_circle crashed, and no node had appeared in the ROS graph: ValueError: no.", LATER, SILENT),
+        ("draw_circle crashed before a node appeared in the ROS graph: ValueError: no.", LATER, SILENT),
     ],
 )
 def test_a_sentence_about_the_start_is_true(words: str, true: Recording, near: Recording) -> None:
