@@ -72,18 +72,27 @@ def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> 
     instances of Path), if the machine has Landlock or lets this user create a mount namespace.
 
     Raises:
-        TooLargeError: the function took too much time or memory.
+        TooLargeError: the function took too much CPU time or memory.
         UnreadableError: the function raised an exception other than the grader's own errors.
-        MachineError: a module that the function needs is not installed.
+        MachineError: a module that the function needs is not installed, or the machine was too busy.
         GraderError: the function itself raised this error.
     """
     if _Child.inside:
         return function(*arguments, **keywords)
-    receives, sends = os.pipe()
     readable = (*program_files(), *paths_in(arguments))
+    answer, status = _called(lambda: function(*arguments, **keywords), readable)
+    if not answer and status != signal.SIGXCPU:
+        # Another program may have killed the child, or another thread held a lock that the child needed.
+        answer, status = _called(lambda: function(*arguments, **keywords), readable)
+    return _value(answer, status)  # type: ignore[no-any-return]
+
+
+def _called(function: Callable[[], object], readable: tuple[Path, ...]) -> tuple[bytes | None, int]:
+    """Call the function in a child process. Return its answer, or None after the timeout, and its exit status."""
+    receives, sends = os.pipe()
     child = _fork()
     if child == 0:
-        _run(sends, readable, lambda: function(*arguments, **keywords))
+        _run(sends, readable, function)
     os.close(sends)
     status = None
     try:
@@ -94,8 +103,8 @@ def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> 
         os.close(receives)
         if status is None:
             os.kill(child, signal.SIGKILL)
-            _ended(child)
-    return _value(answer, status)  # type: ignore[no-any-return]
+            status = _ended(child)
+    return answer, status
 
 
 def is_confined() -> bool:
@@ -219,7 +228,11 @@ def _packed(*, fine: bool, value: object) -> bytes:
 
 
 def _received(pipe: int) -> bytes | None:
-    """Return everything that the child process sends, or None if this takes too long or the data is too large."""
+    """Return everything that the child process sends, or None after the timeout.
+
+    Raises:
+        TooLargeError: the data is too large.
+    """
     poll = select.poll()
     poll.register(pipe, select.POLLIN)
     until = time.monotonic() + TIMEOUT_S
@@ -232,12 +245,13 @@ def _received(pipe: int) -> bytes | None:
         if not data:
             return bytes(answer)
         answer += data
-    return None
+    raise TooLargeError(_too_much())
 
 
-def _value(answer: bytes | None, status: int | None) -> Any:  # noqa: ANN401 - any result
-    if answer is None or status is None:
-        raise TooLargeError(_too_much())
+def _value(answer: bytes | None, status: int) -> Any:  # noqa: ANN401 - any result
+    if answer is None:  # a function that computes for so long exceeds its CPU time first
+        message = f"the submission could not be read within {TIMEOUT_S:g} s, because the machine was too busy"
+        raise MachineError(message)
     if os.WIFSIGNALED(status):
         number = os.WTERMSIG(status)
         if number in (signal.SIGXCPU, signal.SIGKILL):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copyreg
 import ctypes
+import mmap
 import os
 import resource
 import subprocess
@@ -12,7 +13,7 @@ import threading
 import time
 from importlib import import_module
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import pytest
 
@@ -22,6 +23,9 @@ from grader.submission import reader
 from grader.submission.reader import read
 from grader.submission.where import Where
 from grader.tests.case import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 def add(one: int, other: int = 1) -> int:
@@ -94,15 +98,45 @@ def test_a_module_that_is_not_installed_is_not_the_submissions_fault() -> None:
         read(import_module, "no_such_module")
 
 
-@pytest.mark.parametrize("function", [hoards, nests, overflows, spins, sleeps])
+@pytest.mark.parametrize("function", [hoards, nests, overflows, spins])
 def test_what_takes_too_much_is_too_large(function: object, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reader, "CPU_S", 1)
-    if function is sleeps:
-        monkeypatch.setattr(reader, "TIMEOUT_S", 0.5)
     before = children()
     with pytest.raises(TooLargeError, match=r"too large to be read|nested too deeply"):
         read(function)  # type: ignore[arg-type]
     assert children() <= before
+
+
+def test_a_child_that_waits_is_the_machines_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reader, "TIMEOUT_S", 0.5)
+    before = children()
+    with pytest.raises(MachineError, match=r"could not be read within 0\.5 s, because the machine was too busy"):
+        read(sleeps)
+    assert children() <= before
+
+
+@pytest.mark.parametrize("end", [lambda: os._exit(1), crashes, sleeps])
+def test_a_child_that_ends_without_an_answer_is_started_once_more(
+    end: Callable[[], object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    calls = mmap.mmap(-1, 1)  # shared with the children
+    first = reader._called
+
+    def called(function: Callable[[], object], readable: tuple[Path, ...]) -> tuple[bytes | None, int]:
+        try:
+            return first(function, readable)
+        finally:
+            monkeypatch.setattr(reader, "TIMEOUT_S", 60.0)
+
+    def ends_once() -> int:
+        calls[0] += 1
+        if calls[0] == 1:
+            end()
+        return calls[0]
+
+    monkeypatch.setattr(reader, "TIMEOUT_S", 0.5 if end is sleeps else 60.0)
+    monkeypatch.setattr(reader, "_called", called)
+    assert read(ends_once) == 2
 
 
 def children() -> set[str]:
