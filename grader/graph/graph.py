@@ -92,9 +92,12 @@ def picture(nodes: Iterable[str], endpoints: Iterable[Endpoint], show: Show | No
     # An endpoint can be discovered before its node.
     counts.update({end.node: 1 for end in ends if end.node not in counts})
     shown = {name: count for name, count in counts.items() if _node_shown(name, chosen)}
+    by_topic: dict[str, list[Endpoint]] = {}
+    for end in ends:
+        by_topic.setdefault(end.topic, []).append(end)
     topics = []
-    for name in sorted({end.topic for end in ends if _topic_shown(end.topic, chosen)}):
-        at = [end for end in ends if end.topic == name and end.node in shown]
+    for name in sorted(name for name in by_topic if _topic_shown(name, chosen)):
+        at = [end for end in by_topic[name] if end.node in shown]
         publishers = sorted({end.node for end in at if end.kind == "publisher"})
         subscribers = sorted({end.node for end in at if end.kind == "subscription"})
         topic = Topic(name, tuple(publishers), tuple(subscribers))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
+from grader.errors import MachineError
 from grader.graph.graph import to_dot
 from grader.graph.layout import render
 
@@ -16,6 +17,8 @@ _INCH = 72.0
 up."""
 
 
+MOST_ARROWS = 2000
+"""Graphviz needs a second for this number of arrows, and the time grows with the square of the number."""
 NOTHING: dict[str, Any] = {"width": 0.0, "height": 0.0, "nodes": [], "arrows": []}
 """The layout of a graph without nodes."""
 
@@ -27,8 +30,15 @@ def laid_out(drawn: Picture) -> dict[str, Any]:
     of an arrow are the start of a Bezier curve and three points for each segment. `tip` is the tip of the arrowhead.
 
     Raises:
-        MachineError: Graphviz cannot draw.
+        MachineError: Graphviz cannot draw, or the graph is too large. Any program of the domain can create topics.
     """
+    arrows = sum(len(topic.publishers) + len(topic.subscribers) for topic in drawn.topics)
+    if max(arrows, len(drawn.nodes), len(drawn.topics)) > MOST_ARROWS:
+        message = (
+            f"The graph is too large to be drawn: {len(drawn.nodes)} nodes, {len(drawn.topics)} topics and {arrows} "
+            "arrows. Type: rqt_graph --text"
+        )
+        raise MachineError(message)
     return {"wide": _layout(drawn, downwards=False), "narrow": _layout(drawn, downwards=True)}
 
 

@@ -9,13 +9,17 @@ import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+import pytest
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
+from grader.errors import MachineError
+from grader.graph.graph import Node, Picture, Topic
 from grader.open.turtle_relay import LARGEST
 from grader.tests.ros2.test_hostile_names import NAMED, NOT_UTF8
 from grader.tests.view.tab import VIEW, live
 from grader.tests.waiting import HANG_S
+from grader.view import page_graph
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -89,3 +93,11 @@ def test_a_name_that_is_not_utf8_does_not_end_the_view(fresh: World) -> None:
         fresh.start(f"{PYTHON} {NAMED} {b'another'.hex()}", "announced")
         message(link, lambda news: any(row["name"] == "/words" for row in news.get("topics", [])))
     assert not any("Traceback" in line for line in fresh.running[0].lines)
+
+
+def test_a_graph_that_is_too_large_is_not_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(page_graph, "render", lambda *_: pytest.fail("Graphviz was started"))
+    names = tuple(f"/node{number}" for number in range(50))
+    topics = tuple(Topic(f"/topic{number}", names, ()) for number in range(page_graph.MOST_ARROWS // 50 + 1))
+    with pytest.raises(MachineError, match="The graph is too large to be drawn: 50 nodes, 41 topics and 2050 arrows"):
+        page_graph.laid_out(Picture(tuple(map(Node, names)), topics))
