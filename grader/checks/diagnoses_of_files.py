@@ -133,7 +133,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "string-and-number": "a string and a number are added with +",
         "queue-size": "the queue size is not a whole number",
         "not-callable": "something that is not a function is called",
-        "publish-other": "publish is called with something other than the message",
+        "publish-other": "publish is called with something other than a message of the right type",
     },
     "Message fields": {
         "int-for-float": "a float field is set to an integer",

@@ -1,4 +1,4 @@
-"""Why a function of the student failed: its caller passed a wrong argument, or the arguments in the wrong order.
+"""Explain why one of the student's functions failed: its caller passed a wrong argument, or swapped two arguments.
 
 The traceback ends inside the function, but the line that must change is the call.
 """
