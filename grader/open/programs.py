@@ -127,16 +127,18 @@ class Programs:
         self._workspace = workspace
         self._changed = changed
         self._doing = ""
+        self._address: Address | None = None
         self._ran = ("", "")
         """The step of the node, and the digest of its code when the node was started."""
 
     def address(self) -> Address | None:
         """Return the address of the view of a turtlesim that was started here or in a terminal, or None."""
-        for line in self.turtlesim.lines:
-            found = _ADDRESS.search(line)
-            if found:
-                return Address(int(found[1]), found[2])
-        return remembered("turtlesim")
+        return self._address or remembered("turtlesim")
+
+    def _printed_address(self) -> Address | None:
+        """Return the address that turtlesim has printed first. Later messages of turtlesim can contain any names."""
+        found = next(filter(None, map(_ADDRESS.fullmatch, self.turtlesim.lines)), None)
+        return Address(int(found[1]), found[2]) if found else None
 
     async def beside_another(self) -> bool:
         """Return whether a turtlesim that this object has not started is running.
@@ -160,9 +162,12 @@ class Programs:
 
     async def start_turtlesim(self) -> None:
         """Start `grader sim --view`."""
+        if not self.turtlesim.running:
+            self._address = None
         await self.turtlesim.start("-m", "grader.cli", "sim", "--view")
         # Wait for turtlesim, because a node that starts earlier would start a second turtlesim.
         for _ in range(round(READY_S / _LOOK_S)):
+            self._address = self._address or self._printed_address()
             if not self.turtlesim.running or any("Spawning turtle" in line for line in self.turtlesim.lines):
                 return
             await asyncio.sleep(_LOOK_S)

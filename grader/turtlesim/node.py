@@ -15,6 +15,7 @@ from rclpy.qos import qos_profile_parameter_events
 from std_srvs.srv import Empty
 from turtlesim.srv import Kill, Spawn
 
+from grader.common.words import shorten
 from grader.turtlesim import parameters
 from grader.turtlesim.interface import Hooks, TurtleInterface
 from grader.turtlesim.late_answers import LateAnswers
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 
 MOST_TURTLES = 64
 """The maximum number of turtles. The real turtlesim has no limit, but ours must not crash if spawning never stops."""
+MOST_NAME = 300
+"""The maximum length of a name in a message. Any node can send any name, also with control sequences for a terminal."""
 
 _FRAMES_TO_LEAVE = 4
 """The number of frames for which the entities of a killed turtle are kept, so that earlier requests get a response."""
@@ -152,14 +155,15 @@ class TurtlesimNode(Node):
         """Add a turtle at `start`. Return the turtle's name, or "" after logging an error."""
         name = self.world.spawn(wanted, start)
         if not name:
-            self.get_logger().error(f"A turtle named [{wanted}] already exists")
+            self.get_logger().error(f"A turtle named [{shorten(wanted, MOST_NAME)}] already exists")
             return ""
         try:
             self._show(name)
         except Exception as error:
             # The real turtlesim exits with this exception. The first line of the message lists the allowed characters.
             self.world.kill(name)
-            self.get_logger().error(f"A turtle cannot be named [{name}]: {str(error).partition(chr(10))[0]}")
+            why = str(error).partition("\n")[0]
+            self.get_logger().error(f"A turtle cannot be named [{shorten(name, MOST_NAME)}]: {why}")
             return ""
         self._log_spawned(name)
         return name
@@ -174,7 +178,7 @@ class TurtlesimNode(Node):
         if self.world.kill(name):
             self._hide(name)
         else:
-            self.get_logger().error(f"Tried to kill turtle [{name}], which does not exist")
+            self.get_logger().error(f"Tried to kill turtle [{shorten(name, MOST_NAME)}], which does not exist")
 
     def _clear(self, _: Empty.Request, response: Empty.Response) -> Empty.Response:
         self._hooks.on_intervention("clear")

@@ -25,6 +25,7 @@ from grader.tests.domains import own_domain
 from grader.tests.open.course import CIRCLE, Course
 from grader.tests.ros2.world import environment
 from grader.tests.waiting import HANG_S, until, until_gone
+from grader.view.address import Address
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -236,3 +237,17 @@ def test_without_a_sandbox_the_page_says_that_the_node_runs_as_the_user(monkeypa
 def test_other_middlewares_are_not_linked(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp")
     assert not linkable()
+
+
+def test_a_message_of_turtlesim_cannot_lead_the_page_to_another_address(monkeypatch: pytest.MonkeyPatch) -> None:
+    """turtlesim prints names that a node in the cell has sent."""
+
+    async def start(program: programs.Program, *_: object) -> None:
+        monkeypatch.setattr(program, "_process", object())
+        program.lines.extend(["See the turtle move: http://127.0.0.1:1234/#own", "Spawning turtle [turtle1]"])
+
+    monkeypatch.setattr(programs.Program, "start", start)
+    made = programs.Programs(lambda: None, None)
+    asyncio.run(made.start_turtlesim())
+    made.turtlesim.lines.extend(["See the turtle move: http://127.0.0.1:1/#forged"] * programs.KEPT)
+    assert made.address() == Address(1234, "own")

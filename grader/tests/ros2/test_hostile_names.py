@@ -76,3 +76,12 @@ def test_a_terminal_gets_no_control_sequence(world: World, command: str) -> None
         with os.fdopen(below, "wb") as output:
             subprocess.run(["bash", "-c", command], env=world.env, stdout=output, check=True, timeout=HANG_S)
         assert b"\x1b" not in terminal.read(10_000)
+
+
+@pytest.mark.parametrize("service", ["kill turtlesim/srv/Kill", "spawn turtlesim/srv/Spawn"])
+def test_turtlesim_prints_a_name_on_one_line_and_without_control_sequences(world: World, service: str) -> None:
+    turtlesim = world.turtlesim()
+    request = f'{{name: "{CLIPBOARD_IN_YAML}\\nforged"}}'
+    world.run(f"ros2 service call /{service} '{request}'")
+    turtlesim.wait_for("forged")
+    assert [line for line in turtlesim.lines if "\x1b" in line or line.startswith("forged")] == []
