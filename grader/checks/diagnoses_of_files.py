@@ -60,7 +60,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "entry-point-function": "the entry point names a function that does not exist",
         "entry-point-not-callable": "the entry point names something that is not a function",
         "module-not-installed": "the module exists, but the build does not install it",
-        "main-in-class": "main is indented, so it is part of the class",
+        "main-in-class": "main is indented, so it is part of a class or of another function",
         "top-level-code": "the program has no main function: its code is at the top level of the file",
         "empty-file": "the file of the node is empty; it may not have been saved",
         "script-shebang": "the executable is a script, and its first line does not start Python",

@@ -38,13 +38,22 @@ def line(evidence: Evidence) -> Where:
 
 
 def indented(module: Module | None, name: str) -> Cause | None:
-    """Return the cause if the module has the function only inside a class or another function, else None."""
+    """Return the cause if the module has the function only inside another statement, such as a class, else None."""
     functions = [node for node in module.nodes if isinstance(node, ast.FunctionDef)] if module is not None else []
     inside = next((node for node in functions if node.name == name and node.col_offset), None)
     if module is None or inside is None:
         return None
-    text = f"{shorten(name)} is indented, so it belongs to the class above it. Remove the indentation."
+    text = f"{shorten(name)} is indented, so it belongs to {_outer(module, inside)} above it. Remove the indentation."
     return Cause("main-in-class", text, Where(module.file, inside.lineno))
+
+
+def _outer(module: Module, inside: ast.FunctionDef) -> str:
+    outer = next(node for node in module.nodes if any(child is inside for child in ast.iter_child_nodes(node)))
+    if isinstance(outer, ast.ClassDef):
+        return "the class"
+    if isinstance(outer, ast.FunctionDef | ast.AsyncFunctionDef):
+        return f"the function {shorten(outer.name)}"
+    return f"the block that begins on line {getattr(outer, 'lineno', inside.lineno)}"
 
 
 def no_entry_point(evidence: Evidence) -> Finding:
