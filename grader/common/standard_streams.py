@@ -2,12 +2,35 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import sys
 from contextlib import suppress
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
 
 _MODES = ("r", "w", "w")
+_LOST = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO})
+"""Errors which mean that the messages cannot be stored: the disk of a log file is full or broken."""
+
+
+class _Messages(io.FileIO):
+    """Standard error, without an error if the messages cannot be stored.
+
+    The progress and the messages of a command are less important than its results.
+    """
+
+    def write(self, data: ReadableBuffer, /) -> int:
+        """Write the data, and return how much was written, or lost because the disk is full."""
+        try:
+            return super().write(data)
+        except OSError as error:
+            if error.errno not in _LOST:
+                raise
+            return memoryview(data).nbytes
 
 
 def make_usable() -> None:
@@ -15,7 +38,8 @@ def make_usable() -> None:
 
     With `grader env >&-`, sys.stdout is None, and the next file that is opened would become the standard output of all
     child processes. If the encoding is not UTF-8, for example with PYTHONIOENCODING=ascii, a question mark is printed
-    in place of each character that the encoding does not have.
+    in place of each character that the encoding does not have. If standard error is a file on a full disk, the messages
+    are lost, and the command continues.
     """
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:
@@ -24,6 +48,11 @@ def make_usable() -> None:
                 # As in Python itself, the second name keeps the stream open when the first one is replaced.
                 for each in (name, f"__{name}__"):
                     setattr(sys, each, opened)
+    if isinstance(sys.stderr, io.TextIOWrapper) and not sys.stderr.isatty():
+        sys.stderr.flush()
+        raw = io.BufferedWriter(_Messages(sys.stderr.fileno(), "w", closefd=False))
+        messages = io.TextIOWrapper(raw, sys.stderr.encoding, sys.stderr.errors, line_buffering=True)
+        sys.stderr = sys.__stderr__ = messages  # type: ignore[misc]
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper) and not has_signs(stream.encoding):
             stream.reconfigure(errors="replace")

@@ -28,7 +28,7 @@ from grader.gradebook.budget import Account, Budget
 from grader.notebook.frames import CHANNELS, CHUNK, ORDER, FrameError, Unpacker, packed
 from grader.sandbox.bubblewrap import View, lone_cell
 from grader.sandbox.control_group import control_group
-from grader.sandbox.limits import MIB, Limits
+from grader.sandbox.limits import MIB, Limits, allowed
 from grader.sandbox.system_calls import call_filter
 from grader.sandbox.usage import EVERY_S, Guard
 from grader.sandbox.user import cell_user
@@ -196,7 +196,8 @@ def main() -> None:
     folder = Path(sys.argv[1])
     order = Order.read(folder)
     info = json.loads(Path(order.connection_file).read_text("utf-8"))
-    resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, resource.getrlimit(resource.RLIMIT_AS)[1]))
+    hard = resource.getrlimit(resource.RLIMIT_AS)[1]
+    resource.setrlimit(resource.RLIMIT_AS, (allowed(resource.RLIMIT_AS, MOST_MEMORY), hard))
     why = run(order, info)
     if why:
         (folder / WHY_FILE).write_text(why, encoding="utf-8")

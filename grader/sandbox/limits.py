@@ -6,8 +6,11 @@ prlimit sets the limits of each process. usage.py and control_group.py limit the
 from __future__ import annotations
 
 import resource
+import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from grader.errors import MachineError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,6 +21,10 @@ MOST_SIGNALS = 1000
 NO_CORE_DUMP = 1
 """The limit on core dumps (bytes). With the limit 0, the kernel would still pass core dumps to another program; see
 core(5)."""
+LEAST_MEMORY = 2048 * MIB
+"""If each program may use less address space than this (bytes), the machine can be the reason why a node or a test
+fails."""
+RAISE_MEMORY = "ulimit -v unlimited"
 MOST_OTHERS = 4096
 """Without cells, this number is added to the limit on processes, because the user's other processes also count."""
 
@@ -56,6 +63,21 @@ _OPTIONS = {
 """The options of prlimit(1)."""
 
 
+def require_memory() -> None:
+    """Check that programs may use enough memory.
+
+    Raises:
+        MachineError: a limit on the address space of each program, such as `ulimit -v`, is too low.
+    """
+    most = min(limit for limit in (*resource.getrlimit(resource.RLIMIT_AS), sys.maxsize) if limit >= 0)
+    if most < LEAST_MEMORY:
+        message = (
+            f"Each program may use at most {most // MIB} MiB of address space here, and a node needs up to "
+            f"{LEAST_MEMORY // MIB} MiB: type `{RAISE_MEMORY}`, or use a terminal without this limit."
+        )
+        raise MachineError(message)
+
+
 def limited(argv: Sequence[str], limits: Limits, *, in_cell: bool = False) -> list[str]:
     """Return the command that runs `argv` under resource limits, which also work without bubblewrap."""
     set_limits = resource_limits(limits, in_cell=in_cell)
@@ -77,10 +99,10 @@ def resource_limits(limits: Limits, *, in_cell: bool) -> dict[int, int]:
     }
     if in_cell:
         wanted[resource.RLIMIT_SIGPENDING] = MOST_SIGNALS
-    return {kind: _allowed(kind, value) for kind, value in wanted.items()}
+    return {kind: allowed(kind, value) for kind, value in wanted.items()}
 
 
-def _allowed(which: int, wanted: int) -> int:
+def allowed(which: int, wanted: int) -> int:
     """Return the wanted limit, or the user's hard limit if it is lower. Only root can raise a hard limit."""
     hard = resource.getrlimit(which)[1]
     return wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)

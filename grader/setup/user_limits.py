@@ -1,10 +1,12 @@
-"""The resource limits of this user that affect a trial: open files, processes, and the size of pipes."""
+"""The resource limits of this user that affect a trial: open files, processes, memory, and the size of pipes."""
 
 from __future__ import annotations
 
 import os
 import resource
 
+from grader.errors import MachineError
+from grader.sandbox.limits import LEAST_MEMORY, MIB, RAISE_MEMORY, require_memory
 from grader.trial.node_process import PIPE, enlarge
 from grader.trial.open_files import LEAST as LEAST_FILES
 
@@ -26,4 +28,8 @@ def shares() -> tuple[str, str]:
         return observed, f"ulimit -n {4 * LEAST_FILES}"
     if not unlimited and processes < LEAST_PROCESSES:
         return observed, f"ulimit -u {4 * LEAST_PROCESSES}"
+    try:
+        require_memory()
+    except MachineError:
+        return f"{observed}, less than {LEAST_MEMORY // MIB} MiB of address space for each program", RAISE_MEMORY
     return observed if large else f"{observed}; pipes stay small while other programs use many pipes", ""

@@ -133,7 +133,9 @@ def _child(order: dict[str, Any], call: dict[str, Any], files: tuple[int, int, i
     os.setpgid(0, 0)
     ctypes.CDLL(None).prctl(_DUMPABLE, 1, 0, 0, 0)  # so that a program can open /dev/stdin and /dev/stdout
     cpu_s = FUNCTION_CPU_S if order["function"] else PROGRAM_CPU_S
-    resource.setrlimit(resource.RLIMIT_CPU, (cpu_s, cpu_s + 1))
+    hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
+    most_s = cpu_s + 1 if hard == resource.RLIM_INFINITY else min(cpu_s + 1, hard)
+    resource.setrlimit(resource.RLIMIT_CPU, (min(cpu_s, most_s), most_s))
     os.dup2(files[0], 1)
     os.dup2(files[1], 2)
     sys.path[:0] = order["python_path"]

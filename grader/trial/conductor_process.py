@@ -21,7 +21,7 @@ from grader.sandbox import bubblewrap, system_calls
 from grader.sandbox.control_group import ControlGroup, control_group
 from grader.sandbox.entering import HOLDER
 from grader.sandbox.holder import Holder
-from grader.sandbox.limits import MIB, NODE_LIMITS, resource_limits
+from grader.sandbox.limits import MIB, NODE_LIMITS, allowed, resource_limits
 from grader.sandbox.user import cell_user
 from grader.trial import fork_client
 
@@ -159,7 +159,8 @@ class ConductorInRoom(ConductorProcess):
                 for descriptor in (its_stdin, its_stdout):
                     passed.callback(os.close, descriptor)
                 groups = [str(folder) for folder in self._group.folders]
-                limits = [(resource.RLIMIT_AS, MOST_MEMORY), (resource.RLIMIT_FSIZE, MOST_ERRORS)]
+                wanted = [(resource.RLIMIT_AS, MOST_MEMORY), (resource.RLIMIT_FSIZE, MOST_ERRORS)]
+                limits = [(which, allowed(which, most)) for which, most in wanted]
                 conductor = {"groups": groups, "user": user, "limits": limits, "home": str(bubblewrap.HOME)}
                 descriptors = [room, its_stdin, its_stdout, errors.fileno(), asks.fileno()]
                 self._forks = [fork_client.conductors(ros).request(conductor, descriptors)]

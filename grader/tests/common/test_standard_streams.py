@@ -42,6 +42,17 @@ def test_output_that_cannot_be_written_is_one_sentence(tmp_path: Path, command: 
     assert (done.returncode, done.stderr.count("\n")) == (3, 1)
 
 
+@pytest.mark.parametrize("command", [*COMMANDS, "grader hint 01"])
+def test_messages_that_cannot_be_written_are_no_error(tmp_path: Path, command: str) -> None:
+    done = run(f"{command} 2> /dev/full", tmp_path)
+    assert (done.returncode, done.stdout != "") == (0, True)
+
+
+def test_a_report_arrives_although_the_progress_cannot_be_written(tmp_path: Path) -> None:
+    line = "grader validate 03-circle-publisher"
+    assert run(f"{line} 2> /dev/full", tmp_path).stdout == run(line, tmp_path).stdout != ""
+
+
 def test_no_file_takes_the_place_of_a_closed_standard_output(tmp_path: Path) -> None:
     code = (
         "import os, subprocess, sys; from grader.common.standard_streams import make_usable; make_usable(); "

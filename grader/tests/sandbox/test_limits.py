@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from grader.sandbox import process
 from grader.sandbox.limits import MIB, Limits, limited
+from grader.tests.case import ROOT
 
 
 def test_limits_alone_need_no_bubblewrap() -> None:
@@ -24,6 +27,23 @@ def test_limits_never_exceed_those_of_the_user() -> None:
     assert f"--fsize={100 * MIB} " in reported
     assert "--nofile=512 " in reported
     assert f"--as={Limits().memory} " in reported
+
+
+@pytest.mark.parametrize("option", ["--fsize=102400", f"--as={2100 * MIB}"])
+def test_a_low_limit_of_the_user_does_not_keep_a_submission_from_being_graded(option: str) -> None:
+    check = [str(Path(sys.prefix, "bin/grader")), "check", str(ROOT / "solutions/03-circle-publisher")]
+    # Without this capability, root may not raise a limit either.
+    as_others = ["setpriv", "--bounding-set=-sys_resource"] if os.geteuid() == 0 else []
+    done = subprocess.run(["prlimit", option, "--", *as_others, *check], capture_output=True, text=True, check=False)
+    assert "Passed: 100 of 100 points." in done.stdout, done.stdout + done.stderr
+
+
+def test_too_little_memory_for_a_program_is_the_machines_fault() -> None:
+    code = "from grader.sandbox.limits import *; require_memory()"
+    command = ["prlimit", f"--as={1500 * MIB}", "--", sys.executable, "-c", code]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert "MachineError: Each program may use at most 1500 MiB of address space" in done.stderr
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
 @pytest.mark.parametrize(

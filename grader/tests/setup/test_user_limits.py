@@ -6,6 +6,7 @@ import sys
 
 import pytest
 
+from grader.sandbox.limits import MIB
 from grader.setup import user_limits
 
 SAYS = "from grader.setup.user_limits import shares; print(*shares(), sep='|')"
@@ -16,7 +17,15 @@ def test_it_says_what_there_is() -> None:
     assert user_limits.shares()[0].startswith(f"{files} open files, ")
 
 
-@pytest.mark.parametrize(("option", "todo"), [("--nofile=200:", "ulimit -n 1024"), ("--nproc=900:", "ulimit -u 4096")])
+@pytest.mark.parametrize(
+    ("option", "todo"),
+    [
+        ("--nofile=200:", "ulimit -n 1024"),
+        ("--nproc=900:", "ulimit -u 4096"),
+        (f"--as={1500 * MIB}:", "ulimit -v unlimited"),
+        (f"--as={1500 * MIB}", "ulimit -v unlimited"),
+    ],
+)
 def test_too_few_are_reported_with_what_to_do(option: str, todo: str) -> None:
     done = subprocess.run(["prlimit", option, sys.executable, "-c", SAYS], capture_output=True, text=True, check=True)
     assert done.stdout.strip().partition("|")[2] == todo
