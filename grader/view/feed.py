@@ -31,6 +31,9 @@ whether the simulator is running.
 """
 MOST_LINES = 1500
 """The maximum number of lines in a message. Each line has 60 bytes, so a message fits into the buffer of a socket."""
+MOST_RECEIVED, MOST_SENT = 64, 200
+"""The maximum numbers of topics in a message. 64 turtles have fewer topics, but a node can spawn and kill turtles
+without end while the view is busy, and each name can have 240 characters."""
 LARGEST = 1 << 20
 """The buffer size for receiving a message (bytes). No message is larger."""
 LARGEST_PICTURE = 100_000
@@ -85,6 +88,8 @@ class Feed:
 
     def on_command(self, topic: str, _: bytes, twist: Any) -> None:  # noqa: ANN401 - a message of rclpy's
         """Record a received command."""
+        if len(self.received) >= MOST_RECEIVED and topic not in self.received:
+            return
         received = self.received.setdefault(topic, Received())
         received.count += 1
         received.last_s = time.monotonic()
@@ -93,7 +98,8 @@ class Feed:
 
     def on_publish(self, topic: str, _: str, __: bytes) -> None:
         """Count a published message."""
-        self.sent[topic] = self.sent.get(topic, 0) + 1
+        if len(self.sent) < MOST_SENT or topic in self.sent:
+            self.sent[topic] = self.sent.get(topic, 0) + 1
 
     def show(self, turtles: Mapping[str, Turtle], *, paused: bool) -> None:
         """Send the state after a frame to the view if a message is due."""

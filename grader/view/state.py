@@ -11,6 +11,8 @@ from grader.view.rates import Arrivals
 from grader.view.trail import Stroke, Trail, as_lists
 
 Rgb = tuple[int, int, int]
+MOST_RATES = 1000
+"""If there are more rates, those of silent topics are removed. A node can spawn and kill turtles without end."""
 
 
 class TurtleState(NamedTuple):
@@ -69,6 +71,8 @@ class State:
             self.rates.setdefault(topic, Arrivals()).add(last_s, count)
         for topic, count in message["sent"].items():
             self.rates.setdefault(topic, Arrivals()).add(self.now_s, count)
+        if len(self.rates) > MOST_RATES:
+            self.rates = {topic: each for topic, each in self.rates.items() if each.hertz(self.now_s) is not None}
         for topic in [topic for topic in self.commands if topic.split("/")[-2] not in self.turtles]:
             del self.commands[topic]
         news: dict[str, object] = {**self._now(), "lines": as_lists(self.pieces)}

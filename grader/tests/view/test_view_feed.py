@@ -18,8 +18,8 @@ from PIL import Image
 
 from grader.turtlesim.turtle import FRAME_S, SIDE_PX, Start
 from grader.turtlesim.world import World
-from grader.view.feed import LARGEST, MOST_LINES, Feed
-from grader.view.state import State
+from grader.view.feed import LARGEST, MOST_LINES, MOST_RECEIVED, MOST_SENT, Feed
+from grader.view.state import MOST_RATES, State
 from grader.view.trail import place
 
 if TYPE_CHECKING:
@@ -177,3 +177,16 @@ def test_the_most_lines_fit_into_a_message(simulator: Simulator) -> None:
     lines = message["lines"]
     assert isinstance(lines, list)
     assert len(lines) == MOST_LINES
+
+
+def test_endless_new_turtles_neither_stop_the_simulator_nor_fill_the_view(simulator: Simulator) -> None:
+    state = State()
+    for begin in range(0, 5000, 500):
+        for number in range(begin, begin + 500):
+            simulator.feed.on_publish(f"/{'t' * 230}{number}/pose", "", b"")
+            simulator.feed.on_command(f"/{'t' * 230}{number}/cmd_vel", b"", twist(1.0, 1.0))
+        simulator.feed.canvas.lines = [(5.123456, 5.123456, 5.123456, 5.123456, 255, 255, 255, 255)] * MOST_LINES
+        simulator.run(2)
+        for message in simulator.reported():
+            state.take(message)
+    assert 0 < len(state.rates) <= MOST_RATES + MOST_RECEIVED + MOST_SENT
