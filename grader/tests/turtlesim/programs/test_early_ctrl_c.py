@@ -59,9 +59,8 @@ def test_while_python_starts(tmp_path: Path, program: str) -> None:
     ],
 )
 def test_while_a_command_is_replaced_by_another(tmp_path: Path, command: list[str], restarted: str, code: int) -> None:
-    (tmp_path / "sitecustomize.py").write_text(
-        f"import os, signal, sys\nif {restarted}:\n    os.kill(os.getpid(), signal.SIGINT)\n    print('sent', flush=True)\n"
-    )
+    interrupts = "os.kill(os.getpid(), signal.SIGINT); print('sent', flush=True)"
+    (tmp_path / "sitecustomize.py").write_text(f"import os, signal, sys\nif {restarted}:\n    {interrupts}\n")
     done = subprocess.run(
         [str(Path(sys.executable).with_name(command[0])), *command[1:]],
         env={**os.environ, "PYTHONPATH": python_path(tmp_path), "AMENT_PREFIX_PATH": ""},
