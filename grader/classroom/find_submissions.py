@@ -221,7 +221,9 @@ def _student(entry: Path) -> str | None:
 
 def _why_not_graded(entry: Path) -> str:
     """Return the reason why a link, a hidden folder or a hidden archive is not graded, or "" for any other entry."""
-    if entry.name in _OF_PROGRAMS:
+    # macOS stores the properties of a file x in a file ._x, for example on a USB stick.
+    of_macos = entry.name.startswith("._") and os.path.isfile(entry) and os.path.isfile(entry.with_name(entry.name[2:]))
+    if entry.name in _OF_PROGRAMS or (of_macos and not os.path.islink(entry)):
         return ""
     if os.path.islink(entry):
         return f"{shown(entry.name)} is a symbolic link. The grader does not follow links to submissions."

@@ -14,6 +14,7 @@ from typing import Optional, Tuple
 OF_THE_DISK = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS})
 """Errors that mean that the disk is full or broken. Any other error concerns a single file."""
 ROOM = "free some space there, or set another folder with XDG_CACHE_HOME, XDG_STATE_HOME or TMPDIR"
+_WRITABLE = "use a folder on another disk, also for XDG_CACHE_HOME, XDG_STATE_HOME and TMPDIR"
 _SCARCE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN, errno.EIO})
 _NOT_ALLOWED = "see the output of `grader doctor`"
 
@@ -91,7 +92,7 @@ def sentence(number: int, where: str = "", room: str = ROOM) -> str:
     if number in (errno.ENOSPC, errno.EDQUOT):
         return f"The disk is full{at}: {room}."
     if number == errno.EROFS:
-        return f"The disk cannot be written to{at}: {room}."
+        return f"The disk is read-only{at}: {_WRITABLE}."
     if number == errno.EMFILE:
         most = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
         return f"The grader cannot open more than {most} files: raise this limit, for example with `ulimit -n 4096`."

@@ -26,6 +26,16 @@ def home(env: Mapping[str, str] = os.environ) -> Path:
         return Path("/")
 
 
+def user_name() -> str:
+    """Return the user's name, or the user id if the system has no name for it, as in a container."""
+    import getpass
+
+    try:
+        return getpass.getuser()
+    except (KeyError, OSError):
+        return str(os.getuid())
+
+
 def cache() -> Path:
     """Return the folder for files that the grader can create again."""
     return _folder("XDG_CACHE_HOME", ".cache")

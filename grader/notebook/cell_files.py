@@ -9,13 +9,13 @@ A student hands in the package (or the answers) next to the notebook. A magic wr
 
 from __future__ import annotations
 
-import getpass
 import os
 import posixpath
 import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from grader.common import xdg
 from grader.errors import UsageError
 from grader.exercise.own_numbers import draw_numbers, to_toml
 from grader.learner import progress, workspace
@@ -143,5 +143,5 @@ def _own_numbers(spec: NumbersSpec, source: Path, target: Path) -> tuple[str, ..
 
 def _student() -> str:
     """Return the student's name in nbgrader: the user name, or the JupyterHub user name if the account is shared."""
-    name = getpass.getuser()
+    name = xdg.user_name()
     return os.environ.get("JUPYTERHUB_USER", name) if name == "jovyan" else name

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import getpass
 import json
 import os
 import signal
@@ -12,6 +11,7 @@ from contextlib import closing, contextmanager, suppress
 from threading import Thread
 from typing import TYPE_CHECKING
 
+from grader.common import xdg
 from grader.common.interpreter import interpreter
 from grader.errors import MachineError
 from grader.learner import progress
@@ -129,7 +129,7 @@ def elsewhere(port: int, env: Mapping[str, str]) -> list[str]:
     if "SSH_CONNECTION" in env:
         server = (env["SSH_CONNECTION"].split()[2:3] or ["HOST"])[0]
         forward = f"{port}:127.0.0.1:{port}"
-        return [f"On your own computer, first type: ssh -N -L {forward} {getpass.getuser()}@{server}"]
+        return [f"On your own computer, first type: ssh -N -L {forward} {xdg.user_name()}@{server}"]
     return []
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import getpass
 import re
 import subprocess
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common import xdg
 from grader.ros.failure import Ros2Error
 from grader.ros2.completion import completes, packages
 from grader.ros2.pkg.new_package import NewPackage
@@ -46,7 +46,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     needed = parser.add_argument("--dependencies", nargs="+", default=[], help="packages that the new package uses")
     completes(needed, packages)
     parser.add_argument("--maintainer-email", help="default: the address in git's settings")
-    parser.add_argument("--maintainer-name", default=getpass.getuser(), help="default: the user name")
+    parser.add_argument("--maintainer-name", default=xdg.user_name(), help="default: the user name")
     parser.add_argument("--node-name", help="also create an executable with this name")
     parser.add_argument("--library-name", help="also create a library with this name")
 

@@ -29,7 +29,7 @@ def names(folder: Path, exercise: str | None = STEP) -> list[tuple[str, str, str
 def test_a_folder_of_folders_and_archives(tmp_path: Path) -> None:
     for name in ("anna", "Zoe", ".git", "__MACOSX", "grades"):
         (tmp_path / name).mkdir()
-    for name in ("ben.zip", "clara.tar.gz", "roster.csv", ".DS_Store"):
+    for name in ("ben.zip", "._ben.zip", "clara.tar.gz", "roster.csv", ".DS_Store"):
         (tmp_path / name).touch()
     os.mkfifo(tmp_path / "pipe")
     assert passed_over([tmp_path], tmp_path / "grades") == (".git", "__MACOSX", "pipe", "roster.csv")

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
             PermissionError(errno.EPERM, "x", b"/dev/caf\xe9"),
             "(Operation not permitted): see the output of",
         ),
-        (OSError(errno.EROFS, "x", 7), "The disk cannot be written to: "),
+        (OSError(errno.EROFS, "x", 7), "The disk is read-only: use a folder on another disk"),
         (OSError(), "(no reason given)"),
         (FileNotFoundError(errno.ENOENT, "No usable temporary directory found in ['/tmp']"), "with TMPDIR"),
     ],

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -50,3 +51,13 @@ def test_a_path_with_two_dots_is_resolved(
 ) -> None:
     monkeypatch.setenv(variable, f"{home}/a/../b")
     assert folder() == home / "b/grader"
+
+
+def test_a_user_without_a_name_has_an_id(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As in a container that runs as a user id of the host."""
+    for variable in ("LOGNAME", "USER", "LNAME", "USERNAME"):
+        monkeypatch.delenv(variable, raising=False)
+    monkeypatch.setattr(os, "getuid", lambda: 54321)
+    assert xdg.user_name() == "54321"
+    monkeypatch.setenv("USER", "ada")
+    assert xdg.user_name() == "ada"
