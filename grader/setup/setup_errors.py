@@ -36,6 +36,8 @@ _OFFLINE = re.compile(
     "Network is unreachable|No route to host|Connection refused|failed to lookup address",
     re.IGNORECASE,
 )
+_NO_LINK = re.compile(r"\[Errno (?:1|30|38|95)\] [^\n]*'lib' -> '")
+"""The message of venv on a file system without symbolic links. VirtualBox reports a read-only file system."""
 _CERTIFICATE = re.compile("certificate (?:(?:is )?not (?:yet valid|valid yet)|(?:has )?expired)")
 _INDEXES = re.compile(r"^Looking in indexes: (.+)$", re.MULTILINE)
 _WRITE = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
@@ -86,6 +88,12 @@ def of_output(said: str, folder: Path) -> Optional[str]:
     number = int(found.group(1) or found.group(2)) if found else 0
     if number in (errno.ENOSPC, errno.EDQUOT) or _fullest([folder]):
         return _of_number(errno.ENOSPC, _fullest([folder, Path(tempfile.gettempdir()), cache()]) or folder)
+    if _NO_LINK.search(said):
+        return (
+            f"The file system of {folder} has no symbolic links, which Python needs there (as on a USB stick or in a "
+            "folder that a virtual machine shares): copy the course's folder to another file system, such as your "
+            "home, and type the same command there."
+        )
     if number in _WRITE or number in (errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN):
         return _of_number(number, folder)
     if _CERTIFICATE.search(said):

@@ -54,17 +54,23 @@ class Clone:
         return printed
 
     def _start(self, command: str, folder: Path, environment: Mapping[str, str]) -> subprocess.Popen[str]:
-        return subprocess.Popen(
-            [*self.within, "bash", "-c", f'cd "$0" && {command}', str(folder)],
-            cwd="/",
-            env={**self.environment(), **environment},
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-            text=True,
-            errors="replace",
-        )
+        # A shell script ignores SIGINT in its background jobs, such as `.ci/doors &`, and a child inherits that.
+        # A signal with a handler has its default effect in a child.
+        inherited = signal.signal(signal.SIGINT, signal.default_int_handler)
+        try:
+            return subprocess.Popen(
+                [*self.within, "bash", "-c", f'cd "$0" && {command}', str(folder)],
+                cwd="/",
+                env={**self.environment(), **environment},
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+                text=True,
+                errors="replace",
+            )
+        finally:
+            signal.signal(signal.SIGINT, inherited)
 
     def stop(self, command: str, at: str, number: signal.Signals) -> str:
         """Run a command. When the command prints `at`, send the signal to it and to all its children.
