@@ -6,6 +6,7 @@ the last build is kept. Therefore, the verdict after a save takes little longer 
 
 from __future__ import annotations
 
+import os
 from contextlib import suppress
 from dataclasses import dataclass
 from queue import SimpleQueue
@@ -37,6 +38,8 @@ _STEP_MS = 25
 """The polling interval for new events (ms). With an interval of 10 ms, an idle watch would use 0.7 % of a core."""
 SUSPEND_S = 20.0
 """The time without a save after which the next trial is suspended (s)."""
+MOST_FOLDERS = 1000
+"""The maximum number of folders of a package that are watched."""
 _LOOK_MS = 500
 """The interval between checks that the path still leads to the watched folder (ms)."""
 
@@ -55,6 +58,22 @@ class _Sources(DefaultFilter):
     ignore_dirs = (*DefaultFilter.ignore_dirs, "build", "install", "log")
 
 
+def folders(top: Path) -> list[str]:
+    """Return the folder and the folders in it that can have sources, without following symbolic links.
+
+    A link to `/` in a package would otherwise use up the user's inotify watches.
+    """
+    found = []
+    for folder, below, _ in os.walk(top):
+        if not os.access(folder, os.R_OK | os.X_OK):
+            continue
+        found.append(folder)
+        if len(found) == MOST_FOLDERS:
+            break
+        below[:] = sorted(name for name in below if name not in _Sources.ignore_dirs)
+    return found
+
+
 def _identity(folder: Path) -> tuple[int, int] | None:
     """Return the device and the inode of the folder at this path, or None if there is no such folder."""
     try:
@@ -71,6 +90,8 @@ class Events:
         self._queue: SimpleQueue[Happened] = SimpleQueue()
         self._stop = Event()
         self._saved = Event()
+        self.watched: list[str] = []
+        """The watched folders."""
         # All folders share one reader of key presses, because a second reader would take keys from the first reader.
         if read_key is not None:
             Thread(target=self._keys, args=(read_key,), daemon=True).start()
@@ -112,11 +133,18 @@ class Events:
                 stop.wait(_LOOK_MS / 1000)
 
     def _watch_one(self, folder: Path, watched: tuple[int, int], stop: Event) -> bool:
-        """Watch the folder until the path leads to another folder. Return False if the folder could not be watched."""
+        """Watch the folder until the path leads to another folder, or folders are added or removed.
+
+        Return False if the folder could not be watched.
+        """
         begins = True
+        self.watched = folders(folder)
+        if not self.watched:
+            return False
         try:
             for changes in watch(
-                folder,
+                *self.watched,
+                recursive=False,
                 watch_filter=_Sources(),
                 debounce=DEBOUNCE_MS,
                 step=_STEP_MS,
@@ -129,9 +157,9 @@ class Events:
                 if (changes or begins or replaced) and not stop.is_set() and not self._saved.is_set():
                     self._saved.set()
                     self._queue.put(Happened("saved"))
-                begins = False
-                if replaced:
+                if replaced or ((changes or begins) and folders(folder) != self.watched):
                     return True
+                begins = False
         except FileNotFoundError:
             pass
         return False

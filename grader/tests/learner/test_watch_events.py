@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.learner.watch import Events
+from grader.learner.watch import Events, folders
+from grader.tests.waiting import until
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -62,6 +63,34 @@ def test_watching_follows_the_path_when_another_folder_takes_it(package: Path) -
     node_of(package).write_text("x = 1\n")
     assert next(happened).kind == "saved"
     events.close()
+
+
+def test_a_save_in_a_new_folder_is_noticed(package: Path) -> None:
+    events = Events(None)
+    events.watch(package)
+    happened = iter(events)
+    assert next(happened).kind == "saved"
+    file = package / "new" / "below" / "module.py"
+    file.parent.mkdir(parents=True)
+    assert next(happened).kind == "saved"
+    until(lambda: str(file.parent) in events.watched)
+    while events.waiting():
+        next(happened)
+    file.write_text("x = 1\n")
+    assert next(happened).kind == "saved"
+    events.close()
+
+
+def test_links_and_endless_folders_do_not_use_up_the_watches_of_the_user(
+    package: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (package / "everything").symlink_to("/")
+    (package / "itself").symlink_to(package)
+    (package / "build" / "of colcon").mkdir(parents=True)
+    own = [str(each) for each in (package, *package.rglob("*")) if each.is_dir() and not each.is_symlink()]
+    assert sorted(folders(package)) == sorted(each for each in own if "/build" not in each)
+    monkeypatch.setattr("grader.learner.watch.MOST_FOLDERS", 2)
+    assert len(folders(package)) == 2
 
 
 def test_keys_come_in_order_and_the_end_of_input_ends_the_loop() -> None:
