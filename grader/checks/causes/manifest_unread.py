@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.syntax import UTF_16
 from grader.common.words import nearest, shorten
 from grader.submission.package_xml import end_of_root, line_of, open_tag
 from grader.submission.where import Where
@@ -56,8 +57,18 @@ def why_not_read(evidence: Evidence, manifest: Manifest) -> Cause:
     return Cause("package-xml-invalid", where=Where(FILE, manifest.line or line_of(data, "<package")))
 
 
+def _is_utf8(data: bytes) -> bool:
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError:
+        return False
+    return True
+
+
 def _malformed(data: bytes, problem: str, line: int | None) -> Cause:
     """Return the cause if the file is not XML. `line` is the line at which the XML parser stopped."""
+    if not data.startswith(UTF_16) and not _is_utf8(data):
+        return Cause("not-utf8", "Save the file as UTF-8.", Where(FILE, line))
     cause = "Each <tag> needs a closing </tag> with the same name. Close the inner tag before the outer tag."
     text = _line_text(data, line)
     end = end_of_root(data)

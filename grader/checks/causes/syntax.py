@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 NOT_UTF8 = r"codec can't decode|unicode error|[Nn]on-UTF-8|encoding"
 """Python's messages about a file that is not valid UTF-8."""
+UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+"""The beginnings of a file in UTF-16. Python's message is about null bytes."""
 EXPECTED = "The file is valid Python."
 
 CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
@@ -146,6 +148,8 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
     if other is not None:
         text = f"The bracket {other['bracket']} from line {other['line']} is still open on line {unreadable.line}."
         return Cause("bracket-open", text, Where(file, int(other["line"])))
+    if data.startswith(UTF_16):
+        return Cause("not-utf8", "Save the file as UTF-8.", Where(file))
     for pattern, diagnosis, text in CAUSES:
         if re.search(pattern, unreadable.message):
             return Cause(diagnosis, text).fixed_by(_fix(diagnosis, file, unreadable, data))

@@ -70,6 +70,7 @@ def leads_to(target: str) -> Build:
         ({NODE_FILE: NODE.replace("def send(self):", "def send(self)")}, BUILD, "colon-missing", f"{NODE_FILE}:12"),
         ({NODE_FILE: b"name = '\xe4'\n"}, BUILD, "not-utf8", NODE_FILE),
         ({NODE_FILE: NODE.encode() + b"\0"}, BUILD, "syntax-error", NODE_FILE),
+        ({NODE_FILE: NODE.encode("utf-16")}, BUILD, "not-utf8", NODE_FILE),
         (
             {"my_robot_controller/more/node.py": NODE},
             leads_to("my_robot_controller.more.node:main"),

@@ -171,6 +171,12 @@ def test_what_was_left_out_of_the_submission_is_reported(more: tuple[str, ...], 
             "In XML, & begins the name of a character. Write &amp; for the character & itself.",
         ),
         (
+            {"package.xml": PACKAGE_XML.replace("MIT", "M\xfcT").encode("latin-1")},
+            "not-utf8",
+            "package.xml:7",
+            "Save the file as UTF-8.",
+        ),
+        (
             xml("<depend>rclpy", "<depend a=1>rclpy"),
             "xml-malformed",
             "package.xml:8",
