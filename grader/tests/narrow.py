@@ -10,7 +10,9 @@ if TYPE_CHECKING:
 WIDTHS = (390, 320)
 """The widths of a common and of a small phone (CSS pixels)."""
 _FIND = """
-() => {
+async () => {
+  // The page chooses the layout of a graph or a plot in the frame after the window has changed.
+  await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
   const found = [];
   const name = (each) => `${each.localName}#${each.id}.${each.getAttribute("class") ?? ""} ${each.ariaLabel ?? ""}`;
   const page = document.documentElement;
@@ -47,7 +49,6 @@ _TEXT_SIZE = """(selector) => new Promise((resolve) => requestAnimationFrame(() 
   Math.min(...[...document.querySelectorAll(`${selector} text`)].map((text) =>
     parseFloat(getComputedStyle(text).fontSize) * text.getScreenCTM().a))))))
 """
-"""The page chooses the layout of a graph in the frame after the window has changed."""
 
 
 def text_px(page: Page, selector: str) -> float:

@@ -50,9 +50,8 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
         left = sorted(questions - named)
         names = a_list(left or sorted(questions), most=len(questions))
         intro = "These questions are not answered yet:" if left else "The names of the questions are"
-        cause = f"{intro} {names}."
         where = Where(FILE, found.lines.get(other[0]))
-        return failed(observed, expected, Cause("unknown-answer", cause, where))
+        return failed(observed, expected, Cause("unknown-answer", f"{intro} {names}.", where))
     if not named:
         return failed(f"{FILE} has no answers yet.", expected, Cause("answers-empty", where=Where(FILE)))
     return passed(f"{FILE} can be read.")

@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.checks.causes.no_entry_point import indented
 from grader.checks.outcome import Finding, Status
 from grader.checks.subjects.building import BUILDS
 from grader.checks.subjects.entry_point import ENTRY_POINT
-from grader.submission.code import read_module
 from grader.tests.checks.made import BUILD, NODE, NODE_FILE, SETUP_PY, evidence, finding, submission
 
 if TYPE_CHECKING:
@@ -256,21 +254,6 @@ def test_a_module_that_was_not_installed_is_none_unless_it_is_linked() -> None:
 def test_a_file_without_the_function_is_shown_what_it_has(text: str, diagnosis: str, line: str | None) -> None:
     got = found({NODE_FILE: text}, BUILD)
     assert (got.diagnosis, str(got.where)) == (diagnosis, "setup.py:14" if line is None else f"{NODE_FILE}{line}")
-
-
-@pytest.mark.parametrize(
-    ("before", "above"),
-    [
-        ("class A:\n", "the class above it"),
-        ("class A:\n    pass\ndef run():\n", "the function run above it"),
-        ("class A:\n    pass\nif __name__ == '__main__':\n", "the block that begins on line 3 above it"),
-    ],
-)
-def test_an_indented_function_belongs_to_what_is_above_it(before: str, above: str) -> None:
-    module = read_module(NODE_FILE, f"{before}    def main():\n        pass\n".encode())
-    cause = indented(module, "main")
-    assert cause is not None
-    assert cause.text == f"main is indented, so it belongs to {above}. Remove the indentation."
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from grader.checks.causes.no_entry_point import indented
+from grader.submission.code import read_module
 from grader.tests.checks.crashes import DRIVER, reported, to_look_at
 
 
@@ -261,3 +263,18 @@ def test_a_function_of_the_entry_point_may_be_inside_the_class(name: str, indent
     told = reported(source, f"AttributeError: module 'my_robot_controller.draw_circle' has no attribute '{name}'")
     assert told.diagnosis == diagnosis
     assert ("main is indented, so it belongs to the class above it." in told.cause) == (diagnosis == "main-in-class")
+
+
+@pytest.mark.parametrize(
+    ("before", "above"),
+    [
+        ("class A:\n", "the class above it"),
+        ("class A:\n    pass\ndef run():\n", "the function run above it"),
+        ("class A:\n    pass\nif __name__ == '__main__':\n", "the block that begins on line 3 above it"),
+    ],
+)
+def test_an_indented_function_belongs_to_what_is_above_it(before: str, above: str) -> None:
+    module = read_module("node.py", f"{before}    def main():\n        pass\n".encode())
+    cause = indented(module, "main")
+    assert cause is not None
+    assert cause.text == f"main is indented, so it belongs to {above}. Remove the indentation."
