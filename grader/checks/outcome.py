@@ -44,12 +44,15 @@ class Finding:
     where: Where | None = None
     near_edge: bool = False
     fix: tuple[Edit, ...] = field(default=(), compare=False)
-    """The change that would fix the mistake. The grader tries this change but never shows it to a student."""
+    """The change that would fix the mistake. The grader tests this change in a copy of the submission."""
     tried: str = ""
-    """A sentence that says whether the check passed when the change was tested."""
+    """A sentence that says whether the check passed when the change was tested.
+
+    If `exercise.toml` sets `show_fix`, `tried` also contains the change, and students see it.
+    """
     change: str = ""
-    """The change as a unified diff if its test confirmed the cause. It is only for instructors, because it is a part
-    of the solution."""
+    """The change as a unified diff if its test confirmed the cause. Only instructors see this diff, because it is a
+    part of the solution."""
 
     def because(self, cause: Cause) -> Finding:
         """Return the finding with this cause instead of its own cause."""

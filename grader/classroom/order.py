@@ -43,7 +43,7 @@ class Order:
 
     @cached_property
     def exercises(self) -> dict[str, Exercise]:
-        """The exercises by id. Raises UsageError, which lists every problem with the private checks."""
+        """The exercises by id. Raises UsageError if the private checks of an exercise are not valid."""
         return {name: exercise_from(sources) for name, sources in self.sources.items()}
 
     def key(self, found: Found) -> Key:

@@ -51,7 +51,7 @@ def _text(data: bytes) -> str:
 
 
 def place_of_turtle1(recording: Recording, t_s: float) -> tuple[float, float]:
-    """Return x and y of turtle1 at this time (m)."""
+    """Return the position of turtle1 at this time: x and y (m)."""
     frames = recording.frames
     if not len(frames.t_s):
         return recording.start.x, recording.start.y

@@ -2,9 +2,9 @@
 
 The keys in `schema = 2`:
 
-- `[exercise]` has id, title, package (without a package, students submit only answers.toml), apart (the package is not
-  the learner's own), show_fix (students see the tested change) and starting_point_fails (the ids of the checks
-  that exercises/ must fail).
+- `[exercise]` has id, title, package (without a package, students submit only answers.toml), apart (`grader start` puts
+  the package into a separate workspace), show_fix (students see the tested change) and starting_point_fails (the ids of
+  the checks that the starting point must fail).
 - `[numbers]` has file (the name of a TOML file in the package), and lists of possible values. Each student gets one
   value from each list. In a `[[check]]`, the value `{ own = "radius_m" }` stands for the student's own value.
 - `[[trial]]` has id, executable, node, duration_s, start, rename, pose_every, pose_from_s, answers_after_s, targets and

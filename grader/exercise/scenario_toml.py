@@ -136,8 +136,8 @@ def _drive(table: Table) -> Drive:
 def _call(table: Table) -> CallInput:
     call = CallInput(
         table.number("at_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)"),
-        table.string("service", SERVICE, "a full name, as in /pause"),
-        table.string("type", SERVICE_TYPE, "a service type, as in std_srvs/srv/SetBool"),
+        table.string("service", SERVICE, "a full name, such as /pause"),
+        table.string("type", SERVICE_TYPE, "a service type, such as std_srvs/srv/SetBool"),
         table.anything("request"),
     )
     table.finish()

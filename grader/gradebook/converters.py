@@ -61,7 +61,7 @@ class BoundedAutograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore
     """nbgrader's Autograde, in which the base class `_Copying` copies the files."""
 
     def init_destination(self, assignment_id: str, student_id: str) -> bool:
-        """Initialize the destination as Autograde does, and return the result of Autograde.
+        """Initialize the destination as nbgrader's method does, and return its result.
 
         An invalid submission time makes only this submission fail.
         """

@@ -81,7 +81,7 @@ def draw_picture(evidence: Evidence, report: Report) -> Image.Image:
 
 
 def _panels(count: int) -> list[Panel]:
-    """Return one large canvas, or a grid of smaller canvases."""
+    """Return the positions and sizes of the canvases: one large canvas, or a grid of smaller ones."""
     if count == 1:
         return [Panel(LEFT, TOP, SIDE_PX)]
     wide, high = LEFT + SMALL_PX + RIGHT, HEADING + SMALL_PX + BOTTOM

@@ -26,10 +26,10 @@ _LONGEST = 255
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    parser.add_argument("--prefix", help="a command that starts the executable, as in --prefix 'gdb -ex run --args'")
-    completes(parser.add_argument("package_name", help="name of the package, as in turtlesim"), packages)
+    parser.add_argument("--prefix", help="a command that starts the executable, such as --prefix 'gdb -ex run --args'")
+    completes(parser.add_argument("package_name", help="name of the package, such as turtlesim"), packages)
     completes(parser.add_argument("executable_name", help="name of the executable"), _executables)
-    parser.add_argument("argv", nargs="...", help="arguments of the executable, as in --ros-args -p name:=value")
+    parser.add_argument("argv", nargs="...", help="arguments of the executable, such as --ros-args -p name:=value")
 
 
 def _executables(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401

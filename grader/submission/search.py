@@ -101,7 +101,10 @@ def _visit_below(search: _Search, folder: int, entry: Entry, path: str, depth: i
 
 
 def _is_folder_behind(name: str, folder: int) -> bool:
-    """For an error message, return whether the link leads to a folder. The folder is not opened."""
+    """Return whether the symbolic link points to a folder. Only an error message uses the result.
+
+    The folder is not opened.
+    """
     try:
         return stat.S_ISDIR(os.stat(name, dir_fd=folder).st_mode)
     except OSError:

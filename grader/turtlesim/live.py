@@ -54,7 +54,7 @@ def _wait_for_end(stop: threading.Event) -> None:
 
 
 class _ShownNode(TurtlesimNode):
-    """A turtlesim that sends its frames to a screen."""
+    """A turtlesim node that notifies a screen after each frame."""
 
     screen: _Screen | None = None
 

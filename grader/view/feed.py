@@ -102,7 +102,7 @@ class Feed:
             self.sent[topic] = self.sent.get(topic, 0) + 1
 
     def show(self, turtles: Mapping[str, Turtle], *, paused: bool) -> None:
-        """Send the state after a frame to the view if a message is due."""
+        """After a frame, send the state to the view if a message is due."""
         self._frames += 1
         if self._frames % EVERY_FRAMES:
             return

@@ -45,7 +45,7 @@ class Hub:
     async def follow(self, send: Callable[[str], Awaitable[None]]) -> None:
         """Send the whole state and then all updates to a page, until the coroutine is cancelled.
 
-        `send` waits for a slow page.
+        `send` waits for a slow page. If the page misses updates because it is too slow, it gets the whole state again.
         """
         woken = asyncio.Event()
         self._pages.add(woken)

@@ -46,9 +46,10 @@ class Page:
         self._lines = Lines()
 
     async def serve(self, place: Place) -> bool:
-        """Serve until the simulator exits or Ctrl-C is pressed. Return whether the page could be opened in a browser.
+        """Serve until the simulator exits or Ctrl-C is pressed. Return True.
 
-        Without a simulator, return immediately if the page cannot be opened.
+        Without a simulator, and unless `stays` is true, return False immediately if the page cannot be opened in a
+        browser.
         """
         self._ended = ended_by_signals()
         loop = asyncio.get_running_loop()

@@ -59,9 +59,10 @@ def in_loop(loop: asyncio.AbstractEventLoop, call: Callable[..., object], *argum
 async def serve(
     place: Place, app: ASGIApp, door: Door, hub: Hub, ended: asyncio.Event, *, stays: bool, opens: bool = True
 ) -> bool:
-    """Serve until the event `ended` is set. Return whether the page could be opened in a browser.
+    """Serve until the event `ended` is set. Return True.
 
-    The page is opened only if `opens` is true. If opening the page fails, return immediately unless `stays` is true.
+    The page is opened in a browser only if `opens` is true. If opening the page fails, and `stays` is false, stop
+    serving and return False immediately.
     """
     server = _Server(uvicorn.Config(app, **_SETTINGS))
     serving = asyncio.create_task(server.serve([place.listening]))

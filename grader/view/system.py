@@ -38,7 +38,7 @@ MOST_HZ = 500.0
 """The maximum rate that is measured (Hz). Counting more messages would be too expensive."""
 _SPARED_S = 10.0
 _LAST_WORD_S = 1.0
-"""The maximum time that the driving node waits for its last command to arrive (s)."""
+"""The driving node stays in the graph for this time after `leave`, so that its last command can arrive (s)."""
 DRIVER = "view_keys"
 """The name of the driving node in the graph."""
 
@@ -140,7 +140,7 @@ class Ears:
         self._executor.create_task(self._drive, turtle, key)
 
     def leave(self) -> None:
-        """Stop driving. The driving node leaves the graph after its last command has arrived."""
+        """Stop driving. The driving node leaves the graph about a second later, so that its last command can arrive."""
         self._leave_s = time.monotonic() + _LAST_WORD_S
 
     async def _drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:

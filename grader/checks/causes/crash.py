@@ -140,7 +140,10 @@ def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:
 
 
 def read_tracebacks(text: str, files: Mapping[str, bytes]) -> Iterable[tuple[bool, Crash]]:
-    """Yield every exception in stderr, and whether it occurred while the previous exception was being handled."""
+    """Yield every exception in stderr, and whether the previous exception is in the same chain of exceptions.
+
+    Exceptions that Python ignored are skipped.
+    """
     for chained, lines in _blocks(text.splitlines()):
         crash = _crash(lines, files)
         if crash is not None:
@@ -148,7 +151,7 @@ def read_tracebacks(text: str, files: Mapping[str, bytes]) -> Iterable[tuple[boo
 
 
 def _blocks(lines: list[str]) -> Iterable[tuple[bool, list[str]]]:
-    """Yield each traceback without its first line, and whether another exception was being handled when it occurred.
+    """Yield each traceback without its first line, and whether the previous one is in the same chain of exceptions.
 
     Exceptions that Python ignored are skipped, because they did not crash the node.
     """

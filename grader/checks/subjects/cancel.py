@@ -31,7 +31,7 @@ class CancelsGoal:
     """The service with which the trial tells the node to cancel its goal within `within_s` (s)."""
 
     service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
-    type: str = string("a service type, as in std_srvs/srv/Trigger", about="The type of the service.")
+    type: str = string("a service type, such as std_srvs/srv/Trigger", about="The type of the service.")
     within_s: float = number(0.5, above=0, about="The maximum time until the goal is cancelled.")
 
 
@@ -116,7 +116,7 @@ def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
 
 
 def says_whether_active(evidence: Evidence, params: SaysWhetherActive) -> Finding:
-    """In each response, `success` is true if the turtle followed a goal when the call arrived, and false if not."""
+    """In each response, `success` is true if a goal was active when the call arrived, and false if not."""
     expected = f"In the response from {params.service}, success is true if a goal was active, and false if not."
     goals = goals_of(evidence)
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
@@ -162,7 +162,7 @@ def _always_true(evidence: Evidence) -> bool:
 
 
 def _is_active(goals: list[Goal], t_s: float) -> bool | None:
-    """Return whether the turtle follows a goal at this time (s), or None if a goal begins or ends at the same time."""
+    """Return whether a goal is active at this time (s), or None if a goal begins or ends at the same time."""
     for goal in goals:
         ended_s = goal.ended_s if goal.status == "succeeded" else None
         if any(each_s is not None and abs(each_s - t_s) < SAME_TIME_S for each_s in (goal.t_s, ended_s)):
@@ -171,7 +171,7 @@ def _is_active(goals: list[Goal], t_s: float) -> bool | None:
 
 
 def _stopped(goals: list[Goal], calls: list[Call]) -> tuple[Call, Goal] | None:
-    """Return the first call that arrived while the turtle followed a goal, together with that goal, or None."""
+    """Return the first call that arrived while a goal was active, together with that goal, or None."""
     for call in calls:
         for goal in goals:
             if goal.t_s < call.t_s and (goal.ended_s is None or goal.ended_s > call.t_s):

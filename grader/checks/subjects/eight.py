@@ -155,7 +155,7 @@ def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: boo
             observed = f"{subject} continues for {degrees - 360.0:.0f} degrees after it was closed."
         cause = "A full circle takes 2 pi / angular.z seconds. How many timer calls does a full circle take?"
         if last and degrees > 360.0:
-            cause = f"After the second lobe, the turtle stands still. {ZEROS}"
+            cause = f"After the second lobe, the turtle must stand still. {ZEROS}"
         finding = failed(observed, wanted, Cause("lobe-angle", cause, evidence.place("create_timer")), near_edge=near)
         turning = math.degrees(float(np.abs(recording.frames.angular).max()))
         return unless_starved(finding, recording, abs(degrees - 360.0) - params.angle_tolerance_deg, turning), near
@@ -176,7 +176,7 @@ def _drives_on(evidence: Evidence, lobes: list[Lobe], expected: str) -> Finding 
     """Return a failed finding if the turtle does not stand still after the second lobe, else None."""
     if len(lobes) > len(NAMES):
         observed = f"After the second lobe, the turtle drives a third one, to the {lobes[len(NAMES)].side}."
-        cause = f"After two lobes, the turtle stands still. {ZEROS}"
+        cause = f"After two lobes, the turtle must stand still. {ZEROS}"
         return failed(observed, expected, Cause("drives-on", cause, evidence.place("publish")))
     return no_standstill(evidence, expected)
 

@@ -107,7 +107,7 @@ class AnswersCall:
     """The node's response to the `nth` call of the trial to the service, counted from 1."""
 
     service: str = string("the full name of a service", start="/", about="The name of the service.")
-    type: str = string("a service type, as in std_srvs/srv/SetBool", about="The type of the service.")
+    type: str = string("a service type, such as std_srvs/srv/SetBool", about="The type of the service.")
     nth: float = number(
         1, at_least=1, about="The number of the judged call, counted from 1 among the trial's calls to this service."
     )

@@ -58,7 +58,7 @@ class Removes:
 
     service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
     type: str = string(
-        "a service type, as in turtlesim/srv/Kill", about="The type of the service. The request has the field `name`."
+        "a service type, such as turtlesim/srv/Kill", about="The type of the service. The request has the field `name`."
     )
     topic: str = string(
         "the full name of a topic", start="/", about="The topic with the names of the remaining turtles."

@@ -30,7 +30,9 @@ class Topic:
     """The full name of the topic, and its message type, such as "geometry_msgs/msg/Twist"."""
 
     topic: str = string("the full name of a topic", start="/", about="The topic of the messages.")
-    type: str = string("a message type, as in geometry_msgs/msg/Twist", about="The type of the messages on the topic.")
+    type: str = string(
+        "a message type, such as geometry_msgs/msg/Twist", about="The type of the messages on the topic."
+    )
 
 
 COMMANDS = Topic(topic="/turtle1/cmd_vel", type="geometry_msgs/msg/Twist")

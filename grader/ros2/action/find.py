@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    kind = parser.add_argument("action_type", help="full type, as in turtlesim/action/RotateAbsolute")
+    kind = parser.add_argument("action_type", help="full type, such as turtlesim/action/RotateAbsolute")
     completes(kind, all_action_types)
     parser.add_argument("-c", "--count-actions", action="store_true", help="print only the number of actions")
 

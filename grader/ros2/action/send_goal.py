@@ -24,12 +24,12 @@ _WHOLE = Form(limit=None)
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    completes(parser.add_argument("action_name", help="name, as in /turtle1/rotate_absolute"), actions)
-    kind = parser.add_argument("action_type", help="type of the action, as in turtlesim/action/RotateAbsolute")
+    completes(parser.add_argument("action_name", help="name, such as /turtle1/rotate_absolute"), actions)
+    kind = parser.add_argument("action_type", help="type of the action, such as turtlesim/action/RotateAbsolute")
     completes(kind, action_types)
     source = parser.add_mutually_exclusive_group()
     given = source.add_argument(
-        "goal", nargs="?", default="{}", help='the goal, as in "{theta: 1.57}"; all values are zero by default'
+        "goal", nargs="?", default="{}", help='the goal, such as "{theta: 1.57}"; all values are zero by default'
     )
     completes(given, prototype("action_type", "action", "Goal"))
     source.add_argument("--stdin", action="store_true", help="read the goal from standard input")

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    completes(parser.add_argument("action_name", help="full name, as in /turtle1/rotate_absolute"), actions)
+    completes(parser.add_argument("action_name", help="full name, such as /turtle1/rotate_absolute"), actions)
 
 
 def run(args: argparse.Namespace) -> int:

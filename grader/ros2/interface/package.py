@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_kinds(parser)
-    name = parser.add_argument("package_name", help="name of the package, as in turtlesim")
+    name = parser.add_argument("package_name", help="name of the package, such as turtlesim")
     completes(name, lambda **_: index.interface_packages())
 
 

@@ -16,7 +16,7 @@ _PARTS = {"msg": "", "srv": "Request", "action": "Goal"}
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    completes(parser.add_argument("type", help="full name, as in geometry_msgs/msg/Twist"), interfaces)
+    completes(parser.add_argument("type", help="full name, such as geometry_msgs/msg/Twist"), interfaces)
     parser.add_argument("--no-quotes", action="store_true", help="print the template without quotes")
 
 

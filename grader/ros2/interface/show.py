@@ -38,7 +38,9 @@ def add(parser: argparse.ArgumentParser) -> None:
     comments.add_argument("--all-comments", action="store_true", help="also print the comments of nested types")
     comments.add_argument("--no-comments", action="store_true", help="print neither comments nor empty lines")
     kind = parser.add_argument(
-        "type", action=_FromInput, help="full name, as in geometry_msgs/msg/Twist; - reads the type from standard input"
+        "type",
+        action=_FromInput,
+        help="full name, such as geometry_msgs/msg/Twist; - reads the type from standard input",
     )
     completes(kind, interfaces)
 

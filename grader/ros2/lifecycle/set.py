@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     lifecycle_client.add_node(parser)
-    parser.add_argument("transition", help="name or number of the transition, as in configure")
+    parser.add_argument("transition", help="name or number of the transition, such as configure")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
-    completes(parser.add_argument("node_name", help="full name of the node, as in /turtlesim"), nodes)
+    completes(parser.add_argument("node_name", help="full name of the node, such as /turtlesim"), nodes)
     parser.add_argument("--include-hidden", action="store_true", help="include hidden topics, services and actions")
 
 

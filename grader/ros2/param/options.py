@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def add_node(parser: argparse.ArgumentParser) -> None:
     """Add the argument for the node, and the option for hidden nodes."""
     add_look(parser)
-    completes(parser.add_argument("node_name", help="name of the node, as in /turtlesim"), nodes)
+    completes(parser.add_argument("node_name", help="name of the node, such as /turtlesim"), nodes)
     parser.add_argument("--include-hidden-nodes", action="store_true", help="include nodes whose names start with _")
 
 
@@ -27,7 +27,7 @@ def add_timeout(parser: argparse.ArgumentParser) -> None:
 
 def add_name(parser: argparse.ArgumentParser, name: str = "parameter_name", **options: Any) -> None:  # noqa: ANN401
     """Add the argument for the name of the parameter."""
-    completes(parser.add_argument(name, help="name of the parameter, as in background_r", **options), _names)
+    completes(parser.add_argument(name, help="name of the parameter, such as background_r", **options), _names)
 
 
 def _names(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401

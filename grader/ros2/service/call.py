@@ -21,11 +21,13 @@ _POLL_S = 0.02
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    completes(parser.add_argument("service_name", help="name of the service, as in /spawn"), services)
-    completes(parser.add_argument("service_type", help="type of the service, as in turtlesim/srv/Spawn"), service_types)
+    completes(parser.add_argument("service_name", help="name of the service, such as /spawn"), services)
+    completes(
+        parser.add_argument("service_type", help="type of the service, such as turtlesim/srv/Spawn"), service_types
+    )
     source = parser.add_mutually_exclusive_group()
     given = source.add_argument(
-        "values", nargs="?", default="{}", help='the request, as in "{x: 2.0}"; all values are zero by default'
+        "values", nargs="?", default="{}", help='the request, such as "{x: 2.0}"; all values are zero by default'
     )
     completes(given, prototype("service_type", "srv", "Request"))
     source.add_argument("--stdin", action="store_true", help="read the request from standard input")

@@ -21,7 +21,7 @@ _EVENTS = ("REQUEST_SENT", "REQUEST_RECEIVED", "RESPONSE_SENT", "RESPONSE_RECEIV
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    completes(parser.add_argument("service_name", help="name of the service, as in /spawn"), services)
+    completes(parser.add_argument("service_name", help="name of the service, such as /spawn"), services)
     completes(
         parser.add_argument("service_type", nargs="?", help="type of the service, required if no server is running"),
         service_types,

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    completes(parser.add_argument("service_type", help="full type, as in std_srvs/srv/Empty"), all_service_types)
+    completes(parser.add_argument("service_type", help="full type, such as std_srvs/srv/Empty"), all_service_types)
     parser.add_argument("-c", "--count-services", action="store_true", help="print only the number of services")
     parser.add_argument("--include-hidden-services", action="store_true", help="include hidden services")
 

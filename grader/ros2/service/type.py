@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    completes(parser.add_argument("service_name", help="full name of the service, as in /spawn"), services)
+    completes(parser.add_argument("service_name", help="full name of the service, such as /spawn"), services)
 
 
 def run(args: argparse.Namespace) -> int:

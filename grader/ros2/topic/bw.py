@@ -54,7 +54,7 @@ def bandwidth(arrivals: Sequence[tuple[int, int]], now_ns: int) -> Bandwidth:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    completes(parser.add_argument("topic", help="name of the topic, as in /turtle1/pose"), topics)
+    completes(parser.add_argument("topic", help="name of the topic, such as /turtle1/pose"), topics)
     parser.add_argument(
         "--window",
         "-w",

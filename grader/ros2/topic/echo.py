@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
-    completes(parser.add_argument("topic_name", help="name of the topic, as in /turtle1/pose"), topics)
+    completes(parser.add_argument("topic_name", help="name of the topic, such as /turtle1/pose"), topics)
     kind = parser.add_argument("message_type", nargs="?", help="type of the topic, required if no publisher is running")
     completes(kind, topic_types)
     qos.add_qos(parser, "sensor_data")
     parser.add_argument(
         "--csv", action="store_true", help="print each message on one line, with commas between the values"
     )
-    parser.add_argument("--field", action="append", help="print only this part, as in linear.x; may be repeated")
+    parser.add_argument("--field", action="append", help="print only this part, such as linear.x; may be repeated")
     add_form(parser)
     parser.add_argument("--no-lost-messages", action="store_true", help="do not report lost messages")
     parser.add_argument("--raw", action="store_true", help="print the bytes of the messages")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
-    completes(parser.add_argument("topic_type", help="full type, as in geometry_msgs/msg/Twist"), message_types)
+    completes(parser.add_argument("topic_type", help="full type, such as geometry_msgs/msg/Twist"), message_types)
     parser.add_argument("-c", "--count-topics", action="store_true", help="print only the number of topics")
     parser.add_argument("--include-hidden-topics", action="store_true", help="include hidden topics")
 

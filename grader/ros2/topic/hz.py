@@ -85,7 +85,7 @@ class Arrivals:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    completes(parser.add_argument("topic_name", help="name of the topic, as in /turtle1/pose"), topics)
+    completes(parser.add_argument("topic_name", help="name of the topic, such as /turtle1/pose"), topics)
     parser.add_argument(
         "--window",
         "-w",

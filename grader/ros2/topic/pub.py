@@ -35,11 +35,13 @@ def nonnegative_int(text: str) -> int:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    completes(parser.add_argument("topic_name", help="name of the topic, as in /turtle1/cmd_vel"), topics)
-    completes(parser.add_argument("message_type", help="type of the topic, as in geometry_msgs/msg/Twist"), topic_types)
+    completes(parser.add_argument("topic_name", help="name of the topic, such as /turtle1/cmd_vel"), topics)
+    completes(
+        parser.add_argument("message_type", help="type of the topic, such as geometry_msgs/msg/Twist"), topic_types
+    )
     source = parser.add_mutually_exclusive_group()
     given = source.add_argument(
-        "values", nargs="?", default="{}", help='the values, as in "{linear: {x: 2.0}}"; by default, all are zero'
+        "values", nargs="?", default="{}", help='the values, such as "{linear: {x: 2.0}}"; by default, all are zero'
     )
     completes(given, prototype("message_type", "msg"))
     source.add_argument("--stdin", action="store_true", help="read the values from standard input")

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
-    completes(parser.add_argument("topic_name", help="full name of the topic, as in /turtle1/pose"), topics)
+    completes(parser.add_argument("topic_name", help="full name of the topic, such as /turtle1/pose"), topics)
 
 
 def run(args: argparse.Namespace) -> int:

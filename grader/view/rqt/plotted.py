@@ -78,7 +78,10 @@ class Plotted:
                 self._wanted[name] = self._begin(name, types)
 
     def flush(self) -> None:
-        """Pass all samples since the last flush to `tell`."""
+        """Call `tell` with the samples since the last flush and the problem of each field.
+
+        `tell` is not called if there are no new samples and no problem has changed.
+        """
         if any(self._new.values()) or self._wanted != self._told:
             self._tell(self._new, dict(self._wanted))
             self._told = dict(self._wanted)

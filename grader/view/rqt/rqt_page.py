@@ -58,7 +58,10 @@ class RqtPage:
         self._services: list[Service] = []
 
     async def serve(self, place: Place, *, stays: bool) -> bool:
-        """Serve until Ctrl-C. Return whether the page could be opened in a browser or `stays` is true."""
+        """Serve until Ctrl-C. Return True.
+
+        Unless `stays` is true, return False immediately if the page cannot be opened in a browser.
+        """
         ended, loop = ended_by_signals(), asyncio.get_running_loop()
 
         def tell(call: Callable[..., object]) -> Callable[..., None]:

@@ -27,7 +27,7 @@ class DrawSquareNode(Node):
         if self.publisher.get_subscription_count() == 0:
             return  # no subscriber yet: the command would be lost
         msg = Twist()
-        # TODO c: set the speeds of the current state, and count this call. After the last call of a state,
+        # TODO c: set the speeds of the current state, and count this call. After the last call in a state,
         # go to the next state.
         self.publisher.publish(msg)
 

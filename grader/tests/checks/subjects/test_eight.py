@@ -163,7 +163,7 @@ Part = tuple[int, float, float]
         ("A full circle takes 2 pi / angular.z seconds.", (lobe(1, degrees=315.0), lobe(-1)), (lobe(1, 1.3), lobe(-1))),
         ("The radius is linear.x divided by angular.z.", (lobe(1, 1.3), lobe(-1)), (lobe(1, degrees=315.0), lobe(-1))),
         (
-            "After the second lobe, the turtle stands still. Publish a",
+            "After the second lobe, the turtle must stand still. Publish a",
             (lobe(1), lobe(-1, degrees=470.0)),
             (lobe(1), lobe(-1)),
         ),
@@ -173,7 +173,7 @@ Part = tuple[int, float, float]
             (lobe(1), lobe(-1)),
         ),
         (
-            "After two lobes, the turtle stands still. Publish a",
+            "After two lobes, the turtle must stand still. Publish a",
             (lobe(1), lobe(-1), lobe(1, degrees=90.0)),
             (lobe(1), lobe(-1, degrees=470.0)),
         ),

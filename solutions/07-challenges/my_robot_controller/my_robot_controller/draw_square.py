@@ -37,7 +37,7 @@ class DrawSquareNode(Node):
             self.change_state()
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO c: set the speeds of the current state, and count this call. After the last call of a state,
+        # # TODO c: set the speeds of the current state, and count this call. After the last call in a state,
         # # go to the next state.
         # END STARTER
         self.publisher.publish(msg)
