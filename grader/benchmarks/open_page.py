@@ -36,6 +36,8 @@ AIM_SIZE = 600_000
 AIM_READY_S = 1.0
 AIM_IDLE = 0.01
 """The target for the share of one core that an idle page uses."""
+_DRIVER = ("node", "node-MainThread")
+"""The names of the process of Playwright's driver. A newer Node.js names its main thread."""
 _REST_S = 2.0
 _IDLE_S = 0.1
 """The processes are idle if they use at most this CPU time (s) within _REST_S."""
@@ -166,11 +168,11 @@ def _idle(seconds: float) -> float:
 
 
 def _used_s() -> dict[int, float]:
-    """Return the CPU time (s) of the descendants of this process, excluding the browser."""
+    """Return the CPU time (s) by process id of the descendants of this process, without the browser and its driver."""
     used = {}
     for pid in _descendants(os.getpid()):
         with suppress(OSError):  # the process has exited
-            if "chrom" not in _name(pid) and "node" not in _name(pid):
+            if "chrom" not in (name := _name(pid)) and name not in _DRIVER:
                 used[pid] = cpu_s(pid)
     return used
 

@@ -44,7 +44,7 @@ _USUAL_FOLDER = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
 
 
 class SharedBuilds:
-    """A replacement for `runner.build` that reuses the build of a package with the same files apart from modules.
+    """A replacement for `runner.build`. It reuses a build if two packages differ only in the text of their modules.
 
     `runs` counts the builds with colcon. With a `store`, builds in cells are also reused by later commands.
     """

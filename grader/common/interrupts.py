@@ -58,7 +58,7 @@ def _raise_again(discarded: sys.UnraisableHookArgs) -> None:
         signal.setitimer(signal.ITIMER_REAL, *rest)
         raise lost
 
-    # The command ends soon. What else Python discards until then is a consequence of the interruption.
+    # The command ends soon. Exceptions that Python discards until then are consequences of the interruption.
     sys.unraisablehook = lambda _: None
     handler = signal.signal(signal.SIGALRM, again)
     rest = signal.setitimer(signal.ITIMER_REAL, _SOON_S)

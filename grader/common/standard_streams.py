@@ -18,7 +18,7 @@ _LOST = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO})
 
 
 class _Messages(io.FileIO):
-    """Standard error, without an error if the messages cannot be stored.
+    """Standard error that discards messages if they cannot be stored, instead of raising an error.
 
     The progress and the messages of a command are less important than its results.
     """

@@ -67,8 +67,8 @@ class Scenario:
     """The events of a trial that lasts `duration_s` (s) on its clock and ends with SIGINT.
 
     If `anywhere` is set, the start pose is random even without a seed. `rename` contains remapping rules for the
-    simulator, such as "/turtle1/pose:=/where". `pose_every` is the number of frames between two poses, and between two
-    colours. The first pose of turtle1 is published at `pose_from_s` (s), as if the simulator had started late. Services
+    simulator, such as "/turtle1/pose:=/where". The pose and the colour of a turtle are published every `pose_every`
+    frames. The first pose of turtle1 is published at `pose_from_s` (s), as if the simulator had started late. Services
     respond `answers_after_s` (s) after a call. The node starts with `parameters` on its command line and with
     `params_file` in a parameter file.
 

@@ -40,8 +40,9 @@ class Ports:
 
     `others` contains the ports of other nodes.
 
-    Inside the cell, the ports `others` are in use. Therefore, the nodes get the same port numbers inside the cell as
-    the sockets in `own` outside of the cell. `discovery` contains the ports of `own` for discovery data.
+    Inside the cell, sockets of the relay occupy the ports in `others`. Therefore, the nodes in the cell get the
+    remaining ports, which have the same numbers as the sockets in `own` outside the cell. `discovery` contains the
+    ports of `own` for discovery data.
     """
 
     own: tuple[socket.socket, ...]

@@ -136,7 +136,7 @@ class Programs:
         return self._address or remembered("turtlesim")
 
     def _printed_address(self) -> Address | None:
-        """Return the address that turtlesim has printed first. Later messages of turtlesim can contain any names."""
+        """Return the first address that turtlesim has printed. Its later messages can contain any text."""
         found = next(filter(None, map(_ADDRESS.fullmatch, self.turtlesim.lines)), None)
         return Address(int(found[1]), found[2]) if found else None
 

@@ -1,4 +1,4 @@
-"""Verbs of `ros2` that need a full ROS 2. Each of these verbs prints a message with an alternative."""
+"""Commands and verbs of `ros2` that need a full ROS 2. Each prints what to use instead, or why it is not needed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ INSTEAD = {
     "unload": "Stop a node with Ctrl-C in its terminal.",
     "standalone": "Start a single node with: ros2 run PACKAGE EXECUTABLE",
 }
-"""Maps each verb that is not supported to a sentence about an alternative."""
+"""Maps each command or verb that is not supported to a sentence: what to use instead, or why it is not needed."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:

@@ -102,7 +102,7 @@ class Ended:
     seconds: float = 0.0
     report: bytes = b""
     stuck: bool = False
-    """Whether the run could never have continued: see patience.py."""
+    """Whether the run was stuck: all of its threads waited for each other without a time limit (see patience.py)."""
     events: NodeEvents | None = None
     """What the grader has counted during the run."""
 

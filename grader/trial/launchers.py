@@ -159,7 +159,7 @@ class LauncherInCell(Launcher):
         self._fork = Fork(result)
 
     def await_started(self) -> tuple[int, ...]:
-        """Wait for the fork. Return its id, and the id of bubblewrap."""
+        """Wait until the process has been forked. Return its process id, and the process id of bubblewrap."""
         pid = self._fork.await_started()
         if pid is None:
             raise LaunchError(self.stderr.read().decode("utf-8", "replace").strip() or "The launcher was not forked")

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     Floats = npt.NDArray[np.float64]
 
 AFTER_STALL_S = 0.05
-"""For this long after a stall (s), messages may still arrive late."""
+"""The time after a stall during which messages may still arrive late (s)."""
 OUTLIVES_S = 0.2
 """The trajectory goes on for this long after the node has exited on its own (s). Thus, a last command always moves the
 turtle, and it does not matter how soon the grader notices the exit."""

@@ -14,14 +14,14 @@ MOST = 200
 
 
 class Connection(H11Protocol):
-    """An HTTP connection of uvicorn that makes room for itself."""
+    """An HTTP connection of uvicorn that closes the oldest idle connection if there are too many connections."""
 
     _number = 0
     """The number of this connection: a newer connection has a larger number."""
 
     @property
     def _waits(self) -> bool:
-        """Whether no request has arrived completely, or all responses have been sent."""
+        """Whether no complete request is waiting for its response."""
         return self.cycle is None or self.cycle.response_complete
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]

@@ -21,7 +21,8 @@ NAMES = ("127.0.0.1", "localhost")
 """The host names that a request for this machine may contain. All ports are allowed, since ssh may forward another
 one."""
 _HOST = re.compile(rf"({'|'.join(map(re.escape, NAMES))})(:\d+)?", re.ASCII)
-"""The policy of each response contains the host, so the host must contain nothing else."""
+"""Matches the host of a request. The content security policy of the response contains this host, so nothing else may
+be in it."""
 
 
 def refusal(headers: Mapping[str, str], *, live: bool) -> str | None:

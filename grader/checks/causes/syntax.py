@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 NOT_UTF8 = r"codec can't decode|unicode error|[Nn]on-UTF-8|encoding"
 """Python's messages about a file that is not valid UTF-8."""
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-"""The beginnings of a file in UTF-16. Python's message is about null bytes."""
+"""The byte order marks at the beginning of a UTF-16 file. Python's message about such a file mentions null bytes."""
 EXPECTED = "The file is valid Python."
 
 CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (

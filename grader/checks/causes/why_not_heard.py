@@ -75,7 +75,10 @@ def _too_few(events: NodeEvents, run: NodeRun, code: TestCode, right: Behaviour)
 
 
 def why_not_called(run: NodeRun | None, code: TestCode, right: Behaviour) -> Cause | None:
-    """Return the reason why the timer's callback did not run in any test of a run, or None if it ran in a test."""
+    """Return the reason why no timer callback was called in any test of a run.
+
+    Return None if one was called, or if nothing is known about the run.
+    """
     if run is None or run.events is None or run.events.all_calls:
         return None
     if _moves_the_wrong_clock(run.events, code):

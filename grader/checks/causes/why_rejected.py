@@ -46,7 +46,10 @@ def why_rejected(run: NodeRun, code: TestCode, numbers: str = "") -> Cause:
     """
     where = place_of(run, code)
     if run.over:
-        text = "A loop that waits for a message needs a deadline. rclpy.spin never returns."
+        text = (
+            "If a loop in a test waits for a message, give the loop a deadline. Do not call rclpy.spin in a test, "
+            "because it does not return. Call spin_once with a timeout."
+        )
         return Cause("test-hangs", text, where or (code.tests[0].where if code.tests else None))
     known = _known(run.message, where)
     if known is not None:

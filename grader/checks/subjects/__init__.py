@@ -1,1 +1,1 @@
-"""The subjects of checks. Each module defines the kinds of checks of one subject."""
+"""The subjects of checks. Each module, except standstill.py, defines the kinds of checks of one subject."""

@@ -187,7 +187,7 @@ def requested_eight(evidence: Evidence, params: Eight) -> Requested:
     directions = ("counter-clockwise", "clockwise")
     sides = [CircleParams(radius_m=params.radius_m, direction=direction) for direction in directions]
     circles = tuple((expected_centre(begin, side), params.radius_m) for side in sides)
-    return Requested(f"two lobes of {params.radius_m:.2f} m", circles)
+    return Requested(f"two lobes, radius {params.radius_m:.2f} m", circles)
 
 
 EIGHT = Kind(

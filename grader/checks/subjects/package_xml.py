@@ -148,7 +148,7 @@ def _has_none_of_these(code: Code, package: str) -> bool:
 def _why_not_declared(
     evidence: Evidence, manifest: Manifest, missing: Sequence[str], needed: Sequence[str], imported: Mapping[str, Where]
 ) -> Cause:
-    """Return the cause of a missing dependency: package.xml does not declare the packages in `missing` at all."""
+    """Return the reason why package.xml does not declare the packages in `missing`, such as a typo or a comment."""
     name = missing[0]
     guess = nearest(name, [each for each in manifest.run_depends if each not in needed and not _used(evidence, each)])
     if guess is not None:

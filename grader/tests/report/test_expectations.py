@@ -42,7 +42,7 @@ def test_the_lobes_of_a_figure_eight_are_left_and_right_of_the_start() -> None:
     shapes, reported = requested_shapes(in_challenge("eight", AHEAD))
     centres = [number for ring in shapes if isinstance(ring, Ring) for number in ring.centre]
     assert centres == pytest.approx([3.0, 5.0, 5.0, 5.0])
-    assert reported == "two lobes of 1.00 m"
+    assert reported == "two lobes, radius 1.00 m"
 
 
 def test_a_square_is_drawn_on_the_side_to_which_the_turtle_turned() -> None:
