@@ -65,7 +65,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "empty-file": "the file of the node is empty; it may not have been saved",
         "script-shebang": "the executable is a script, and its first line does not start Python",
         "script-for-entry-point": "the executable is a script instead of an entry point",
-        "setup-cfg": "setup.cfg is missing or contains the wrong folder",
+        "setup-cfg": "setup.cfg is missing, cannot be read, or contains the wrong folder",
     },
     "Syntax errors": {
         "syntax-error": "Python cannot read the file, and no other diagnosis of this group fits",

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.bad_entry_point import bad_entry_point
+from grader.checks.causes.bad_setup_cfg import why_setup_cfg_unreadable
 from grader.checks.causes.crash import read_tracebacks
 from grader.checks.causes.manifest_unread import why_not_read
 from grader.checks.causes.syntax import unreadable_observed, why_unreadable
@@ -145,6 +146,9 @@ def _raised(evidence: Evidence) -> Finding | None:
     crashes = [crash for _, crash in read_tracebacks(log, evidence.submission.files) if crash.where is not None]
     if not crashes:
         return None
+    unreadable = why_setup_cfg_unreadable(evidence.submission.files.get("setup.cfg", b""))
+    if unreadable is not None:
+        return failed("setup.cfg cannot be read.", EXPECTED, unreadable)
     why = why_crashed(evidence, crashes[0]).at(crashes[0].where)
     return failed(f"setup.py failed: {crashes[0].observed}.", EXPECTED, Cause("setup-py-raises", why.text, why.where))
 
