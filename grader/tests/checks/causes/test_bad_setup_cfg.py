@@ -7,27 +7,25 @@ import pytest
 from grader.checks.causes.bad_setup_cfg import why_setup_cfg_unreadable
 
 RIGHT = "[develop]\nscript_dir=$base/lib/p\n[install]\ninstall_scripts=$base/lib/p\n"
-FORM = "A line is either [SECTION] or NAME=VALUE."
-ONCE = "A section, or a name in a section, occurs only once."
-NO_MARK = "Save the file as UTF-8 without a byte order mark (BOM)."
 
 
 @pytest.mark.parametrize(
     ("data", "cause", "where"),
     [
-        (RIGHT.encode("utf-16"), NO_MARK, "setup.cfg"),
-        (RIGHT.encode("utf-8-sig"), NO_MARK, "setup.cfg"),
+        (RIGHT.encode("utf-16"), "without a byte order mark", "setup.cfg"),
+        (RIGHT.encode("utf-8-sig"), "without a byte order mark", "setup.cfg"),
         (f"# Namen\n# f\xfcr\n{RIGHT}".encode("latin-1"), "Save the file as UTF-8.", "setup.cfg:2"),
-        (RIGHT.partition("\n")[2].encode(), FORM, "setup.cfg:1"),
-        (f"{RIGHT}install_lib\n".encode(), FORM, "setup.cfg:5"),
-        (f"{RIGHT}install_scripts=x\n".encode(), ONCE, "setup.cfg:5"),
-        (f"{RIGHT}[develop]\n".encode(), ONCE, "setup.cfg:5"),
+        (RIGHT.partition("\n")[2].encode(), "A line is either [SECTION] or NAME=VALUE.", "setup.cfg:1"),
+        (f"{RIGHT}install_lib\n".encode(), "A line is either [SECTION] or NAME=VALUE.", "setup.cfg:5"),
+        (f"{RIGHT}install_scripts=x\n".encode(), "A section, or a name in a section, occurs only once.", "setup.cfg:5"),
+        (f"{RIGHT}[develop]\n".encode(), "A section, or a name in a section, occurs only once.", "setup.cfg:5"),
     ],
 )
 def test_the_line_and_the_reason(data: bytes, cause: str, where: str) -> None:
     found = why_setup_cfg_unreadable(data)
     assert found is not None
-    assert (found.diagnosis, found.text, str(found.where)) == ("setup-cfg", cause, where)
+    assert (found.diagnosis, str(found.where)) == ("setup-cfg", where)
+    assert cause in found.text
 
 
 @pytest.mark.parametrize("data", [b"", RIGHT.encode(), f"# f\xfcr\n{RIGHT}".encode()])

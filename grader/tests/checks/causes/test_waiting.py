@@ -142,3 +142,10 @@ def test_threads_are_noticed() -> None:
     source = NODE.format(init="pass", callback="self.step", step="pass", ask="pass", main="MultiThreadedExecutor(4)")
     assert has_threads(evidence(package=submission({NODE_FILE: source})))
     assert not has_threads(evidence(package=submission({NODE_FILE: source.replace("MultiThreaded", "SingleThreaded")})))
+
+
+@pytest.mark.parametrize(("step", "found"), [("while not self.future.done(): pass", True), ("self.pen.call(1)", False)])
+def test_a_loop_in_a_callback_is_described(step: str, *, found: bool) -> None:
+    source = NODE.format(init="pass", callback="self.step", step=step, ask="pass", main="pass")
+    (wait,) = waits_in_callbacks(evidence(package=submission({NODE_FILE: source})))
+    assert wait.cause.text.startswith("A loop that checks done() waits inside a callback") == found
