@@ -127,8 +127,12 @@ class Events:
 
     def _watch(self, folder: Path, stop: Event) -> None:
         """Watch the folder at this path. If the folder is replaced, watch the new folder at this path."""
+        existed = False
         while not stop.is_set():
             watched = _identity(folder)
+            if existed and watched is None:
+                self._save(stop)
+            existed = watched is not None
             if watched is None or not self._watch_one(folder, watched, stop):
                 stop.wait(_LOOK_MS / 1000)
 
@@ -153,16 +157,19 @@ class Events:
                 stop_event=stop,
                 raise_interrupt=False,
             ):
-                replaced = _identity(folder) != watched
-                if (changes or begins or replaced) and not stop.is_set() and not self._saved.is_set():
-                    self._saved.set()
-                    self._queue.put(Happened("saved"))
-                if replaced or ((changes or begins) and folders(folder) != self.watched):
+                if changes or begins:
+                    self._save(stop)
+                if _identity(folder) != watched or ((changes or begins) and folders(folder) != self.watched):
                     return True
                 begins = False
         except FileNotFoundError:
             pass
         return False
+
+    def _save(self, stop: Event) -> None:
+        if not stop.is_set() and not self._saved.is_set():
+            self._saved.set()
+            self._queue.put(Happened("saved"))
 
     def _keys(self, read_key: Callable[[], str]) -> None:
         while key := read_key():

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.learner import watch
 from grader.learner.watch import Events, folders
 from grader.tests.waiting import until
 
@@ -61,6 +62,29 @@ def test_watching_follows_the_path_when_another_folder_takes_it(package: Path) -
     shutil.copytree(kept, package.with_name("another")).rename(package)
     assert next(happened).kind == "saved"  # another file took its name
     node_of(package).write_text("x = 1\n")
+    assert next(happened).kind == "saved"
+    events.close()
+
+
+def test_a_folder_that_is_removed_as_soon_as_it_is_watched_is_a_save(
+    package: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    yielded = threading.Event()
+    calls: list[Path] = []
+
+    def removed(top: Path) -> list[str]:
+        calls.append(top)
+        if len(calls) == 2:
+            yielded.wait(PATIENCE_S)
+            package.rename(package.with_name("kept-aside"))
+        return folders(top)
+
+    monkeypatch.setattr(watch, "folders", removed)
+    events = Events(None)
+    events.watch(package)
+    happened = iter(events)
+    assert next(happened).kind == "saved"
+    yielded.set()
     assert next(happened).kind == "saved"
     events.close()
 
