@@ -42,7 +42,8 @@ def daemon(*, forged: bool) -> Iterator[None]:
     private = socket_path.folder()
     assert private is not None
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as listening:
-        listening.bind(str(private / f"{socket_path.name()}.socket"))
+        with socket_path.address(private, f"{socket_path.name()}.socket") as place:
+            listening.bind(place)
         if forged:
             with another_user():  # the kernel reports the user who has called listen(2)
                 listening.listen()
@@ -78,10 +79,12 @@ def test_the_daemon_of_another_user_is_not_asked(folder: Path) -> None:
 def test_the_connection_of_another_user_is_recognized(tmp_path: Path) -> None:
     tmp_path.chmod(0o755)
     with socket.socket(socket.AF_UNIX) as listening, socket.socket(socket.AF_UNIX) as theirs:
-        listening.bind("\0" + str(tmp_path))
-        listening.listen()
-        with another_user():
-            theirs.connect("\0" + str(tmp_path))
+        with socket_path.address(tmp_path, "socket") as place:
+            listening.bind(place)
+            listening.listen()
+            (tmp_path / "socket").chmod(0o777)
+            with another_user():
+                theirs.connect(place)
         connection, _ = listening.accept()
         with connection:
             assert not socket_path.is_ours(connection)
