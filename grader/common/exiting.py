@@ -29,6 +29,7 @@ def run_and_exit(command: Callable[[], object], explain: Callable[[Exception], s
         sys.exit(0)
     except GraderError as error:
         say(f"grader: {error}", style=RED)
+        _drop_unwritten()
         sys.exit(error.exit_code)
     except KeyboardInterrupt:
         sys.exit(130)

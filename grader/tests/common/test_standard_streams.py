@@ -10,6 +10,7 @@ import pytest
 
 from grader.common import xdg
 from grader.common.standard_streams import has_signs
+from grader.tests.both_worlds import SOURCED_ENV
 
 BIN = Path(sys.executable).parent
 ASCII_LOCALE = {"LC_ALL": "POSIX", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"}
@@ -19,7 +20,8 @@ COMMANDS = ("grader --help", "grader status", "grader env", "ros2 pkg list")
 def run(line: str, home: Path, **env: str) -> subprocess.CompletedProcess[str]:
     # The cache contains turtlesim's messages, which would be built again.
     places = {"HOME": str(home), "PATH": f"{BIN}:/usr/bin:/bin", "XDG_CACHE_HOME": str(xdg.cache().parent)}
-    return subprocess.run(["sh", "-c", line], env={**places, **env}, capture_output=True, text=True, check=False)
+    env = {**SOURCED_ENV, **places, **env}
+    return subprocess.run(["sh", "-c", line], env=env, capture_output=True, text=True, check=False)
 
 
 @pytest.mark.parametrize("closed", ["<&-", ">&-", ">&- <&-"])
@@ -33,6 +35,11 @@ def test_a_closed_stream_is_no_error(tmp_path: Path, command: str, closed: str) 
 def test_a_reader_that_has_exited_is_no_error(tmp_path: Path, command: str) -> None:
     done = run(f"{{ sleep 0.01; {command}; echo $? >&3; }} 3>&2 | true", tmp_path)
     assert done.stderr.strip() == ("0" if command.startswith("ros2") else "1")
+
+
+def test_an_error_is_reported_although_the_reader_has_exited(tmp_path: Path) -> None:
+    done = run("{ sleep 0.01; grader env; echo $? >&3; } 3>&2 | true", tmp_path, ROS_DOMAIN_ID="999")
+    assert [line[:13] for line in done.stderr.splitlines()] == ["grader: ROS_D", "2"]
 
 
 @pytest.mark.parametrize("command", [*COMMANDS, "grader hint 01", "ros2 --help"])
