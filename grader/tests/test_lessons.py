@@ -6,7 +6,6 @@ import os
 import re
 import subprocess
 import sys
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -161,9 +160,6 @@ def kitchen(tmp_path: Path) -> Iterator[dict[str, str]]:
             yield {**os.environ, "PATH": path, "ROS_DOMAIN_ID": str(domain)}
         finally:
             process.terminate()
-            with suppress(subprocess.TimeoutExpired):
-                process.wait(30.0)
-            process.kill()  # rclpy can miss a signal that arrives while it begins to wait
 
 
 @pytest.mark.parametrize("block", blocks_of("console", "kitchen"))
