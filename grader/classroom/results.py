@@ -138,8 +138,8 @@ def opened(folder: Path, submissions: Sequence[Path] = ()) -> Iterator[Results]:
     lock = folder / _LOCK
     if os.path.lexists(folder) and is_among(folder, submissions) and (folder.is_symlink() or not is_marked(lock)):
         message = (
-            f"{folder} is among the submissions, and you did not create it with `grader grade`: a student may have put "
-            "forged results there. Choose another folder with --out."
+            f"{folder} is among the submissions, and nothing shows that you created it with `grader grade`: a student "
+            "may have put forged results there. Choose another folder with --out."
         )
         raise UsageError(message)
     if folder.exists() and not (folder.is_dir() and (lock.exists() or not any(folder.iterdir()))):

@@ -23,6 +23,7 @@ import traceback
 from contextlib import suppress
 from dataclasses import is_dataclass
 from enum import Enum
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
@@ -31,7 +32,7 @@ from grader.common.lazy import IMPORTING
 from grader.common.system_errors import refusal
 from grader.errors import GraderError, MachineError, TooLargeError, UnreadableError
 from grader.sandbox.landlock import allow_only_reading
-from grader.sandbox.limits import NO_CORE_DUMP
+from grader.sandbox.limits import NO_CORE_DUMP, allowed
 from grader.sandbox.own_mounts import keep_only
 from grader.sandbox.reading_calls import forbid_all_but_reading
 from grader.submission.program_files import paths_in, program_files
@@ -80,10 +81,11 @@ def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> 
     if _Child.inside:
         return function(*arguments, **keywords)
     readable = (*program_files(), *paths_in(arguments))
-    answer, status = _called(lambda: function(*arguments, **keywords), readable)
-    if not answer and status != signal.SIGXCPU:
+    call = partial(function, *arguments, **keywords)
+    answer, status = _called(call, readable)
+    if not answer and os.WTERMSIG(status) != signal.SIGXCPU:
         # Another program may have killed the child, or another thread held a lock that the child needed.
-        answer, status = _called(lambda: function(*arguments, **keywords), readable)
+        answer, status = _called(call, readable)
     return _value(answer, status)  # type: ignore[no-any-return]
 
 
@@ -194,8 +196,7 @@ def _limit() -> None:
         (resource.RLIMIT_FSIZE, 0),
         (resource.RLIMIT_CORE, NO_CORE_DUMP),
     ):
-        hard = resource.getrlimit(which)[1]
-        resource.setrlimit(which, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
+        resource.setrlimit(which, (allowed(which, most), resource.getrlimit(which)[1]))
 
 
 def _answer(function: Callable[[], object]) -> bytes:

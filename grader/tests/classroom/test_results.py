@@ -66,7 +66,7 @@ def test_a_student_cannot_choose_the_folder_of_the_results_with_a_link(tmp_path:
 
 def test_an_empty_folder_among_the_submissions_is_not_taken_for_the_results(tmp_path: Path) -> None:
     (tmp_path / "grades").mkdir()
-    with pytest.raises(UsageError, match="you did not create it"), opened(tmp_path / "grades", [tmp_path]):
+    with pytest.raises(UsageError, match="nothing shows that you created it"), opened(tmp_path / "grades", [tmp_path]):
         pass
 
 

@@ -139,6 +139,19 @@ def test_a_child_that_ends_without_an_answer_is_started_once_more(
     assert read(ends_once) == 2
 
 
+def test_a_child_that_computes_for_too_long_is_not_started_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = mmap.mmap(-1, 1)  # shared with the children
+
+    def counts() -> None:
+        calls[0] += 1
+        spins()
+
+    monkeypatch.setattr(reader, "CPU_S", 1)
+    with pytest.raises(TooLargeError):
+        read(counts)
+    assert calls[0] == 1
+
+
 def children() -> set[str]:
     """Return the child processes of this process, including those that have exited without being waited for."""
     return {pid for task in Path("/proc/self/task").iterdir() for pid in (task / "children").read_text().split()}

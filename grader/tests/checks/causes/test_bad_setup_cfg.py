@@ -12,7 +12,7 @@ RIGHT = "[develop]\nscript_dir=$base/lib/p\n[install]\ninstall_scripts=$base/lib
 @pytest.mark.parametrize(
     ("data", "cause", "where"),
     [
-        (RIGHT.encode("utf-16"), "without a byte order mark", "setup.cfg"),
+        (RIGHT.encode("utf-16"), "Save the file as UTF-8.", "setup.cfg"),
         (RIGHT.encode("utf-8-sig"), "without a byte order mark", "setup.cfg"),
         (f"# Namen\n# f\xfcr\n{RIGHT}".encode("latin-1"), "Save the file as UTF-8.", "setup.cfg:2"),
         (RIGHT.partition("\n")[2].encode(), "A line is either [SECTION] or NAME=VALUE.", "setup.cfg:1"),
@@ -24,10 +24,13 @@ RIGHT = "[develop]\nscript_dir=$base/lib/p\n[install]\ninstall_scripts=$base/lib
 def test_the_line_and_the_reason(data: bytes, cause: str, where: str) -> None:
     found = why_setup_cfg_unreadable(data)
     assert found is not None
-    assert (found.diagnosis, str(found.where)) == ("setup-cfg", where)
+    assert str(found.where) == where
+    assert found.diagnosis == ("not-utf8" if cause == "Save the file as UTF-8." else "setup-cfg")
     assert cause in found.text
 
 
-@pytest.mark.parametrize("data", [b"", RIGHT.encode(), f"# f\xfcr\n{RIGHT}".encode()])
+@pytest.mark.parametrize(
+    "data", [b"", RIGHT.encode(), f"{RIGHT}Install_scripts=x\n".encode(), f"# f\xfcr\n{RIGHT}".encode()]
+)
 def test_a_file_that_can_be_read_has_none(data: bytes) -> None:
     assert why_setup_cfg_unreadable(data) is None
