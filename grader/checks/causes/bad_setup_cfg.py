@@ -15,7 +15,7 @@ FILE = "setup.cfg"
 def why_setup_cfg_unreadable(data: bytes) -> Cause | None:
     """Return the cause if setuptools cannot read this content of setup.cfg, else None."""
     parser = configparser.RawConfigParser()
-    parser.optionxform = str  # type: ignore[assignment, method-assign] - as in setuptools
+    parser.optionxform = str  # type: ignore[method-assign, assignment]  # as in setuptools
     try:
         if data.startswith(UTF_16):
             return Cause("not-utf8", "Save the file as UTF-8.", Where(FILE))

@@ -60,6 +60,7 @@ NO_MARKER = "error: can't copy 'resource/my_robot_controller': doesn't exist or 
         ({"AMENT_IGNORE": ""}, NOTHING, "colcon-ignore", "AMENT_IGNORE"),
         ({"setup.py": "setup(\n"}, replace(NOTHING, exit_code=1), "setup-py-syntax", "setup.py:1"),
         ({}, replace(NOTHING, exit_code=1, log=SETUP_TRACEBACK), "setup-py-raises", "setup.py:5"),
+        ({"setup.cfg": "x\n"}, replace(NOTHING, exit_code=1, log=SETUP_TRACEBACK), "setup-cfg", "setup.cfg:1"),
         ({}, replace(NOTHING, exit_code=1, log=READ_BY_COLCON), "setup-py-raises", "setup.py:7"),
         ({}, replace(NOTHING, exit_code=1, log=UNREAD), "setup-py-output", "setup.py:5"),
         ({}, replace(NOTHING, exit_code=1, log=NO_MARKER), "data-file-missing", "setup.py:9"),
