@@ -49,3 +49,9 @@ def test_the_cpu_time_of_a_process_counts_also_if_nobody_waits_for_it() -> None:
 def test_a_command_that_fails_has_no_cost() -> None:
     done = measured("raise SystemExit(3)")
     assert "exited with code 3:" in done.stderr
+
+
+def test_a_command_may_print_more_than_a_pipe_can_hold() -> None:
+    done = measured("print('x' * 1_000_000)")
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)[1] > 0
