@@ -1,1 +1,1 @@
-"""colcon: build a submission in a cell, and read the result."""
+"""Build a submission with colcon in a cell, and read the result."""

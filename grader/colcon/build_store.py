@@ -57,7 +57,7 @@ class BuildStore:
         return built
 
     def put(self, key: str, built: runner.Built) -> None:
-        """Store a build. If the disk is full or not writable, nothing is stored."""
+        """Store a build. Nothing is stored if the build is too large, or if the disk is full or not writable."""
         packed = _packed(built)
         if len(packed) > MOST_BYTES:
             return

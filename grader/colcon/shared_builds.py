@@ -136,10 +136,10 @@ class Usual:
 
 
 def without_modules(submission: Submission, ros: Ros) -> Usual | None:
-    """Return the package with empty modules, or None if the package is unusual or a module does not compile.
+    """Return the package with empty modules, or None if the package is unusual or a module does not compile cleanly.
 
-    setuptools compiles the modules, and the log of a build contains the errors and warnings. Such a package is
-    therefore built separately.
+    If Python reports an error or a warning when it compiles a module, the package is built separately, because
+    setuptools writes the same error or warning to the log of the build.
 
     Call this through `grader.submission.reader.read`.
     """

@@ -14,7 +14,7 @@ ROS_TOPICS = ("/rosout", "/parameter_events", "/clock")
 OF_LIFECYCLE = "lifecycle_msgs/msg/TransitionEvent"
 """The type of the topic on which each lifecycle node publishes."""
 SPINS = re.compile(r'executors\.py", line \d+, in (?:await_or_execute|handler|_execute_\w+)\b')
-"""A traceback entry for the code in rclpy's executor that calls callbacks."""
+"""Matches a traceback entry for the code in rclpy's executor that calls callbacks."""
 TRACEBACK = "Traceback (most recent call last)"
 IN_CONSTRUCTOR = ", in __init__"
 """The end of a traceback entry for the code of a constructor."""
@@ -23,14 +23,17 @@ START_S = 0.2
 
 
 def end_s(recording: Recording) -> float:
-    """Return the end of the scenario on the trial's clock (s): the time of SIGINT, or the scheduled end."""
+    """Return the end of the scenario on the trial's clock (s): the time of SIGINT, or the scheduled end if it is later.
+
+    The scheduled end is used only if the node exited on its own.
+    """
     if recording.end.by == "itself":
         return max(recording.sigint_t_s, recording.duration_s)
     return recording.sigint_t_s
 
 
 def ended_at_start(recording: Recording) -> bool:
-    """Return whether the node exited on its own before it could do anything.
+    """Return whether the node exited on its own before it ran, that is, before it could do anything.
 
     A node that raised an exception inside rclpy's spin did run, no matter how soon it exited. A node that raised an
     exception in a constructor and sent no command did not run, no matter how late it exited: on a busy machine, the
@@ -47,7 +50,7 @@ def ended_at_start(recording: Recording) -> bool:
 
 
 def _left_without_a_node(recording: Recording) -> bool:
-    """Return whether the program exited without an error, and no node of it appeared in the graph."""
+    """Return whether the program exited without an error before any of its nodes appeared in the graph."""
     return recording.end.exit_code == 0 and TRACEBACK not in recording.stderr.text and not nodes(recording)
 
 
@@ -65,8 +68,9 @@ def spun(recording: Recording) -> bool:
 def commands(recording: Recording) -> tuple[Command, ...]:
     """Return the commands that arrived before SIGINT, in the order of arrival.
 
-    If all commands arrived at the very start, return an empty tuple. A command that is published before the end of
-    discovery is usually lost. Whether it arrives depends on the machine, but a report must not depend on the machine.
+    If all commands arrived in the initial period (START_S), return an empty tuple. A command that is published before
+    the end of discovery is usually lost. Whether it arrives depends on the machine, but a report must not depend on the
+    machine.
     """
     until = end_s(recording)
     found = tuple(command for command in recording.commands if command.t_s < until)

@@ -23,7 +23,7 @@ _VERSION: Literal[9] = 9
 def write_bag(folder: Path, messages: Sequence[Message], prefixes: Iterable[Path]) -> None:
     """Write the messages to a new folder, in the given order.
 
-    The folders in `prefixes` contain the .msg files of types that the library rosbags does not know.
+    The folders in `prefixes` contain the .msg files of the types that rosbags does not include.
 
     The timestamp is the arrival time on the trial's clock (ns), or 0 for messages from before the scenario. The
     timestamps of messages that arrived at the same instant are one nanosecond apart, because readers sort by timestamp.

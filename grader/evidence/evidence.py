@@ -64,9 +64,8 @@ class Run:
 class Evidence:
     """A submission with everything that was observed. `build` is None if the submission was not built.
 
-    A check sees the evidence from the viewpoint of one of the exercise's trials. `trial` is the trial of this
-    viewpoint, and `recording` is the recording of that trial. The source files are parsed on first use, from
-    `submission.files`.
+    A check gets the evidence from the viewpoint of one of the exercise's trials: `trial` is this trial, and `recording`
+    is the recording of this trial. The source files are parsed on first use, from `submission.files`.
     """
 
     exercise: Exercise

@@ -59,7 +59,7 @@ def first_driven(recording: Recording) -> int:
 
 
 def _moved(recording: Recording, first: int) -> bool:
-    """Return whether this frame or a later frame shows a movement that the velocities or commands do not explain."""
+    """Return whether a frame from number `first` on has a movement that the velocities or commands do not explain."""
     path = _path(recording, first)
     linear = recording.frames.linear[path.frames]
     unlike = ~(_driven(path, linear) | _driven(path, -linear)) | path.turned_otherwise
@@ -67,7 +67,7 @@ def _moved(recording: Recording, first: int) -> bool:
 
 
 def _jumped(recording: Recording, first: int) -> bool:
-    """Return whether, in this frame or a later one, the turtle moved or turned further than its velocities allow."""
+    """Return whether, in a frame from number `first` on, the turtle moved or turned more than its velocities allow."""
     path = _path(recording, first)
     far = np.hypot(np.diff(path.x), np.diff(path.y)) - np.abs(recording.frames.linear[path.frames]) * FRAME_S
     return bool((~(far <= SAME) | path.turned_otherwise).any())

@@ -16,14 +16,13 @@ if TYPE_CHECKING:
 
 START = "Traceback (most recent call last):"
 TOP = re.compile(r'\s*File ".*", line \d+, in <module>')
-"""The outermost stack frame of a program. Only the traceback of an uncaught exception contains this frame."""
+"""Matches the outermost stack frame of a program. Only the traceback of an uncaught exception contains this frame."""
 
 
 def with_crash_first(recording: Recording) -> Recording:
-    """Return the recording.
+    """Return the recording or, if the node raised an uncaught exception before Ctrl-C, a changed copy.
 
-    If the node raised an uncaught exception before Ctrl-C, the returned recording shows that the node exited on its
-    own.
+    In the copy, the node exited on its own at the time of the exception.
     """
     end, stderr = recording.end, recording.stderr
     if end.by == "itself" or end.out_of is not None:

@@ -10,7 +10,7 @@ The keys in `schema = 2`:
 - `[[trial]]` has id, executable, node, duration_s, start, rename, pose_every, pose_from_s, answers_after_s, targets and
   alone_s. A `[[trial]]` whose node runs in another trial has id, executable, node and beside. `[[trial.drive]]` has
   from_s, linear_x_m_s and angular_z_rad_s (one number, or the two limits of a random number). `[[trial.call]]` has
-  at_s, service, type and request (a table with fields), `[[trial.set]]` has at_s, parameter, value and also.
+  at_s, service, type and request (a table with fields). `[[trial.set]]` has at_s, parameter, value and `also`.
   `[trial.parameters]` and `[trial.params_file]` map the names of parameters to their values.
 - A `[[trial]]` without a simulator has id and one of these groups: function and `[[trial.points]]`; executable and
   `[[trial.bag]]` (both in calls_toml.py); executable, node, duration_s and `[trial.tests]` (tests_toml.py).

@@ -159,7 +159,7 @@ class _Reader:
         if not line.strip():
             return line
         if not sign or indent.strip():
-            raise self._error(number, f"a line of a STARTER block begins with {self.syntax.line_sign!r}")
+            raise self._error(number, f"each line of a STARTER block must begin with {self.syntax.line_sign!r}")
         text = rest.removeprefix(" ")
         return indent + text if text.strip() else text
 

@@ -54,7 +54,7 @@ PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
 }
 """Maps the name of a preset to the names of its checks, and each check to its keys.
 
-Points are 0 unless exercise.toml sets them.
+A check is worth 0 points unless exercise.toml sets its points.
 """
 
 _KEYS = ("preset", "trial", "title")

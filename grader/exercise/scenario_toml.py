@@ -26,7 +26,7 @@ PARAMETER_TYPES = (
     (float, 3, "double_value"),
     (str, 4, "string_value"),
 )
-"""Maps the type of a parameter to its number in rcl_interfaces/msg/ParameterType and the field for its value."""
+"""Tuples (Python type of a parameter, its number in rcl_interfaces/msg/ParameterType, the field for its value)."""
 CALLS = ("function", "points", "bag")
 """The keys of a `[[trial]]` that runs without a simulator."""
 MAX_DURATION_S = 600.0

@@ -92,7 +92,8 @@ class Table:
             numbers = [n for n in pair if isinstance(n, int | float) and not isinstance(n, bool) and abs(n) <= most]
             return len(pair) == len(numbers) == 2 and numbers[0] <= numbers[1]
 
-        value = self._get(key, f"a number from {-most:g} to {most:g}, or a list of two in order", good, default=None)
+        allowed = f"a number from {-most:g} to {most:g}, or a list of two such numbers in ascending order"
+        value = self._get(key, allowed, good, default=None)
         low, high = value if isinstance(value, list) else (value or 0.0, value or 0.0)
         return float(low), float(high)
 

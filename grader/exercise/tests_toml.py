@@ -53,7 +53,7 @@ def unknown_numbers(trials: Sequence[TrialSpec], numbers: NumbersSpec | None) ->
             drawn = options.get(name, ())
             if not drawn or isinstance(drawn[0], str) or not isinstance(getattr(tests.right, name, None), float):
                 found = f'[trial.tests]: "own" contains {shorten(name)}'
-                yield f"{found}; the node must have a number, and [numbers] a list of numbers, with this name."
+                yield f"{found}; both a number of the node and a list of numbers in [numbers] must have this name."
 
 
 def _broken(table: Table, right: Behaviour) -> NodeUnderTest:
@@ -84,8 +84,8 @@ def _behaviour(table: Table, right: Behaviour, known: tuple[str, ...]) -> Behavi
         if getattr(made, name) not in allowed:
             table.problem(f'"{name}" must be one of {", ".join(allowed)}.')
     if not set(made.walls) <= set(WALLS):
-        table.problem(f'"walls" must contain some of {", ".join(WALLS)}.')
+        table.problem(f'"walls" may contain only {", ".join(WALLS)}.')
     if made.period_s <= 0.0:
-        table.problem('"period_s" must be above 0.')
+        table.problem('"period_s" must be greater than 0.')
     table.finish(also=(*known, *(each.name for each in fields(Behaviour))))
     return made

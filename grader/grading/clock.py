@@ -14,8 +14,8 @@ The rules, in the order in which they are applied:
    the node did not stop.
 5. If a trial in wall time fails while other programs use the processors, the trial is repeated while nothing else is
    graded. A busy machine can make a correct node look wrong, but it cannot make a wrong node look correct, so the
-   result of the first trial that passes counts. If no trial of WALL_TRIALS passes, the trial with the least disturbance
-   counts.
+   result of the first trial that passes counts. If none of the WALL_TRIALS trials passes, the trial with the least
+   disturbance counts.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ def after_simulated(choice: ClockChoice, attempt: Attempt) -> Clock | None:
     """Return the clock for repeating a trial that ran in simulated time (rule 4), or None if it is not repeated."""
     if choice == "simulated" or not any(outcome.finding.near_edge for outcome in attempt.outcomes):
         return None
-    return Clock("wall", "a measured value is near the edge of its tolerance, so only a trial in wall time is certain")
+    return Clock("wall", "a measured value is near the edge of its tolerance, so the trial is repeated in wall time")
 
 
 def wants_another(attempts: Sequence[Attempt]) -> bool:

@@ -1,4 +1,4 @@
-"""Prove causes: fix the place to which a failed check points in a copy of the submission, and run the copy.
+"""Prove causes: in a copy of the submission, fix the place to which a failed check points, and run the copy.
 
 Each fix stays in the copy while the next cause is tested. In this way, mistakes that other mistakes hid are also found.
 Like the submission itself, the copy is built and run in the sandbox. The copy always runs in simulated time.

@@ -1,4 +1,4 @@
-"""Run the student's tests during the build, on the correct node and on the broken nodes."""
+"""Run the student's tests on the correct node and on the broken nodes, if possible during the build."""
 
 from __future__ import annotations
 

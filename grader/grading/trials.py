@@ -168,7 +168,7 @@ class Trials:
         attempts = [first]
         while policy.wants_another(attempts):
             with self._turns.alone():
-                self._tell("The machine was too busy for wall time, or its clock was set: running the trial again")
+                self._tell("The machine was too busy, or its system time was changed: running the trial again")
                 with self._trial(evidence, wall.name) as again:
                     attempts.append(self._run(evidence, again, wall, settled))
         return policy.that_counts(attempts)

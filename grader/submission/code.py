@@ -64,7 +64,7 @@ class Module:
 
 
 ALIKE = {"create_lifecycle_publisher": "create_publisher"}
-"""Maps a method that only lifecycle nodes have to the method of all nodes that has the same arguments."""
+"""Maps a method of lifecycle nodes to a method of all nodes. The two methods have the same arguments."""
 
 
 @dataclass(frozen=True)
@@ -245,7 +245,7 @@ def _left_out(path: str) -> bool:
 
 
 def read_module(file: str, data: bytes) -> Module:
-    """Parse one file. If Python cannot read the file, `unreadable` says why.
+    """Parse one file. If Python cannot read the file, `unreadable` contains the reason.
 
     Raises:
         TooLargeError: the file is too large, or nested too deeply.

@@ -1,4 +1,4 @@
-"""The packages that a package needs for its tests, as colcon finds them: setup.py, setup.cfg and pyproject.toml.
+"""The packages that a package needs for its tests, as colcon finds them in setup.py, setup.cfg and pyproject.toml.
 
 colcon test runs pytest if pytest is listed in `extras_require` under one of the keys in TEST_KEYS
 (colcon_core/package_augmentation/python.py). setuptools accepts a list, or a string with one requirement per line.

@@ -40,7 +40,7 @@ class Submission:
     """
 
     name: str
-    """The name that the user gave."""
+    """The path as the user specified it. Messages and reports contain this path."""
     package_dir: Path
     """An absolute path, used for messages and for the name of the folder. Only `files` are graded."""
     files: Mapping[str, bytes]

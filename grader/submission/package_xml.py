@@ -89,7 +89,7 @@ def end_of_root(data: bytes) -> tuple[str, int] | None:
 def line_of(data: bytes, *patterns: str) -> int | None:
     """Return the first line (from 1) that matches a pattern, or None.
 
-    If lines match different patterns, the first pattern decides.
+    A line that matches an earlier pattern takes precedence over a line that matches a later pattern.
     """
     lines = data.decode("utf-8", "replace").splitlines()
     for pattern in patterns:

@@ -1,4 +1,4 @@
-"""The files that the reading process can open besides a submission: Python's files, the grader's files, and lessons."""
+"""The files that the reading process can open besides a submission: files of Python, the grader and the course."""
 
 from __future__ import annotations
 

@@ -90,7 +90,7 @@ def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> 
 
 
 def _called(function: Callable[[], object], readable: tuple[Path, ...]) -> tuple[bytes | None, int]:
-    """Call the function in a child process. Return its answer, or None after the timeout, and its exit status."""
+    """Call the function in a child process. Return the child's data, or None after the timeout, and its exit status."""
     receives, sends = os.pipe()
     child = _fork()
     if child == 0:
@@ -110,7 +110,7 @@ def _called(function: Callable[[], object], readable: tuple[Path, ...]) -> tuple
 
 
 def is_confined() -> bool:
-    """Return whether a child process of `read` can open only the files that `read` was called with."""
+    """Return whether a child process of `read` can open only the files that `read` allows."""
     with tempfile.NamedTemporaryFile() as file:
         return not read(_can_open, file.name)
 

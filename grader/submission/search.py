@@ -101,7 +101,7 @@ def _visit_below(search: _Search, folder: int, entry: Entry, path: str, depth: i
 
 
 def _is_folder_behind(name: str, folder: int) -> bool:
-    """Return whether the symbolic link points to a folder. Only an error message uses the result.
+    """Return whether the symbolic link points to a folder. The result is used only in an error message.
 
     The folder is not opened.
     """
@@ -128,7 +128,7 @@ def _none(search: _Search, root: int, name: str) -> str:
             f"{none} {shown(search.linked[0])} is a link, and links are not followed: give the folder that it leads to."
         )
     if search.ignored:
-        return f"{none} colcon ignores {shown(search.ignored[0])}, because a file {IGNORE_MARKER} is in it."
+        return f"{none} colcon ignores {shown(search.ignored[0])}, because it contains a file {IGNORE_MARKER}."
     for above in list(Path(name).resolve().parents)[:2]:
         if any((above / file).is_file() for file in PACKAGE_FILES):
             return f"{none} Its parent folder, {shown(str(above))}, is a package: give that folder."

@@ -25,7 +25,7 @@ MAX_TOTAL_BYTES = 64 * 1024 * 1024
 MAX_FILES = 4000
 MAX_ENTRIES = 20_000
 """The maximum number of entries in one folder, and in total. A folder with more entries is left out as a whole, because
-the first entries of a listing are random."""
+the system lists the entries of a folder in an arbitrary order."""
 MAX_DEPTH = 24
 MAX_PATH_BYTES = 1000
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def attribute_of_none(scene: CrashScene, name: str) -> Cause | None:
-    """Return the cause of an AttributeError for the attribute `name` of None."""
+    """Return the cause of an AttributeError: the object whose attribute `name` is used is None."""
     objects = [node.value for node in scene.on_line if isinstance(node, ast.Attribute) and node.attr == name]
     early = _before_message(scene, objects)
     if early is not None:

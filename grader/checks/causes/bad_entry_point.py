@@ -1,4 +1,4 @@
-"""A string in console_scripts that setuptools cannot read."""
+"""Explain why setuptools cannot read an entry point in console_scripts."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ def why_setup_cfg_unreadable(data: bytes) -> Cause | None:
         return Cause("not-utf8", "Save the file as UTF-8.", Where(FILE, data.count(b"\n", 0, error.start) + 1))
     except configparser.ParsingError as error:
         line = error.lineno if isinstance(error, configparser.MissingSectionHeaderError) else error.errors[0][0]
-        return Cause("setup-cfg", "A line is either [SECTION] or NAME=VALUE.", Where(FILE, line))
+        return Cause("setup-cfg", "Each line must be [SECTION] or NAME=VALUE.", Where(FILE, line))
     except (configparser.DuplicateOptionError, configparser.DuplicateSectionError) as error:
-        return Cause("setup-cfg", "A section, or a name in a section, occurs only once.", Where(FILE, error.lineno))
+        return Cause("setup-cfg", "No section, and no name in a section, may occur twice.", Where(FILE, error.lineno))
     return None

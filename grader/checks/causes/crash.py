@@ -34,16 +34,16 @@ STOPS = frozenset({"KeyboardInterrupt", "ExternalShutdownException"})
 RCLPY_ERRORS = frozenset({"InvalidNodeNameException", "InvalidTopicNameException", "NotInitializedException"})
 
 MEANINGS = {
-    "AssertionError": "An assertion failed: a condition that the code or a message field requires was not true.",
-    "AttributeError": "The object has no attribute or method with that name. Compare the name letter by letter.",
+    "AssertionError": "An assertion failed: a condition was false, or a message field got a value of the wrong type.",
+    "AttributeError": "The object has no attribute or method with that name. Check the name letter by letter.",
     "EOFError": "input() waits for the keyboard, but the grader does not type. A node must not ask for input.",
-    "ImportError": "That name cannot be imported from this module. Compare the name letter by letter.",
+    "ImportError": "That name cannot be imported from this module. Check the name letter by letter.",
     "IndentationError": "All lines of a block must have the same indentation.",
     "IndexError": "The list has no item with this index.",
     "InvalidNodeNameException": "A node name may contain only letters, digits and underscores.",
     "InvalidTopicNameException": "A topic name may contain only letters, digits, underscores and slashes.",
     "KeyError": "The dictionary has no such key.",
-    "ModuleNotFoundError": "No module with that name is installed. Compare the name letter by letter.",
+    "ModuleNotFoundError": "No module with that name is installed. Check the name letter by letter.",
     "NameError": "This name was never defined. Check the spelling of the name, and the imports.",
     "NotInitializedException": "ROS 2 was used before rclpy.init or after rclpy.shutdown.",
     "ParameterNotDeclaredException": "Declare a parameter with declare_parameter before you read or set it.",
@@ -140,9 +140,9 @@ def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:
 
 
 def read_tracebacks(text: str, files: Mapping[str, bytes]) -> Iterable[tuple[bool, Crash]]:
-    """Yield every exception in stderr, and whether the previous exception is in the same chain of exceptions.
+    """Yield the exceptions in stderr as pairs (chained, exception), except those that Python ignored.
 
-    Exceptions that Python ignored are skipped.
+    `chained` is true if the exception belongs to the same chain as the previous exception.
     """
     for chained, lines in _blocks(text.splitlines()):
         crash = _crash(lines, files)
@@ -151,9 +151,10 @@ def read_tracebacks(text: str, files: Mapping[str, bytes]) -> Iterable[tuple[boo
 
 
 def _blocks(lines: list[str]) -> Iterable[tuple[bool, list[str]]]:
-    """Yield each traceback without its first line, and whether the previous one is in the same chain of exceptions.
+    """Yield the tracebacks as pairs (chained, lines without the first line).
 
-    Exceptions that Python ignored are skipped, because they did not crash the node.
+    `chained` is true if the traceback belongs to the same chain of exceptions as the previous traceback. Exceptions
+    that Python ignored are skipped, because they did not crash the node.
     """
     starts = [index for index, line in enumerate(lines) if line.strip() == START]
     for index, start in enumerate(starts):

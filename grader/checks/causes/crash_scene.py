@@ -58,7 +58,7 @@ class CrashScene:
         )
 
     def calls_on_line(self, name: str) -> list[ast.Call]:
-        """Return the calls on the line to a function or method with this name (without module or object)."""
+        """Return the calls on the line whose function or method has this name, such as "spin" for rclpy.spin(node)."""
         calls = [node for node in self.on_line if isinstance(node, ast.Call)]
         return [call for call in calls if _last(call.func) == name]
 
@@ -68,7 +68,7 @@ class CrashScene:
         return tuple(node for node in self.nodes if isinstance(node, ast.ClassDef))
 
     def class_named(self, name: str) -> ast.ClassDef | None:
-        """Return the class of the module with this name, or None."""
+        """Return the module's class with this name, or None."""
         return next((each for each in self.classes if each.name == name), None)
 
     @cached_property
@@ -101,7 +101,7 @@ class CrashScene:
         return [node for node in self.nodes if isinstance(node, Function) and node.name == name]
 
     def at(self, node: ast.AST | int | None) -> Where | None:
-        """Return the place of a syntax node or a line, or the place of the exception if `node` is None."""
+        """Return the place of a syntax node or a line, or the place of the exception if no node or module is known."""
         if node is None or self.module is None:
             return self.crash.where
         return Where(self.module.file, node if isinstance(node, int) else getattr(node, "lineno", None))
@@ -113,7 +113,7 @@ def methods(of: ast.ClassDef) -> list[Function]:
 
 
 def attributes_set(of: ast.ClassDef) -> Iterator[tuple[str, int]]:
-    """Yield every attribute of self that is assigned, with its line. Assignments such as += do not count."""
+    """Yield the name and the line of each assignment to an attribute of self. Assignments such as += do not count."""
     raised = {id(node.target) for node in ast.walk(of) if isinstance(node, ast.AugAssign)}
     for node in ast.walk(of):
         if id(node) in raised:

@@ -60,7 +60,7 @@ def _places(evidence: Evidence, module: Module, given: ast.expr, value: float) -
 
 
 def _arguments(evidence: Evidence, module: Module, given: ast.expr) -> Iterator[tuple[Module, ast.expr]]:
-    """If the expression is a parameter of its function, yield the arguments that are passed for this parameter."""
+    """If the expression is a parameter of the function that contains it, yield the arguments for this parameter."""
     around = [
         node for node in module.nodes if isinstance(node, Function) and any(each is given for each in ast.walk(node))
     ]

@@ -20,7 +20,7 @@ XML = re.compile(
     r"mismatched tag|not well-formed|no element found|junk after|unclosed|duplicate attribute|invalid XML|syntax error"
     r"|invalid token|undefined entity"
 )
-"""Messages of an XML parser about text that is not valid XML."""
+"""Matches the messages of an XML parser about text that is not well-formed."""
 BARE_AMPERSAND = re.compile(r"&(?!#?\w+;)")
 UNKNOWN_TAG = re.compile(
     r"\(with format version (?P<format>\d)\) must not contain the following tags: (?P<tag>[^\s,]{1,60})"
@@ -66,7 +66,7 @@ def _is_utf8(data: bytes) -> bool:
 
 
 def _malformed(data: bytes, problem: str, line: int | None) -> Cause:
-    """Return the cause if the file is not XML. `line` is the line at which the XML parser stopped."""
+    """Return the reason why the file is not well-formed XML. `line` is the line at which the XML parser stopped."""
     if not data.startswith(UTF_16) and not _is_utf8(data):
         return Cause("not-utf8", "Save the file as UTF-8.", Where(FILE, line))
     cause = "Each <tag> needs a closing </tag> with the same name. Close the inner tag before the outer tag."
@@ -76,7 +76,7 @@ def _malformed(data: bytes, problem: str, line: int | None) -> Cause:
         last, at = end
         cause = f"</{shorten(last, 30)}> on line {at} is the last tag. No text or tag may follow it"
         more = text.strip() if line > at else ""
-        cause += f', such as "{shorten(more, 30)}" on line {line}.' if more else "."
+        cause += f', but line {line} contains "{shorten(more, 30)}".' if more else "."
     elif "mismatched tag" in problem:
         name, line = open_tag(data)
         cause = f"<{shorten(name, 30)}> on line {line} has no closing tag </{shorten(name, 30)}>."

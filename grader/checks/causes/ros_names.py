@@ -1,4 +1,4 @@
-"""Names in ROS 2 Jazzy that beginners use. The grader suggests them for misspelt names."""
+"""Names in ROS 2 Jazzy that beginners use. If a name is misspelt, the grader suggests a similar one of these names."""
 
 from __future__ import annotations
 
@@ -59,9 +59,9 @@ PACKAGE = re.compile(
     r"(?!turtlesim_msgs)\w+_(?:msgs|srvs|interfaces)|rclpy|turtlesim|tf2_ros|rosbag2_py|ament_index_python"
     r"|launch|launch_ros|message_filters|cv_bridge"
 )
-"""Matches the imports of ROS 2 packages: interface packages, and packages that Python nodes often use.
+"""Matches the names of imported ROS 2 packages: interface packages, and packages that Python nodes often use.
 
-The list is fixed, so that a report is the same on every machine. turtlesim_msgs is not in Jazzy."""
+The list is fixed, so that a report is the same on every machine. Jazzy has no package turtlesim_msgs."""
 ROS_1 = frozenset({"rospy", "roslib", "tf", "catkin", "roscpp", "rosbag", "actionlib"})
 """Modules that exist only in ROS 1."""
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from grader.submission.code import Unreadable
 
 NOT_UTF8 = r"codec can't decode|unicode error|[Nn]on-UTF-8|encoding"
-"""Python's messages about a file that is not valid UTF-8."""
+"""Matches Python's messages about a file that is not valid UTF-8."""
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 """The byte order marks at the beginning of a UTF-16 file. Python's message about such a file mentions null bytes."""
 EXPECTED = "The file is valid Python."
@@ -114,7 +114,7 @@ COMMA_FOR_DOT = (
 CONFLICT = r"^(<<<<<<<|>>>>>>>)"
 MIDDLE = "======="
 """The line that Git writes between two conflicting versions. In a docstring, the same line can underline a heading."""
-OTHERWISE = "The mistake is often at the end of the previous line: a bracket, a colon or the indentation."
+OTHERWISE = "The mistake is often on the previous line: a bracket, a colon or the indentation."
 
 
 def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:

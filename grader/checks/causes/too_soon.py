@@ -14,7 +14,7 @@ WAITS_FOR_SUBSCRIBER = ("get_subscription_count", "count_subscribers")
 
 
 def too_soon(finding: Finding, evidence: Evidence) -> Finding:
-    """Return the finding about a part that is too short, with the cause `too-soon` if commands may have been lost.
+    """Return a finding about a missing part of a trajectory, with the cause `too-soon` if commands may have been lost.
 
     In simulated time, the clock starts only when the publisher and the subscription are connected, so no command is
     lost. If the node itself checks how many subscriptions are connected, no command is lost in wall time either.

@@ -28,11 +28,11 @@ SERVERS = ("wait_for_service", "wait_for_server")
 SLEEPS = ("sleep", "sleep_for", "sleep_until")
 WAITS = (*RESPONSES, *SPINS, *SERVERS, *SLEEPS)
 LOOP = "while"
-"""The `name` of a `Wait` that is a loop until done() returns True."""
+"""The `name` of a `Wait` that is a while loop whose condition calls done()."""
 THREADS = frozenset({"MultiThreadedExecutor", "Thread", "ThreadPoolExecutor", "Timer", "start_new_thread"})
 """If the source uses one of these, another thread can receive the response while a callback waits."""
 STARTS = frozenset({"Thread", "Timer", "start_new_thread", "submit", "to_thread", "run_in_executor"})
-"""Functions that run a function, passed as an argument, in another thread."""
+"""Functions that call one of their arguments in another thread."""
 STRAIGHT = frozenset({"__init__", "main"})
 """Functions that run before rclpy.spin. They are not counted as callbacks, even if their names are used without a
 call."""
@@ -42,7 +42,7 @@ OTHER_CALLS = frozenset({"subprocess", "self", "super", "cls"})
 
 @dataclass(frozen=True)
 class Wait:
-    """A wait in a callback: the `name` of the function that waits, the name `written` in the source, and the place."""
+    """A wait in a callback: `name` is the function that waits, and `written` is its name or alias in the source."""
 
     name: str
     written: str
@@ -142,7 +142,7 @@ def _really_waits(call: ast.Call, name: str, written: str, *, in_loop: bool) -> 
 
 
 def _of_client(call: ast.Call, clients: frozenset[str]) -> bool:
-    """Return whether the function is a method of a client, and not the node's own function of the same name."""
+    """Return whether the called function is a method of a client, not the node's own function with the same name."""
     owner = getattr(call.func, "value", None)
     if isinstance(owner, ast.Call):
         return _last(owner) in CREATE
@@ -150,7 +150,7 @@ def _of_client(call: ast.Call, clients: frozenset[str]) -> bool:
 
 
 def _clients(modules: Iterable[Module]) -> frozenset[str]:
-    """Return the names that hold a client of a service or of an action."""
+    """Return the names of the variables that hold a client of a service or of an action."""
     return frozenset(
         dotted(target) or ""
         for module in modules

@@ -35,7 +35,7 @@ def without_assert(code: TestCode) -> tuple[TestFunction, ...]:
 
 
 def why_without_assert(test: TestFunction) -> Cause:
-    """Return the reason why a test contains no assert."""
+    """Return the mistake in a test that asserts nothing, such as a comparison without `assert`."""
     for node in _own(test.node):
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Compare):
             text = "Without assert before it, a comparison has no effect."
@@ -163,7 +163,7 @@ def _asserts(node: ast.AST) -> bool:
 
 
 def _mentioned(node: ast.AST) -> set[str]:
-    """Return the names of functions that a function may call, and of the fixtures that it requests."""
+    """Return the names of the functions that a function calls, and of the fixtures that it requests."""
     names = {_last(each.func) for each in ast.walk(node) if isinstance(each, ast.Call)}
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
         names |= {argument.arg for argument in node.args.args}

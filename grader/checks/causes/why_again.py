@@ -34,8 +34,8 @@ def why_again(evidence: Evidence) -> Cause:
     ]
     if ended:
         text = (
-            "The node already waits for the response. When the response has arrived, the node must forget the target "
-            "too, or else this target is still the nearest one."
+            "The node already waits for the response. When the response has arrived, the node must also forget the "
+            "target. Otherwise, this target is still the nearest one."
         )
         return Cause("catch-again", text, ended[0])
     text = "Store in an attribute whether the node is waiting for a response. While it is waiting, do not call again."
@@ -47,7 +47,7 @@ def _calls(method: ast.FunctionDef) -> bool:
 
 
 def _set(method: ast.FunctionDef, *, empty: bool) -> Iterator[tuple[str, int]]:
-    """Yield each attribute of self that the method sets, with its line.
+    """Yield the name and the line of each assignment to an attribute of self in the method.
 
     With `empty`, only assignments of None or False count. Without `empty`, only assignments of other values count.
     """
@@ -59,6 +59,6 @@ def _set(method: ast.FunctionDef, *, empty: bool) -> Iterator[tuple[str, int]]:
 
 
 def _tested(module: Module) -> set[str | None]:
-    """Return the names that the conditions of the module contain."""
+    """Return the attributes, such as "self.target", that occur in the conditions of the module."""
     tests = [node.test for node in module.nodes if isinstance(node, ast.If | ast.While | ast.IfExp)]
     return {dotted(each) for test in tests for each in ast.walk(test) if isinstance(each, ast.Attribute)}

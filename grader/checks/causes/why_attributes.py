@@ -52,7 +52,7 @@ PLAIN = {
 }
 """Maps a built-in type to a phrase for a value of this type."""
 MOST_LETTERS = 2
-"""The maximum difference in length (letters) between a name and a name that is suggested instead."""
+"""The maximum difference in length (letters) between a name and the name that is suggested in its place."""
 MODULES_READ = {"math": math, "time": time, "random": random}
 
 
@@ -130,7 +130,7 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
 
 
 def _of_class_elsewhere(scene: CrashScene, owner: str, name: str) -> Cause:
-    """Return the cause if a ROS 2 class lacks the attribute, such as a field, which only its objects have."""
+    """Return the reason why a ROS 2 class lacks the attribute, for example because only its objects have fields."""
     if owner in ros_names.FIELDS:
         return class_for_object(scene, owner, name)
     text = f"The class {shorten(owner)} has no constant or method with that name."
@@ -230,7 +230,7 @@ def _of_own_class(scene: CrashScene, owner: str, name: str) -> Cause:
 
 def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
     if any(isinstance(each, ast.AugAssign) and dotted(each.target) == f"self.{name}" for each in scene.on_line):
-        text = f"Nothing has set self.{shorten(name)} before this line, so there is no value to change."
+        text = f"self.{shorten(name)} has not been assigned before this line, so there is no value to change."
         return Cause("attribute-too-early", text)
     compared = [each for each in scene.on_line if isinstance(each, ast.Expr) and isinstance(each.value, ast.Compare)]
     if compared:
@@ -256,7 +256,8 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
         return Cause("method-in-method", text, scene.at(inside))
     if name in ros_names.NODE:
         text = (
-            f"{own.name} is not derived from Node, so it has no method {name}. The base classes follow the class name."
+            f"{own.name} is not derived from Node, so it has no method {name}. Write the base class in parentheses "
+            "after the class name."
         )
         return Cause("attribute-missing", text, scene.at(own))
     if name in ros_names.OTHERS["RcutilsLogger"]:
@@ -265,7 +266,7 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
     if name == "publish":
         return Cause("node-publishes", "A node has no method publish. Call publish on the publisher instead.")
     return _misspelt(scene, name, {*ros_names.NODE, *_members(scene, own)}) or Cause(
-        "attribute-missing", f"Nothing sets self.{shorten(name)}, and the class has no method with that name."
+        "attribute-missing", f"self.{shorten(name)} is never assigned, and the class has no method with that name."
     )
 
 

@@ -74,7 +74,7 @@ def _why_undeclared(scene: CrashScene) -> Cause:
     names = [
         call.node.args[0].value for call in calls if call.node.args and isinstance(call.node.args[0], ast.Constant)
     ]
-    declared = f" Declared here: {a_list([shorten(str(name)) for name in names])}." if names else ""
+    declared = f" The node declares {a_list([shorten(str(name)) for name in names])}." if names else ""
     return Cause("parameter-undeclared", f"{scene.crash.meaning}{declared}")
 
 
@@ -92,7 +92,7 @@ ARGUMENTS = re.compile(r"error: the following arguments are required: (?P<names>
 
 
 def _why_usage(scene: CrashScene) -> Cause | None:
-    """Return the cause if argparse ended the program because it got no arguments, else None."""
+    """Return the cause if argparse ended the program because a required argument was missing, else None."""
     required = ARGUMENTS.search(scene.evidence.recording.stderr.text)
     if required is None:
         return None

@@ -20,7 +20,7 @@ RANGE = re.compile(r"The '(?P<field>\w+)' field must be an (?:un)?signed integer
 LIST = re.compile(r"The '(?P<field>\w+)' field must be a set or sequence")
 FLOAT = ("float", "double")
 KINDS = {"int": "a whole number", "str": "a string", "bool": "True or False"}
-"""Maps Python's type of a field to a phrase for its values."""
+"""Maps the Python type of a field to a phrase for the values of the field."""
 READS = ("input", "get", "str", "format", "getenv")
 """Functions that return a string."""
 
@@ -85,7 +85,7 @@ def why_no_float(field: str, value: ast.expr | None) -> Cause | None:
             f"The field {field} needs a Python float, not a NumPy number. Convert it with float(...).",
         )
     if isinstance(value, ast.Call) and getattr(value.func, "attr", "") == "get_parameter_value":
-        text = f"The field {field} is a float, but this is a ParameterValue, which has the number in its double_value."
+        text = f"The field {field} is a float, but this is a ParameterValue. The number is in its field double_value."
         return Cause("field-type", text)
     if isinstance(value, ast.Call) and names[0].endswith(("get_parameter", "declare_parameter")):
         text = (

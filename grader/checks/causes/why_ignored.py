@@ -19,7 +19,7 @@ LEAVES = ast.Break | ast.Return | ast.Raise
 
 
 def why_ignored(evidence: Evidence) -> Cause:
-    """Return the cause of a node that ignores Ctrl-C. Its text is empty if the source shows no reason."""
+    """Return the reason why a node ignores Ctrl-C. The text of the cause is empty if the source shows no reason."""
     text, where = (
         _refuses(evidence)
         or _catches(evidence)

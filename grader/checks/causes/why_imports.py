@@ -18,7 +18,7 @@ NOT_HERE = {
     "_tkinter": "tkinter is Python's module for graphical windows.",
     "example_interfaces": "example_interfaces is a package of ROS 2.",
 }
-"""Maps a module that a correct program may import, but that the grader does not have, to a sentence about it."""
+"""Maps a module to a sentence about it. A correct program may import the module, but the grader does not have it."""
 NO_MODULE = re.compile(r"No module named '(?P<name>[\w.]+)'")
 NO_NAME = re.compile(r"cannot import name '(?P<name>\w+)' from '(?P<module>[\w.]+)'")
 
@@ -60,7 +60,7 @@ def _no_module(scene: CrashScene, name: str) -> Cause:
         return Cause("module-misspelt", text).fixed_by(at(scene.crash.where, name, guess.partition(".")[0]))
     return Cause(
         "module-missing",
-        f"No installed package has a module {shorten(name)}. Compare the name letter by letter.",
+        f"No installed package has a module {shorten(name)}. Check the name letter by letter.",
     )
 
 
@@ -76,4 +76,5 @@ def _no_name(scene: CrashScene, name: str, module: str) -> Cause:
         return Cause("import-wrong-place", f"{known} is in the module {right}.").fixed_by(fix)
     guess = nearest(name, [each for each, place in ros_names.MODULE_OF.items() if place == module])
     fix = at(scene.crash.where, name, guess) if guess else ()
-    return Cause("import-name", f"The module {shorten(module)} has {guess or 'no such name'}.").fixed_by(fix)
+    instead = f", but it has {guess}" if guess else ""
+    return Cause("import-name", f"The module {shorten(module)} has no such name{instead}.").fixed_by(fix)

@@ -21,7 +21,7 @@ def never_activated(evidence: Evidence) -> Cause | None:
     """Return the cause if a lifecycle node needs to be activated and does not activate itself, else None.
 
     A lifecycle node without the methods in TRANSITIONS and without lifecycle publishers works like any other node.
-    The grader never activates a node: an exercise asks for a node that works as soon as it is started.
+    The grader never activates a node, because in every exercise, the node must work as soon as it is started.
     """
     if evidence.code.calls("trigger_activate"):
         return None

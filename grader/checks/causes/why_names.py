@@ -30,7 +30,7 @@ MEMBERS = {
     "time": frozenset({"sleep", "perf_counter", "monotonic"}),
     "random": frozenset(name for name in dir(random) if name.islower() and not name.startswith("_")),
 }
-"""Maps a module to names in it that learners often use without the name of the module before them."""
+"""Maps a module to those of its names that learners often use without the name of the module as a prefix."""
 TAKE_A_STRING = {"__init__": 0, "create_node": 0, "create_publisher": 1, "create_subscription": 1, "create_client": 1}
 """Functions of rclpy that take the name of a node, topic or service, each with the position of this argument."""
 NEED_THE_NODE = ("spin", "spin_once", "spin_until_future_complete", "add_node")

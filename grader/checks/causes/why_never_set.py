@@ -20,9 +20,9 @@ Held = tuple[ast.ClassDef, ast.FunctionDef]
 
 
 def never_set(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
-    """Return the cause if each method that sends waits for an attribute that stays None, else None.
+    """Return the cause if each method that sends something waits for an attribute that stays None, else None.
 
-    `sends` contains the functions that publish or log.
+    `sends` contains the names of the methods that publish or log.
     """
     modules = evidence.code.modules
     if any(isinstance(node, ast.Name) and node.id == "setattr" for module in modules for node in module.nodes):
@@ -67,7 +67,7 @@ def _local(own: ast.ClassDef, name: str) -> int | None:
 
 
 def _set_to_none(evidence: Evidence, name: str) -> list[int]:
-    """Return the lines that set an attribute of this name to None, or an empty list if a line may set another value."""
+    """Return the lines that assign None to the attribute, or an empty list if a line may assign another value."""
     lines: list[int] = []
     for module in evidence.code.modules:
         for node in module.nodes:
@@ -85,7 +85,7 @@ def _set_to_none(evidence: Evidence, name: str) -> list[int]:
 
 
 def _needed(method: ast.FunctionDef, sends: Sequence[str]) -> Iterator[str]:
-    """Yield the attributes of self that must not be None, because the method otherwise sends nothing."""
+    """Yield the attributes of self that must have a value other than None before the method sends anything."""
     for statement in method.body:
         if isinstance(statement, ast.If):
             ends = isinstance(statement.body[-1], ast.Return) and not _calls(statement, sends)

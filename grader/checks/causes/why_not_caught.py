@@ -54,13 +54,13 @@ def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
         return _never_drives(evidence, left)
     if _moved_m(evidence, activity.end_s(recording) - STILL_S) <= STILL_M:
         return _stands_still(evidence, left)
-    text = f"The turtle still moved in the last {STILL_S:.0f} s of the trial."
+    text = f"The turtle was still moving in the last {STILL_S:.0f} s of the trial."
     if left:
         near_m, name = min((_nearest_m(evidence, track), track.turtle) for track in left)
         known = why_not_reached(evidence, name, near_m)
         if known is not None:
             return known
-        text += f" The turtle came as near as {near_m:.1f} m to {shorten(name)}." if np.isfinite(near_m) else ""
+        text += f" The turtle came within {near_m:.1f} m of {shorten(name)}." if np.isfinite(near_m) else ""
     return Cause("too-slow", text, evidence.place("publish"))
 
 
@@ -115,7 +115,7 @@ def _stands_still(evidence: Evidence, left: list[Track]) -> Cause:
             why = why_unasked(evidence, CATCH)
             if not asked:
                 return why
-        text = f"The turtle stands beside {shorten(near.turtle)}."
+        text = f"The turtle stood beside {shorten(near.turtle)} at the end."
         return Cause("stands-still", text, evidence.place("call_async", "publish"))
     text = (
         "The turtle stood still at the end. After a catch, the node must choose the nearest of the remaining targets."

@@ -40,8 +40,8 @@ def why_not_reached(evidence: Evidence, name: str, near_m: float) -> Cause | Non
     asked = any(call.service == CATCH and call.request["name"] == name for call in evidence.recording.calls)
     if reach_m is not None and near_m < reach_m and not asked:
         text = (
-            f"The turtle came as near as {near_m:.2f} m to {shorten(name)}, and your reach is {reach_m:g} m, but the "
-            f"node did not call {CATCH} for it. Which distance does the node compare with your reach?"
+            f"The turtle came within {near_m:.2f} m of {shorten(name)}, and your reach is {reach_m:g} m, but the "
+            f"node did not call {CATCH} for this target. Which distance does the node compare with your reach?"
         )
         return Cause("reach-too-small", text, _constant(evidence, "REACH") or evidence.place("call_async"))
     return _farthest(evidence) or wrong_turn(evidence)
@@ -103,7 +103,7 @@ def _farthest(evidence: Evidence) -> Cause | None:
 
 
 def _negates(key: ast.expr) -> bool:
-    """Return whether the key has a minus sign: the largest negative distance is the smallest distance."""
+    """Return whether the key has a minus sign, so that max returns the target with the smallest distance."""
     return any(isinstance(node, ast.USub) for node in ast.walk(key))
 
 

@@ -1,4 +1,4 @@
-"""Explain why an operator does not support the types of two values: one value is a list or a string."""
+"""Explain why an operator does not support the types of two values, for example a list and a number."""
 
 from __future__ import annotations
 
@@ -33,4 +33,4 @@ def why_operands(scene: CrashScene) -> Cause | None:
         return Cause("list-for-array", text)
     if (comma := comma_for_dot(scene)) is not None:
         return comma
-    return Cause("crash", f"This operator does not support a value of type {left} with a value of type {right}.")
+    return Cause("crash", f"This operator cannot combine a value of type {left} with a value of type {right}.")

@@ -19,7 +19,7 @@ CREATE_OBJECT = "Add parentheses after the class name to create an object."
 
 
 def class_for_object(scene: CrashScene, owner: str, attribute: str) -> Cause:
-    """Return the cause for a class `owner` that is used like an object, with the line that assigns it, if known."""
+    """Return the cause if the class `owner` is used like an object, with the line that assigns the class, if known."""
     text = f"{shorten(owner)} is a class. {CREATE_OBJECT}"
     used = [each for each in scene.on_line if isinstance(each, ast.Attribute) and each.attr == attribute]
     holders = {dotted(each.value) for each in used} - {owner}
@@ -31,7 +31,7 @@ def class_for_object(scene: CrashScene, owner: str, attribute: str) -> Cause:
 
 
 def published_other(scene: CrashScene, wanted: str, got: str) -> Cause:
-    """Return the cause for a call of publish with something other than a message of the type `wanted`."""
+    """Return the cause if publish was called with something other than a message of the type `wanted`."""
     kind = got.rpartition(".")[2]
     if kind == f"Metaclass_{wanted}":
         return Cause("class-for-object", f"{wanted} is a class. {CREATE_OBJECT}")
@@ -59,7 +59,7 @@ def without_return(scene: CrashScene, call: ast.expr) -> Cause | None:
 
 
 def no_object(scene: CrashScene) -> Cause:
-    """Return the cause for a call of rclpy.spin with None, for example from a function without a return statement."""
+    """Return the cause if rclpy.spin was called with None, for example because a function returned nothing."""
     text = "rclpy.spin was called with None instead of a node."
     given = {dotted(call.args[0]) for call in scene.calls_on_line("spin") if call.args}
     for node in scene.nodes:

@@ -42,9 +42,7 @@ def too_few(scene: CrashScene, function: str, names: str) -> Cause | None:
     called = next(iter(scene.calls_on_line(function)), None)
     if called is not None:
         if any(called in node.args for node in scene.on_line if isinstance(node, ast.Call)):
-            text = (
-                f"With () after its name, {function} is called immediately. To pass the method itself, write its name."
-            )
+            text = f"With () after its name, {function} is called immediately. To pass the method itself, omit the ()."
             return Cause("callback-called", text, scene.at(called))
         used = {node.id for node in ast.walk(own[0]) if isinstance(node, ast.Name)}
         if not used & set(re.findall(r"'(\w+)'", names)):
@@ -68,9 +66,7 @@ def _method_of_class(scene: CrashScene, function: str) -> Cause | None:
         name = f"{own.name}.{function}"
         for node in scene.nodes:
             if isinstance(node, ast.Call) and name in [dotted(argument) for argument in node.args]:
-                text = (
-                    f"{name} does not belong to an object. Pass the method of an object: the object, a dot, {function}."
-                )
+                text = f"{name} does not belong to an object. Pass the method of an object, as in self.{function}."
                 return Cause("class-for-object", text, scene.at(node))
     return None
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 OF_A_VALUE = re.compile(r"'(?:str|int|float|bool)' object has no attribute '(?P<name>\w+)'")
 NUMBERS = re.compile(r"period|sec|rate|time|dt|interval|delay|queue|qos|depth", re.IGNORECASE)
-"""Names that learners give to a parameter if they pass its value to create_timer or create_publisher as a number."""
+"""Matches names that learners give to a parameter whose value is the number for create_timer or create_publisher."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Explain why messages arrive at a wrong mean rate, for example because a timer or a sleep has a wrong period."""
+"""Explain why messages arrive at the wrong mean rate, for example because a timer has the wrong period."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def why_mean(evidence: Evidence, noun: str, call: str, mean: float, rate_hz: flo
     Args:
         evidence: everything that is known about the submission.
         noun: the name of the messages, such as "command".
-        call: the method of the student's code that sends them, such as "publish".
+        call: the method that the student's code calls to send them, such as "publish".
         mean: the measured mean interval (s).
         rate_hz: the rate that the exercise requires (Hz).
     """
@@ -124,7 +124,7 @@ def _period_cause(cause: Cause, period: float, rate_hz: float) -> Cause:
 
 
 def _right_period(timer: Call, rate_hz: float) -> tuple[Edit, ...]:
-    """Return the edit that sets the period of the exercise, if the period in the source is a constant."""
+    """Return the edit that changes the period to the one that the exercise requires, if the source has a constant."""
     node = written(timer.argument(0, "timer_period_sec"), timer.module.names)
     if node is None:
         return ()

@@ -88,14 +88,14 @@ def _known(message: str, where: Where | None) -> Cause | None:
 def _of_ros(message: str, where: Where | None) -> Cause | None:
     if TWICE.search(message):
         text = (
-            "rclpy.init was called twice without rclpy.shutdown in between. A fixture calls rclpy.init before the "
-            "yield and rclpy.shutdown after it, and the tests call neither."
+            "rclpy.init was called twice without rclpy.shutdown in between. In a fixture, call rclpy.init before the "
+            "yield and rclpy.shutdown after it. Call neither in the tests."
         )
         return Cause("not-shut-down", text, where)
     if NOT_YET.search(message):
         text = (
-            "A node can exist only between rclpy.init and rclpy.shutdown. A fixture calls rclpy.init before the yield "
-            "and rclpy.shutdown after it."
+            "A node can exist only between rclpy.init and rclpy.shutdown. In a fixture, call rclpy.init before the "
+            "yield and rclpy.shutdown after it."
         )
         return Cause("no-init", text, where)
     if OUTSIDE.search(last_error(message)):

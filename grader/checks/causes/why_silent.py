@@ -32,7 +32,7 @@ ALWAYS = ("True", "1", "rclpy.ok()")
 
 
 def why_qos(evidence: Evidence) -> Cause | None:
-    """Return the cause if the QoS settings of publisher and subscription are not compatible, else None."""
+    """Return the cause if the QoS settings of a publisher and a subscription are not compatible, else None."""
     recording = evidence.recording
     output = [recording.stderr.text, *(line.text for line in recording.log)]
     if not any(INCOMPATIBLE in text for text in output):
@@ -45,7 +45,7 @@ def why_qos(evidence: Evidence) -> Cause | None:
 
 
 def why_nothing(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
-    """Return the reason why the node sends nothing, or None. `sends` contains the functions that publish or log."""
+    """Return the reason why the node sends nothing, or None. `sends` contains the methods that publish or log."""
     fault = timer_fault(evidence)
     if fault is not None:
         return fault
@@ -94,7 +94,7 @@ def _stuck(evidence: Evidence) -> Cause | None:
                 text = "__init__ loops forever, so rclpy.spin is never reached. A timer repeats without a loop."
                 return Cause("blocks-in-init", text, where)
             if method.name == "__init__" and isinstance(node, ast.Call) and dotted(node.func) == "rclpy.spin":
-                text = "rclpy.spin returns only after Ctrl-C, so the lines after it in __init__ do not run before that."
+                text = "rclpy.spin returns only after Ctrl-C, so the lines after it in __init__ do not run until then."
                 return Cause("blocks-in-init", text, where)
             if method.name == "__init__" and isinstance(node, ast.While) and _only_waits(node):
                 text = "If this loop in __init__ does not end, rclpy.spin is never reached."

@@ -1,4 +1,4 @@
-"""Explain why a service call does not arrive, for example because the call is never made or its name is wrong."""
+"""Explain why a service call does not arrive, for example because the name of the service is wrong."""
 
 from __future__ import annotations
 

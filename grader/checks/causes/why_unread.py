@@ -1,4 +1,4 @@
-"""Explain why nothing happens after a goal: the node asks for the result, but nothing reads the future."""
+"""Explain why nothing happens after a goal was sent: the node asks for the result, but nothing reads the future."""
 
 from __future__ import annotations
 

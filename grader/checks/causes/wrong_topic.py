@@ -43,7 +43,7 @@ def _why(wanted: str, topic: str, evidence: Evidence, maker: str) -> Cause:
         return Cause("topic-other-turtle", "There is no turtle with that name.")
     return Cause(
         "wrong-topic",
-        f"The topic name is the second argument of {maker}. Compare the topic name letter by letter.",
+        f"The topic name is the second argument of {maker}. Check the topic name letter by letter.",
     )
 
 

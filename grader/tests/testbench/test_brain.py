@@ -108,7 +108,7 @@ def test_a_run_cannot_create_nodes_without_end() -> None:
         ("period_s = 0.2", "period_s = 0.1", "this node is the same as the correct node"),
         ("period_s = 0.2", "period = 0.2", "unknown key"),
         ('turn_field = "angular.x"', 'turn_field = "z"', '"turn_field" must be one of'),
-        ('walls = ["left", "right"]', 'walls = ["west"]', '"walls" must contain'),
+        ('walls = ["left", "right"]', 'walls = ["west"]', '"walls" may contain'),
         ("right_runs = 3", "right_runs = 0", '"right_runs" is 0'),
         ('own = ["speed_m_s"', 'own = ["topic"', '"own" contains topic'),
         ('own = ["speed_m_s"', 'own = ["slow_m_s"', '"own" contains slow_m_s'),

@@ -15,10 +15,14 @@ RIGHT = "[develop]\nscript_dir=$base/lib/p\n[install]\ninstall_scripts=$base/lib
         (RIGHT.encode("utf-16"), "Save the file as UTF-8.", "setup.cfg"),
         (RIGHT.encode("utf-8-sig"), "without a byte order mark", "setup.cfg"),
         (f"# Namen\n# f\xfcr\n{RIGHT}".encode("latin-1"), "Save the file as UTF-8.", "setup.cfg:2"),
-        (RIGHT.partition("\n")[2].encode(), "A line is either [SECTION] or NAME=VALUE.", "setup.cfg:1"),
-        (f"{RIGHT}install_lib\n".encode(), "A line is either [SECTION] or NAME=VALUE.", "setup.cfg:5"),
-        (f"{RIGHT}install_scripts=x\n".encode(), "A section, or a name in a section, occurs only once.", "setup.cfg:5"),
-        (f"{RIGHT}[develop]\n".encode(), "A section, or a name in a section, occurs only once.", "setup.cfg:5"),
+        (RIGHT.partition("\n")[2].encode(), "Each line must be [SECTION] or NAME=VALUE.", "setup.cfg:1"),
+        (f"{RIGHT}install_lib\n".encode(), "Each line must be [SECTION] or NAME=VALUE.", "setup.cfg:5"),
+        (
+            f"{RIGHT}install_scripts=x\n".encode(),
+            "No section, and no name in a section, may occur twice.",
+            "setup.cfg:5",
+        ),
+        (f"{RIGHT}[develop]\n".encode(), "No section, and no name in a section, may occur twice.", "setup.cfg:5"),
     ],
 )
 def test_the_line_and_the_reason(data: bytes, cause: str, where: str) -> None:

@@ -235,7 +235,7 @@ def test_a_function_without_return_whose_value_is_published_is_told(body: str, *
 def test_a_method_without_its_object_is_told(callback: str, *, found: bool) -> None:
     source = SOURCE.format(line="pass") + f"\nnode.create_timer(1.0, {callback})\n"
     given = reported(source, TOO_FEW.format("stop", "self")).cause
-    words = "Driver.stop does not belong to an object. Pass the method of an object: the object, a dot, stop."
+    words = "Driver.stop does not belong to an object. Pass the method of an object, as in self.stop."
     assert (given == words) == found
 
 
@@ -244,7 +244,7 @@ def test_an_attribute_that_a_base_class_misses_is_told(set_there: str, *, found:
     source = "from my_robot_controller.circle import Circle\n" + SOURCE.format(line="self.pub.publish()")
     circle = f"class Circle(Driver):\n    def start(self):\n        {set_there}\n"
     given = reported(source, NO_ATTRIBUTE.format("'Circle' object", "pub"), {"my_robot_controller/circle.py": circle})
-    assert (given.cause == "Nothing sets self.pub, and the class has no method with that name.") == found
+    assert (given.cause == "self.pub is never assigned, and the class has no method with that name.") == found
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,7 @@ WAITS = CALLS.replace(
 )
 def test_a_node_that_waits_for_the_response_is_not_told_to_wait(source: str, *, found: bool) -> None:
     cause = why_again(evidence(recording([]), submission({NODE_FILE: source})))
-    assert ("When the response has arrived, the node must forget the target too" in cause.text) == found
+    assert ("When the response has arrived, the node must also forget the target" in cause.text) == found
     assert ("Store in an attribute whether the node is waiting" in cause.text) != found
     look = next((at for at, line in enumerate(source.splitlines(), 1) if "# look" in line), None)
     assert (cause.where is not None and cause.where.line == look) == found

@@ -200,10 +200,10 @@ NO_INIT = "class Driver(Node):\n    def send(self):\n        print(self._x)  # c
         (TOO_EARLY, "count", "attribute-too-early", "self.count is assigned on line 5,"),
         (OUTSIDE, "send", "method-outside-class", "send is outside the class."),
         (INSIDE, "send", "method-in-method", "send is indented too far"),
-        (ELSEWHERE, "send", "attribute-missing", "Nothing sets self.send,"),
+        (ELSEWHERE, "send", "attribute-missing", "self.send is never assigned,"),
         (NO_SUPER, "_timers", "super-init-missing", "never calls super().__init__"),
         (LATE_SUPER, "_timers", "super-init-late", "before that line"),
-        (NO_INIT, "_x", "attribute-missing", "Nothing sets self._x,"),
+        (NO_INIT, "_x", "attribute-missing", "self._x is never assigned,"),
         (ELSEWHERE, "publish", "node-publishes", "A node has no method publish"),
         (ELSEWHERE, "create_timmer", "attribute-misspelt", "A similar name exists: create_timer."),
         (TOO_EARLY, "agian", "attribute-misspelt", "A similar name exists: again."),
@@ -211,7 +211,7 @@ NO_INIT = "class Driver(Node):\n    def send(self):\n        print(self._x)  # c
         (LOCAL, "speed", "missing-self", "Line 4 assigns speed without self"),
         (COMPARED, "speed", "equals", "== compares two values."),
         (BASE, "start_agian", "attribute-misspelt", "A similar name exists: start_again."),
-        (TOO_EARLY, "velocity", "attribute-missing", "Nothing sets self.velocity,"),
+        (TOO_EARLY, "velocity", "attribute-missing", "self.velocity is never assigned,"),
     ],
 )
 def test_what_a_node_lacks_is_explained_by_its_class(source: str, name: str, diagnosis: str, words: str) -> None:

@@ -89,7 +89,7 @@ def test_a_value_of_which_nothing_is_known_is_of_another_type() -> None:
             "The field linear is a Vector3 with",
         ),
         ("Invalid arguments passed to constructor: x", "message-arguments", "Create the message without arguments,"),
-        ("it did not hold", "crash", "An assertion failed: a condition that the code"),
+        ("it did not hold", "crash", "An assertion failed: a condition was false"),
     ],
 )
 def test_an_assertion_is_explained_by_its_words(error: str, diagnosis: str, words: str) -> None:

@@ -32,7 +32,7 @@ HELPER = {"my_robot_controller/helper.py": "", "my_robot_controller/unhelper.py"
         (
             "cannot import name 'Twists' from 'geometry_msgs.msg'",
             "import-name",
-            "The module geometry_msgs.msg has Twist.",
+            "The module geometry_msgs.msg has no such name, but it has Twist.",
         ),
         (
             "cannot import name 'Banana' from 'geometry_msgs.msg'",

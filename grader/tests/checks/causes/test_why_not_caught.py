@@ -46,12 +46,12 @@ def speed(linear: float, angular: float) -> list[Timed]:
     [
         (speed(0.0, 0.0), "All commands that arrived contained only zeros."),
         (speed(0.0, 1.0), "linear.x is 0 in every command, so the turtle only turns."),
-        (speed(0.5, 0.0), "The turtle still moved in the last 3 s of the trial. The turtle came as near as"),
+        (speed(0.5, 0.0), "The turtle was still moving in the last 3 s of the trial. The turtle came within"),
     ],
 )
 def test_what_the_commands_contain_is_told(commands: list[Timed], words: str) -> None:
     assert cause(commands).startswith(words)
-    others = {"All commands that arrived", "linear.x is 0 in every", "The turtle still moved"}
+    others = {"All commands that arrived", "linear.x is 0 in every", "The turtle was still moving"}
     assert [each for each in others if each in cause(commands)] == [each for each in others if each in words]
 
 
@@ -64,8 +64,8 @@ def test_a_turtle_that_stays_despite_its_commands_is_told() -> None:
 @pytest.mark.parametrize(("from_s", "near"), [(0.0, "0.0 m"), (5.0, "1.5 m"), (20.0, None)])
 def test_the_way_to_a_target_counts_while_the_target_exists(from_s: float, near: str | None) -> None:
     said = cause(AHEAD, 6.5, from_s)
-    assert (" The turtle came as near as" not in said) == (near is None)
-    assert near is None or said.endswith(f" The turtle came as near as {near} to far.")
+    assert (" The turtle came within" not in said) == (near is None)
+    assert near is None or said.endswith(f" The turtle came within {near} of far.")
 
 
 @pytest.mark.parametrize(("name", "found"), [("turtle1", True), ("far", False)])
@@ -77,7 +77,7 @@ def test_a_name_that_no_target_has_is_told(name: str, *, found: bool) -> None:
 @pytest.mark.parametrize(("x", "found"), [(6.4, True), (9.0, False)])
 def test_a_turtle_stands_beside_a_target_or_far_from_all(x: float, *, found: bool) -> None:
     said = cause(AHEAD[:14], x, calls=(catch("far"),))
-    assert (said == "The turtle stands beside far.") == found
+    assert (said == "The turtle stood beside far at the end.") == found
     assert found or said.startswith("The turtle stood still at the end.")
 
 

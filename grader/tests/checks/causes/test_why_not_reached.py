@@ -65,7 +65,7 @@ MOST = NODE.replace("min(", "max(")
     ("words", "true", "near"),
     [
         ("reach-too-small my_robot_controller/draw_circle.py:3: ", cause(near_m=0.2), cause(near_m=REACH_M + 0.1)),
-        (f"The turtle came as near as 0.20 m to far, and your reach is {REACH_M:g} m, but the", cause(near_m=0.2), ""),
+        (f"The turtle came within 0.20 m of far, and your reach is {REACH_M:g} m, but the", cause(near_m=0.2), ""),
         ("Which distance does the node compare with your reach?", cause(near_m=0.2), cause(near_m=0.2, calls=ASKED)),
         ("atan2-swapped my_robot_controller/draw_circle.py:11: ", cause(SWAPPED), cause()),
         ("math.atan2 takes the difference in y first, and then the difference in x.", cause(SWAPPED), cause(DEGREES)),

@@ -8,7 +8,7 @@ from grader.tests.checks.crashes import DRIVER, reported
 
 LISTS = "A list is not an array: Python cannot compute with a whole list."
 STRINGS = "A string and a number cannot be added."
-OTHERS = "This operator does not support a value of type {} with a value of type {}."
+OTHERS = "This operator cannot combine a value of type {} with a value of type {}."
 
 
 @pytest.mark.parametrize(

@@ -23,12 +23,12 @@ def cause(message: str, *, over: bool = False) -> str:
         (
             "E   RuntimeError: Context.init() must only be called once",
             "E   RuntimeError: Context.init() failed",
-            "rclpy.init was called twice without rclpy.shutdown in between. A fixture calls rclpy.init before",
+            "rclpy.init was called twice without rclpy.shutdown in between. In a fixture, call rclpy.init before",
         ),
         (
             "E   rclpy.exceptions.NotInitializedException: no init",
             "E   InitializedException: no",
-            "A node can exist only between rclpy.init and rclpy.shutdown. A fixture calls rclpy.init before the",
+            "A node can exist only between rclpy.init and rclpy.shutdown. In a fixture, call rclpy.init before the",
         ),
         (
             "E   _tkinter.TclError: no display name and no $DISPLAY environment variable",
