@@ -38,8 +38,9 @@ def ended_at_start(recording: Recording) -> bool:
     A node that raised an exception inside rclpy's spin did run, no matter how soon it exited. A node that raised an
     exception in a constructor and sent no command did not run, no matter how late it exited: on a busy machine, the
     start takes longer than the initial period (START_S). The same holds for a program that exited without an error
-    before its node appeared in the graph. These rules depend neither on the clock nor on the time of the first
-    observation. If none of them applies, a node that exits in the initial period counts as a node that did not run.
+    before its node appeared in the graph. These rules depend neither on the clock nor on the time at which the grader
+    first observed the node. If none of them applies, a node that exits in the initial period counts as a node that did
+    not run.
     """
     end = recording.end
     if end.by != "itself" or spun(recording):

@@ -1,8 +1,8 @@
 """Find out from the movement itself whether something other than velocity commands moved the turtle.
 
-turtlesim moves a turtle in each frame by its velocities alone, up to the walls. Something else (a teleport, a reset or
-a goal of rotate_absolute) moved the turtle if the turtle moved in any other way, turned while it followed a goal, or
-turned at a speed that no command had set.
+In each frame, turtlesim moves a turtle only according to its velocities, and keeps it inside the walls. Something else
+(a teleport, a reset or a goal of rotate_absolute) moved the turtle if the turtle moved in any other way, turned while
+it followed a goal, or turned at a speed that no command had set.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Shell completion of steps. This module reads the names of the course's folders but parses no files."""
+"""Shell completion for the names of steps. This module reads the names of the course's folders but parses no files."""
 
 from __future__ import annotations
 

@@ -143,7 +143,7 @@ class Exercise:
     numbers: NumbersSpec | None = None
     """The values that differ from student to student."""
     show_fix: bool = False
-    """Whether a student's report shows the change that made a check pass when the grader tested it in a copy."""
+    """Whether a student's report shows the change that made a failed check pass in a copy of the submission."""
     unsolved: tuple[str, ...] = ()
     """The checks that the starting point must fail (for `grader validate`). Checks that need one of these checks are
     skipped."""

@@ -36,7 +36,7 @@ class Judging:
 
     choice: ClockChoice
     fault: Fault | None = None
-    """Why the submission could not be read."""
+    """The reason why the submission could not be read, or None."""
     _clocks: Clocks = field(default_factory=dict)
     """The first clock of each trial, by its id."""
 

@@ -60,7 +60,8 @@ class Crash:
     """An exception in the student's node.
 
     `error` is the exception's class or, without an exception, the signal, the exit code or the exceeded limit. `where`
-    is the last line of the student's own code, and `callers` are the lines that called it, the nearest caller first.
+    is the last line of the traceback that is in the student's own code. `callers` are the other lines in this code, the
+    nearest caller first.
     """
 
     error: str

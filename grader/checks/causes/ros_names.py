@@ -1,4 +1,4 @@
-"""Names in ROS 2 Jazzy that beginners use. If a name is misspelt, the grader suggests a similar one of these names."""
+"""Names in ROS 2 Jazzy that beginners use. If a name is misspelt, the grader suggests the most similar name."""
 
 from __future__ import annotations
 

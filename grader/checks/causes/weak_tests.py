@@ -57,7 +57,7 @@ def always_true(code: TestCode) -> Cause | None:
 
 
 def always_false(code: TestCode) -> Cause | None:
-    """Return the cause if a test always fails, on any node, else None.
+    """Return the cause if a test fails on every node, else None.
 
     A test that may return, or skip itself, before it fails does not count.
     """

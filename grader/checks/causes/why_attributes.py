@@ -37,7 +37,7 @@ OF_THE_NODE = re.compile(
     r"^(\w+) cannot be modified after node creation|property '(\w+)' of '\w+' object has no setter"
     r"|can't set attribute '(\w+)'"
 )
-"""Error messages of rclpy, and of Python 3.10 to 3.14, about a property that cannot be set."""
+"""Matches messages of rclpy, and of Python 3.10 to 3.14, about a property that cannot be assigned."""
 MANGLED = re.compile(r"^_(?P<of>[A-Za-z]\w*?)__(?=[a-zA-Z])")
 """The prefix that Python adds to an attribute whose name begins with two underscores."""
 PLAIN = {

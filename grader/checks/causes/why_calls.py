@@ -29,7 +29,7 @@ KEYWORD = re.compile(r"(?:\w+\.)*(?P<function>\w+)\(\) got an unexpected keyword
 NOT_CALLABLE = re.compile(r"'(?P<type>\w+)' object is not callable")
 EXPECTED = re.compile(r"Expected <class '[\w.]*\.(?P<wanted>\w+)'>, got <class '(?P<got>[\w.]+)'>")
 LOGGED = "rcutils_log(): incompatible"
-"""rclpy's message if a log method gets something other than a string."""
+"""The beginning of rclpy's message about a log method that got something other than a string."""
 MAKERS = {
     "create_timer": 1,
     "create_subscription": 2,
@@ -226,7 +226,7 @@ def _too_many(scene: CrashScene, many: re.Match[str]) -> Cause | None:
     # Python counts `self` as an argument of a method, too.
     most = int(many["most"]) - (int(many["given"]) - passed)
     takes = f"at most {count(most, 'positional argument')}" if most else "no positional arguments"
-    text = f"{function} takes {takes}. The call here passes {passed}.{MORE.get(function, '')}"
+    text = f"{function} takes {takes}. This call passes {passed}.{MORE.get(function, '')}"
     return Cause("too-many-arguments", text)
 
 

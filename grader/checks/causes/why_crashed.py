@@ -129,7 +129,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "exit code 2": _why_usage,
     "ValueError": _why_value,
 }
-"""Maps an exception to a function that returns its cause, or None if the source code does not show the cause."""
+"""Maps an exception to a function that returns the cause of the exception, or None if the source does not show it."""
 
 
 def why_crashed(evidence: Evidence, crash: Crash) -> Cause:

@@ -1,4 +1,4 @@
-"""Explain exceptions from an incorrect use of interfaces: action and service types, their messages, and futures."""
+"""Explain exceptions caused by the wrong use of interfaces: action and service types, their messages, and futures."""
 
 from __future__ import annotations
 

@@ -80,7 +80,7 @@ def why_aborted(evidence: Evidence, goals: list[Goal], goal: Goal) -> tuple[str,
         return f"A second goal at {later[0].t_s:.1f} s aborted the goal sent at {goal.t_s:.1f} s.", cause
     commands = [each for each in evidence.commands if goal.t_s - ONE_FRAME_S <= each.t_s <= until_s]
     if commands:
-        text = "Any command aborts the goal, even one with zeros. Publish nothing while the turtle follows a goal."
+        text = "Any command aborts the goal, even one with only zeros. Publish nothing while the turtle follows a goal."
         cause = Cause("goal-aborted-by-command", text, evidence.place("publish"))
         return f"A velocity command at {commands[-1].t_s:.1f} s aborted the goal sent at {goal.t_s:.1f} s.", cause
     return f"The goal sent at {goal.t_s:.1f} s was aborted.", Cause("goal-aborted", where=evidence.place(*SENDS))

@@ -1,4 +1,4 @@
-"""Explain a TypeError that a computation with None raised, such as `None + 1.0`."""
+"""Explain a TypeError in a computation with None, such as `None + 1.0`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ WITH_NONE = re.compile(
     r"unsupported operand type\(s\) for .*'NoneType'|bad operand type for unary .*'NoneType'|"
     r"not supported between instances of .*'NoneType'"
 )
-"""Python's error messages if one side of an operator is None."""
+"""Matches Python's messages about an operator with None on one side."""
 
 
 def why_none(scene: CrashScene) -> Cause | None:

@@ -1,4 +1,4 @@
-"""Explain, with the events in the node under test, why a student's test has not received enough messages."""
+"""Explain from the events in the node under test why a student's test has not received enough messages."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ NOTHING_RECEIVED = re.compile(
     r"IndexError: (?:list|deque|tuple) index out of range|IndexError: pop from (?:an )?empty|len\(\[\]\)|assert \[\]|"
     r"'NoneType' object has no attribute '(?:linear|angular)'|is an empty sequence|iterable argument is empty"
 )
-"""pytest's message about a test that reads a command although the test has received none."""
+"""Matches pytest's messages about a test that reads a command although the test has received none."""
 COUNTED = re.compile(r"assert (?P<received>\d{1,6}) (?:==|>=|>) (?P<wanted>\d{1,6})\n +\+  where \d+ = len\(\[")
-"""pytest's message about an assert that compares the number of received messages with another number."""
+"""Matches pytest's message about an assert that compares the number of received messages with another number."""
 
 
 def why_not_heard(run: NodeRun, code: TestCode, right: Behaviour) -> Cause | None:
@@ -41,7 +41,7 @@ def why_not_heard(run: NodeRun, code: TestCode, right: Behaviour) -> Cause | Non
     if not events.poses:
         text = (
             f"The callback of the node's timer ran {count(events.calls, 'time')}, but no pose had arrived on "
-            f"{right.listens}. Does the bench publish a Pose on this topic, and spin after that?"
+            f"{right.listens}. Does the bench publish a Pose on this topic, and does it spin after that?"
         )
         return Cause("bench-no-pose", text, _place(code, run, "create_publisher"))
     if not events.commands:
@@ -54,7 +54,7 @@ def why_not_heard(run: NodeRun, code: TestCode, right: Behaviour) -> Cause | Non
 
 
 def _too_few(events: NodeEvents, run: NodeRun, code: TestCode, right: Behaviour) -> Cause | None:
-    """Return the reason why a test has received too few commands, if the calls of the timer show it, else None."""
+    """Return the reason why a test has received too few commands, if the calls of the timer show the reason."""
     counted = COUNTED.match(run.message)
     if counted is None or int(counted["received"]) >= int(counted["wanted"]):
         return None

@@ -1,4 +1,4 @@
-"""Explain why a turtle that drives until the end does not reach or does not catch a target."""
+"""Explain why a turtle that drives until the end does not reach or catch a target."""
 
 from __future__ import annotations
 

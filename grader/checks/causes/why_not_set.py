@@ -32,7 +32,7 @@ def compared_field(evidence: Evidence, field: str) -> Cause | None:
 
 
 def compared_condition(evidence: Evidence) -> Cause | None:
-    """Return the cause if a line only compares an attribute of self that a condition of the node uses, else None."""
+    """Return the cause if a line only compares an attribute with ==, and a condition uses this attribute, else None."""
     for module in evidence.code.modules:
         tests = [node.test for node in module.nodes if isinstance(node, ast.If | ast.While)]
         used = {dotted(each) for test in tests for each in ast.walk(test) if isinstance(each, ast.Attribute)}

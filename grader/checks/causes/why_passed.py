@@ -61,7 +61,7 @@ def why_passed(scene: CrashScene) -> Cause | None:
 
 
 def _call(scene: CrashScene) -> Call | None:
-    """Return the call of the function that raised the exception if the caller's line has exactly one, else None."""
+    """Return the call of the function that crashed if the caller's line has exactly one such call, else None."""
     function = scene.function
     line = next(iter(scene.crash.callers), None)
     module = scene.module_of(line.file) if line is not None else None

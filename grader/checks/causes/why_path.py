@@ -61,7 +61,7 @@ def why_elsewhere(evidence: Evidence) -> Cause:
 
 
 def why_replaced(evidence: Evidence) -> Cause | None:
-    """Return the cause if each command that drives the turtle is followed at once by one that does not, else None."""
+    """Return the cause if each command that drives the turtle is followed at once by a command that does not."""
     commands = evidence.commands
     after = {id(command): later for command, later in pairwise(commands)}
     driving = [command for command in commands[:-1] if command.linear[0]]

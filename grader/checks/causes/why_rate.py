@@ -194,7 +194,7 @@ def is_repeated(call: Call) -> bool:
 
 
 def late_cause(evidence: Evidence) -> str:
-    """Return a sentence about a possible delay of the first message or line, or an empty string."""
+    """Return a sentence about a possible reason why the first message or line is late, or an empty string."""
     if evidence.code.calls("sleep"):
         return "A sleep at the start may be the reason."
     waits = evidence.code.calls("wait_for_service")

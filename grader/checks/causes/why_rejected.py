@@ -26,7 +26,7 @@ OUTSIDE = re.compile(
     r"Temporary failure in name resolution|gaierror|Connection refused"
 )
 OF_THE_NODE = re.compile(r"cannot import name '(?P<name>[A-Z][A-Z0-9_]*)' from '[\w.]*\bwall_guard'")
-"""pytest's message if a constant cannot be imported from the module of the node."""
+"""Matches pytest's message about a constant that cannot be imported from the module of the node."""
 ERROR = re.compile(r"^E\s+(?P<text>\w*(?:Error|Exception|Interrupt)\b.*)$", re.MULTILINE)
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
 
 INCOMPATIBLE = "incompatible QoS"
-"""rclpy logs this if a publisher and a subscription cannot communicate."""
+"""rclpy logs a message with these words if a publisher and a subscription cannot communicate."""
 WAKES = ("create_timer", "create_subscription", "create_service", "create_client", "ActionServer", "ActionClient")
 """Functions that give a node something to do in spin_once."""
 ANSWERS = ("wait_for_service", "service_is_ready", "wait_for_server", "server_is_ready")

@@ -66,7 +66,7 @@ def goal(t_s: float, ended_s: float, status: str = "aborted") -> Goal:
             None,
             2.0,
             "A velocity command at 2.0 s aborted the goal sent at 1.0 s.",
-            "Any command aborts the goal, even one with zeros. Publish nothing while the turtle follows a goal.",
+            "Any command aborts the goal, even one with only zeros. Publish nothing while the turtle follows a goal.",
         ),
         (3.0, 0.5, "The goal sent at 1.0 s was aborted.", ""),
         (None, 2.5, "The goal sent at 1.0 s was aborted.", ""),
