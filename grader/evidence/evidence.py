@@ -48,7 +48,7 @@ class Run:
 
     recording: Recording | None = None
     overwhelmed: str | None = None
-    """How the node made the simulator fail twice. There is no recording in that case."""
+    """How the simulator failed, if the node is considered the cause. There is no recording in that case."""
     called: tuple[Called, ...] | None = None
     """The results of the calls in a trial without a simulator. There is no recording in that case."""
     bench: BenchResult | None = None
@@ -168,7 +168,7 @@ class Evidence:
 
     @cached_property
     def trajectory(self) -> Trajectory:
-        """The trajectory of the turtle up to SIGINT."""
+        """The trajectory of the turtle (see `trajectory_of`)."""
         return trajectory_of(self.recording)
 
     def entry_point(self) -> str | None:

@@ -1,4 +1,4 @@
-"""Trajectory: the path of the turtle up to SIGINT, from the frames of the simulator."""
+"""Trajectory: the path of the turtle, from the frames of the simulator."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ STRAIGHT_RAD = 1e-9
 
 @dataclass(frozen=True)
 class Trajectory:
-    """The trajectory up to SIGINT, with one step per frame.
+    """A trajectory of the turtle, with one step per frame. `trajectory_of` creates it from a recording.
 
     `x` and `y` (m) have the shape (N + 1,) and begin with the start position. The other arrays have the shape (N,):
     `t_s` is the time (s), `turn` is the change of the heading (rad), and `wall` is true if the simulator had to keep
@@ -100,7 +100,7 @@ class Trajectory:
 
     @property
     def rests(self) -> int:
-        """The number of times that the turtle stopped and moved again."""
+        """The number of times that the turtle stopped, and then moved or turned again."""
         moves = (self.steps > RESTS_M) | (np.abs(self.turn) > STRAIGHT_RAD)
         busy = np.flatnonzero(moves)
         return int((np.diff(busy) > 1).sum()) if len(busy) else 0
@@ -109,7 +109,7 @@ class Trajectory:
 def driven_from(recording: Recording) -> Pose:
     """Return the pose of the turtle before the first command.
 
-    If this pose is not the start pose, a call by the submission has moved the turtle.
+    If this pose is not the start pose, a service call or a goal of the submission has moved the turtle.
     """
     before, frames = _before_driving(recording), recording.frames
     if not before:
@@ -123,7 +123,7 @@ def _before_driving(recording: Recording) -> int:
 
 
 def trajectory_of(recording: Recording) -> Trajectory:
-    """Return the trajectory of the turtle from the pose that `driven_from` returns until SIGINT.
+    """Return the trajectory of the turtle from the pose before the first command (`driven_from`) until SIGINT.
 
     If the node exited on its own, the trajectory ends OUTLIVES_S (s) after the exit.
     """

@@ -60,7 +60,7 @@ FIELD = Allowed(
 
 
 def parse_exercise(data: bytes, name: str, folder: Path, kinds: Mapping[str, KindSpec]) -> Exercise:
-    """Return the exercise that the bytes of an exercise.toml describe. `name` is the file name that messages use.
+    """Return the exercise that the bytes of an exercise.toml describe. `name` is the name of the file in messages.
 
     Raises UsageError, which lists all mistakes.
     """

@@ -39,7 +39,7 @@ class Sources:
     public: bytes
     private: bytes | None = None
     private_name: str = ""
-    """The name that messages use for the private file."""
+    """The name of the private file in messages."""
 
     def exercise(self, folder: Path, kinds: Mapping[str, KindSpec]) -> Exercise:
         """Return the exercise. `folder` is the folder of the lesson. Raises UsageError, which lists all mistakes."""

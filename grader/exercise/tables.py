@@ -174,7 +174,7 @@ class Table:
 
 
 def shown(value: object) -> str:
-    """Return a TOML value in the form in which messages quote it."""
+    """Return a TOML value as it is quoted in messages."""
     if isinstance(value, str):
         return f'"{shorten(value)}"'
     if isinstance(value, bool):

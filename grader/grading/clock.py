@@ -12,10 +12,10 @@ The rules, in the order in which they are applied:
    by chance, so the trial is first repeated once in simulated time.
 4. A trial in simulated time is also repeated in wall time if a measured value is near the edge of its tolerance, or if
    the node did not stop.
-5. If a trial in wall time fails while other programs use the processors, the trial is repeated while nothing else is
-   graded. A busy machine can make a correct node look wrong, but it cannot make a wrong node look correct, so the
-   result of the first trial that passes counts. If none of the WALL_TRIALS trials passes, the trial with the least
-   disturbance counts.
+5. If a trial in wall time fails and was disturbed by other programs or by a change of the system time, the trial is
+   repeated while nothing else is graded. A busy machine can make a correct node look wrong, but it cannot make a wrong
+   node look correct, so the result of the first trial that passes counts. If none of the WALL_TRIALS trials passes, the
+   trial with the least disturbance counts.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 ClockChoice = Literal["auto", "simulated", "wall"]
 
 WALL_TRIALS = 3
-"""The maximum number of trials in wall time on a busy machine."""
+"""The maximum number of trials in wall time if the trials are disturbed (rule 5)."""
 
 
 @dataclass(frozen=True)

@@ -25,9 +25,9 @@ Answer = str | float | tuple[str, ...]
 
 @dataclass(frozen=True)
 class Answers:
-    """The table [answers], by id: strings, numbers and lists of strings.
+    """The answers in the table [answers], by their ids: strings, numbers and lists of strings.
 
-    Values of other types, empty answers and 0 are left out. `unusable` contains the ids of the answers of other types.
+    Answers of other types, empty answers and 0 are left out. `unusable` contains the ids of the answers of other types.
 
     `lines` are the line numbers of the answers, counted from 1. `problem` is the reason why the file cannot be read.
     `line` is the line of this problem, if known.

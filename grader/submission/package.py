@@ -59,8 +59,9 @@ def open_submission(path: str | os.PathLike[str], *, exactly: bool = False) -> S
 
     With `exactly`, the path must not contain a link.
 
-    Raises UsageError if there is no such folder or if it does not contain exactly one package, and MachineError if the
-    disk or the system fails. Every other problem is the student's fault and is listed in `rejected`.
+    Raises UsageError if there is no such folder or if it does not contain exactly one package, UnreadableError if the
+    folder cannot be read within the limits of `read`, and MachineError if the disk or the system fails. Every other
+    problem is the student's fault and is listed in `rejected`.
     """
     return _read(_submission, os.fspath(path), exactly)
 
@@ -105,7 +106,7 @@ def open_answers(path: str | os.PathLike[str], *, exactly: bool = False) -> Subm
 
     `exactly` has the same meaning as in `open_submission`.
 
-    Raises UsageError if there is no such folder or file, and MachineError if the disk fails.
+    Raises UsageError if there is no such folder or file. The other exceptions are the same as for `open_submission`.
     """
     return _read(_answers, os.fspath(path), exactly)
 

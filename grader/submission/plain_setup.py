@@ -28,7 +28,7 @@ _VERSION = re.compile(r"(0|[1-9]\d*)(\.(0|[1-9]\d*))*")
 _POINT = re.compile(r"(?P<name>[A-Za-z0-9]\w*)\s*=\s*(?P<target>[A-Za-z_][\w.]*:[A-Za-z_]\w*)")
 _IMPORTED = frozenset({"setuptools", "os"})
 _CALLED = frozenset({"setup", "setuptools.setup", "find_packages", "setuptools.find_packages", "os.path.join"})
-"""The functions that a plain setup.py calls. Any other function could depend on the modules of the package."""
+"""The functions that a plain setup.py may call. Any other function could depend on the modules of the package."""
 _ONLY_METADATA = frozenset(
     {
         *("author", "author_email", "maintainer", "maintainer_email", "url", "description", "long_description"),

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def timer_fault(evidence: Evidence) -> Cause | None:
-    """Return the cause for the first timer whose period is too long or whose callback does nothing, or None."""
+    """Return the cause for the first timer whose period is too long or whose callback is wrong, or None."""
     for timer in evidence.code.calls("create_timer"):
         period = number(timer.argument(0, "timer_period_sec"), timer.module.names)
         if period is not None and period >= evidence.recording.duration_s:

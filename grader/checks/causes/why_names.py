@@ -75,7 +75,7 @@ def _unknown(scene: CrashScene, name: str) -> Cause:
         ):
             return Cause("name-undefined", f"{text} {function} needs the node, an object of your class.")
     uses = sum(isinstance(node, ast.Name) and node.id == name for node in scene.nodes)
-    # A string whose quotation marks were forgotten is written once.
+    # A name that should have been a string usually occurs only once.
     return Cause("name-undefined", f"{text} A string needs quotation marks." if uses == 1 else text)
 
 

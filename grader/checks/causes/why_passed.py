@@ -30,8 +30,8 @@ NUMBERS = re.compile(r"period|sec|rate|time|dt|interval|delay|queue|qos|depth", 
 class Call:
     """A call of the function that raised the exception.
 
-    `parameters` are the names of the function's parameters without self; `arguments` maps them to the arguments of the
-    call, which is in `module`.
+    `parameters` are the names of the function's parameters, except self. `arguments` maps these names to the arguments
+    of the call. The call is in `module`.
     """
 
     function: Function

@@ -28,7 +28,7 @@ SAME = 0.1
 """A number in the source code explains a measured interval if they differ by at most this fraction of the interval."""
 
 FEWEST_CALLS, MOST_CALLS = 2, 20
-"""The range of n, if a callback counts its calls and sends a message in every n-th call.
+"""The range of n for a callback that counts its calls and sends a message only on every n-th call.
 
 A larger n cannot be measured.
 """

@@ -160,7 +160,7 @@ def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: fl
                 every = len(lines) == _most(node.body, call)
                 if len(lines) > 1 and every and abs(period_s / mean_s - len(lines)) <= SEVERAL * len(lines):
                     named = a_list(list(map(str, lines)))
-                    text = f"{node.name} calls {call} {len(lines)} times each time it runs, on lines {named}."
+                    text = f"Each time {node.name} runs, it calls {call} {len(lines)} times, on lines {named}."
                     return Cause("wrong-rate", text, Where(module.file, lines[-1]))
     return None
 

@@ -18,7 +18,7 @@ OF_A_RESPONSE = re.compile(r"'\w+_Response' object has no attribute")
 
 
 def why_response(scene: CrashScene) -> Cause | None:
-    """Return the cause if a service callback returns nothing or mixes up its parameters, else None."""
+    """Return the cause if a service callback does not return its response or mixes up its parameters, else None."""
     servers = {name for _, name in callbacks_of(scene.evidence, "create_service")}
     for module, method in methods_of(scene.evidence):
         where = Where(module.file, method.lineno)
