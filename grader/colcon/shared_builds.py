@@ -86,7 +86,7 @@ class SharedBuilds:
             return build(submission)
         if is_earlier:
             tell("Using an earlier build: only the modules differ")
-        # Testing causes may take a multiple of the time of a build.
+        # The time for testing causes depends on the time that a build with colcon takes.
         return replace(built, build=replace(built.build, seconds=reference.build.seconds))
 
     def _reference(

@@ -134,8 +134,7 @@ def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:
     roots = [crash for crash in last if crash.error not in STOPS]
     if not roots:
         return None
-    # An exception of rclpy explains a mistake best. The first traceback of a chain can be without a line of student
-    # code.
+    # An exception of rclpy explains a mistake best. The first traceback of a chain may contain no line of student code.
     root = next((crash for crash in roots if crash.error in RCLPY_ERRORS), roots[0])
     return replace(root, where=root.where or next((crash.where for crash in last if crash.where is not None), None))
 

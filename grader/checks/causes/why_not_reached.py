@@ -70,7 +70,7 @@ def _wrong_angle(evidence: Evidence) -> Cause | None:
             text = "math.atan2 takes the difference in y first, and then the difference in x."
             return Cause("atan2-swapped", text, call.where)
     converted = evidence.code.calls("degrees") + evidence.code.calls("rad2deg")
-    # A line of the log may show degrees to its reader.
+    # A log message may contain an angle in degrees.
     degrees = next((call for call in converted if not any(_contains(log, call) for log in _logs(evidence))), None)
     if degrees is None:
         return None
