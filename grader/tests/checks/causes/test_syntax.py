@@ -75,6 +75,7 @@ def test_a_missing_comma_is_named_if_python_can_read_the_line_with_it(line: str,
     found = unreadable_finding("a.py", Unreadable("invalid syntax", 1), f"{line}\n".encode())
     assert found.diagnosis == ("syntax-error" if between is None else "comma-missing")
     assert ("A comma is missing between" in found.cause) == (between is not None)
+    assert ("The mistake is often on the previous line" in found.cause) == (between is None)
     assert between is None or between in found.cause
 
 
