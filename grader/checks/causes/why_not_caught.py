@@ -34,7 +34,7 @@ def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
     recording = evidence.recording
     ended = [other for other in recording.beside if other.end.by == "itself"]
     if ended:
-        text = f"{ended[0].executable} ended before all targets were caught, so the trial ended."
+        text = f"{ended[0].executable} exited before all targets were caught, so the trial ended."
         other = next((spec for spec in evidence.exercise.beside(evidence.trial.id)), evidence.trial)
         return Cause("other-node-ended", text, evidence.from_trial(other.id).place("spin"))
     waiting = waits_in_callback(evidence)

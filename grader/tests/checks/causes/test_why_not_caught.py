@@ -85,4 +85,4 @@ def test_a_turtle_stands_beside_a_target_or_far_from_all(x: float, *, found: boo
 def test_the_end_of_the_other_node_ends_the_trial(by: Any, *, found: bool) -> None:  # noqa: ANN401
     beside = (Beside("spawner", Output(""), Output(""), ProcessEnd(by, 0, 2.0, None)),)
     said = cause(AHEAD, beside=beside, sigint_t_s=2.0)
-    assert (said == "spawner ended before all targets were caught, so the trial ended.") == found
+    assert (said == "spawner exited before all targets were caught, so the trial ended.") == found
