@@ -59,6 +59,8 @@ class ClassFolders:
                     yield opened
             except DatabaseError as error:
                 message = f"The gradebook of {self.course.root} could not be read or written: {error.orig}."
+                if "locked" in str(error.orig):
+                    message += " Another program is using this database. When it has finished, run this command again."
                 raise MachineError(message) from error
 
     def submitted(self, student: str, step: str) -> Path:

@@ -88,7 +88,7 @@ def sync(
         MachineError: the machine cannot grade or write. The scores that are not confirmed are worth 0 points in this
             case too.
     """
-    from sqlalchemy.exc import SQLAlchemyError
+    from sqlalchemy.exc import OperationalError, SQLAlchemyError
 
     wanted = [find_exercise(step).id for step in steps]
     submissions = folders.submissions(wanted)
@@ -114,6 +114,8 @@ def sync(
             name = (result.student, result.report.exercise)
             try:
                 elsewhere.update(dict.fromkeys(_write(gradebook, folders, result, tally)))
+            except OperationalError:
+                raise  # for example, another program has locked the database, so no score can be written
             except (SQLAlchemyError, ValueError) as error:
                 # For example, the database cannot store a name that is not valid UTF-8.
                 gradebook.db.rollback()
