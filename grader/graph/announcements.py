@@ -29,7 +29,7 @@ _WAIT_S = 1.0
 
 @contextmanager
 def passed_on(domain: int) -> Iterator[None]:
-    """Create the participant in this context.
+    """A context in which the caller creates a participant.
 
     On exit from the context, the announcement is sent to all other participants.
     """
@@ -64,7 +64,7 @@ def _held() -> socket.socket:
 
 
 def participant_ports(domain: int) -> set[int]:
-    """Return the ports on this machine at which participants of a domain receive announcements.
+    """Return the ports on this machine on which participants of a domain receive announcements.
 
     The ports follow DDSI-RTPS, 9.6.1.1: metatraffic unicast = 7400 + 250 * domain + 10 + 2 * participant.
     """

@@ -44,7 +44,7 @@ NOTHING_THERE_S = 0.5
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
 """The Fast DDS profile for the nodes that commands create on the loopback interface."""
 PATIENT_PROFILE = LOOPBACK_PROFILE.with_name("loopback_patient.xml")
-"""The Fast DDS profile for such nodes if they run for hours."""
+"""The Fast DDS profile for nodes on the loopback interface that run for hours."""
 _RANGE, _PROFILE = "ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTRTPS_DEFAULT_PROFILES_FILE"
 _POLL_S = 0.01
 _WAKE_S = 0.1
@@ -60,8 +60,8 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
     A `patient` node announces itself less often than other nodes, because it runs for hours.
 
     Raises:
-        Ros2Error: the node could not be created, for example because the domain id is wrong. Inside the context: a name
-            in the graph is not valid UTF-8.
+        Ros2Error: the node could not be created, for example because the domain id is wrong; or, inside the context, a
+            name in the graph is not valid UTF-8.
         MachineError: the machine has no memory, files or threads left for a node.
     """
     with ExitStack() as stack:
@@ -149,7 +149,7 @@ def _domain() -> int:
 
 
 class Settling:
-    """Waits until the graph as seen by a node no longer changes, up to a deadline."""
+    """Waits until the graph that a node sees no longer changes, up to a deadline."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -189,7 +189,10 @@ class Settling:
 
 
 def settle(node: Node, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> bool:
-    """Wait until the graph of a new node has settled or `enough` returns true. Return False at the deadline."""
+    """Wait until the graph of a new node has settled or `enough` returns true.
+
+    Return False if the deadline passes first.
+    """
     return Settling(node).settle(enough, deadline_s)
 
 

@@ -50,7 +50,10 @@ class Show:
 
 @dataclass(frozen=True)
 class Node:
-    """A node, given by its full name. `count` is above 1 if several nodes have the same name, which is an error."""
+    """A node, given by its full name.
+
+    `count` is greater than 1 if several nodes have the same name, which is an error.
+    """
 
     name: str
     count: int = 1
@@ -79,7 +82,7 @@ class Picture:
 
     @property
     def alone(self) -> tuple[Node, ...]:
-        """The nodes without arrows."""
+        """The nodes that no arrow connects to a topic."""
         touched = {name for topic in self.topics for name in (*topic.publishers, *topic.subscribers)}
         return tuple(node for node in self.nodes if node.name not in touched)
 
@@ -168,7 +171,7 @@ class _Strokes:
 
     one: str
     into: tuple[str, str, str]
-    """The strokes next to the first, a middle and the last publisher of a topic with several publishers."""
+    """The strokes next to the publishers of a topic with several publishers: the first, a middle one and the last."""
     out: tuple[str, str, str]
 
 

@@ -54,18 +54,18 @@ class Look:
     actions: tuple[Named, ...] = ()
 
     def node_names(self, *, all_of_them: bool = False) -> list[str]:
-        """Return the full names of the nodes, sorted. Hidden nodes are included only with `all_of_them`.
+        """Return the full names of the nodes, sorted. Hidden nodes are included only if `all_of_them` is true.
 
         If several nodes have the same name, the list contains this name several times.
         """
         return [node.name for node in self.nodes if all_of_them or not _hidden_node(node.name)]
 
     def topic_names(self, *, all_of_them: bool = False) -> list[str]:
-        """Return the names of the topics, sorted. Hidden names are included only with `all_of_them`."""
+        """Return the names of the topics, sorted. Hidden names are included only if `all_of_them` is true."""
         return [name for name, _ in shown(self.topics, all_of_them=all_of_them)]
 
     def service_names(self, *, all_of_them: bool = False) -> list[str]:
-        """Return the names of the services, sorted. Hidden names are included only with `all_of_them`."""
+        """Return the names of the services, sorted. Hidden names are included only if `all_of_them` is true."""
         return [name for name, _ in shown(self.services, all_of_them=all_of_them)]
 
     def ends(self, topic: str, *, publishes: bool) -> list[EndpointLook]:
@@ -78,7 +78,7 @@ class Look:
 
 
 def shown(found: tuple[Named, ...], *, all_of_them: bool) -> list[Named]:
-    """Return names and types. Hidden names are included only with `all_of_them`."""
+    """Return the names with their types. Hidden names are included only if `all_of_them` is true."""
     return [(name, types) for name, types in found if all_of_them or not hidden(name)]
 
 

@@ -24,10 +24,10 @@ _HANG_S = 60.0
 
 
 def render(dot: str, kind: Format) -> bytes:
-    """Lay out a DOT graph and draw it: SVG is UTF-8 text, PNG has 144 pixels per inch, and json0 has all positions.
+    """Lay out a DOT graph and draw it: SVG is UTF-8 text, PNG has 144 pixels per inch, and json0 holds all positions.
 
     Raises:
-        MachineError: Graphviz is not installed or cannot draw.
+        MachineError: Graphviz is not installed or cannot draw the graph.
     """
     with tempfile.TemporaryDirectory() as folder:
         start = interpreter("-m", "grader.graph.layout", kind, env={**os.environ, **_our_font(Path(folder))})

@@ -22,12 +22,12 @@ def absolute(name: str) -> str:
 
 
 def shown(found: Iterable[tuple[str, list[str]]], *, all_of_them: bool) -> list[tuple[str, list[str]]]:
-    """Return names and types, sorted. Hidden names are included only with `all_of_them`."""
+    """Return the names with their types, sorted. Hidden names are included only if `all_of_them` is true."""
     return sorted((name, types) for name, types in found if all_of_them or not hidden(name))
 
 
 def nodes(node: Node, *, all_of_them: bool = False) -> list[str]:
-    """Return the full names of the nodes, sorted. Hidden nodes are included only with `all_of_them`.
+    """Return the full names of the nodes, sorted. Hidden nodes are included only if `all_of_them` is true.
 
     If several nodes have the same name, the list contains this name several times.
     """

@@ -38,10 +38,10 @@ def valid(found: Iterable[tuple[str, list[str]]]) -> Named:
 
 
 class ObservingNode(Node):  # type: ignore[misc]
-    """A node that finds only valid names."""
+    """A node whose methods return only the valid names in the graph."""
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
-        """Return (name, namespace) of each node."""
+        """Return the name and the namespace of each node."""
         found = super().get_node_names_and_namespaces()
         return [(name, space) for name, space in found if is_valid(f"{space.rstrip('/')}/{name}")]
 

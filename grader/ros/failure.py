@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
 
 OTHER = "/other"
-"""The default of `nodes` in `did_you_mean`: the name of a visible node, so that a node seems to be running."""
+"""The default of `nodes` in `did_you_mean`: the name of a visible node, so that `did_you_mean` assumes that a node is
+running."""
 
 
 class Ros2Error(GraderError):
@@ -25,9 +26,8 @@ class Ros2Error(GraderError):
 def did_you_mean(name: str, candidates: Iterable[str], text: str = "", nodes: Iterable[str] = (OTHER,)) -> str:
     """Return `text`, followed by a line that suggests the most similar candidate if one is similar enough.
 
-    If `nodes`, the names of the running nodes, contains only hidden nodes, such as the node of this command, the line
-    says that no node is running. In this case, the node that the user named has not been started, or it runs in another
-    domain.
+    `nodes` contains the names of the running nodes. If all of them are hidden, like the node of this command, the line
+    says that no node is running: the node that the user named has not been started, or it runs in another domain.
     """
     others = [candidate for candidate in candidates if candidate != name]
     found = others[0] if len(others) == 1 and others[0].endswith(f"/{name}") else nearest(name, others)

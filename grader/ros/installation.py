@@ -38,7 +38,7 @@ _UNWATCHED = (
     "PYTHONUNBUFFERED",
     "OPENBLAS_NUM_THREADS",
 )
-"""Variables that are set only in a trial. Nodes that users start themselves use the users' settings."""
+"""Variables that are set only for the grader's own processes. Nodes that users start use the users' settings."""
 _THEIRS = frozenset(
     {
         *("LANG", "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "RMW_IMPLEMENTATION"),
@@ -68,7 +68,7 @@ class Ros:
 
     @property
     def name(self) -> str:
-        """The name of this ROS 2 installation in a report.
+        """The name of this ROS 2 installation, as it appears in reports.
 
         The name contains no paths, so reports from different machines are identical.
         """
@@ -164,8 +164,8 @@ def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: 
 def domain_of(uid: int) -> int:
     """Return the default ROS domain id of a user, from 1 to 101. Users with adjacent user ids get different domains.
 
-    The ports of domain 101 are the highest ports below Linux's range of ephemeral ports. The default domain in ROS 2 is
-    0.
+    Domain 101 is the highest domain whose ports are below Linux's range of ephemeral ports. The default domain in ROS 2
+    is 0.
     """
     return 1 + uid % 101
 
@@ -230,7 +230,7 @@ def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str
 
 
 def _users_path(ros: Ros, env: Mapping[str, str]) -> str:
-    """Return PATH with our commands: at the end if a ROS 2 is sourced, or else first, so that `python3` has rclpy."""
+    """Return PATH with our folder of commands: last if a ROS 2 is sourced, or else first, so that `python3` has rclpy."""
     path = env.get("PATH", "/usr/local/bin:/usr/bin:/bin")
     ours = str(Path(sys.prefix, "bin"))
     if ours in path.split(os.pathsep):

@@ -32,8 +32,8 @@ SOURCES = Path(__file__).parents[1] / "turtlesim/package"
 _TEMPORARY = ".building-"
 _LOG_LINES = 15
 _FULL = 1 << 20
-"""If fewer bytes are free after a build has failed, a full disk is considered to be the reason. CMake and compilers do
-not always report a full disk."""
+"""If fewer bytes than this are free after a build has failed, the reason is assumed to be a full disk. CMake and
+compilers do not always report a full disk."""
 
 
 def _report_nothing(_: str) -> None:

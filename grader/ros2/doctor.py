@@ -90,7 +90,10 @@ def _check_topics(node: Node) -> Examination:
 
 
 def _pairs(node: Node) -> Iterator[tuple[str, Any, Any, Any, str]]:
-    """Yield each topic with a publisher, a subscription, their QoS compatibility, and the reason for a problem."""
+    """For each publisher and subscription of a topic, yield the topic, both of them, and their QoS compatibility.
+
+    The last value is the reason if they are not compatible, or might not be compatible.
+    """
     from rclpy.qos import qos_check_compatible
 
     for topic in _topics(node):

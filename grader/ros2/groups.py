@@ -12,7 +12,7 @@ _NONE: Mapping[str, str] = MappingProxyType({})
 
 
 class Group(NamedTuple):
-    """A command group, which is the word after `ros2`.
+    """A command group, such as `topic`: the word after `ros2`.
 
     The class is not a dataclass, because importing dataclasses would slow down every command.
 

@@ -126,7 +126,8 @@ def _end(number: int, _: FrameType | None) -> None:
     """Exit as after Ctrl-C, so that the node leaves the graph. A second signal terminates the process immediately.
 
     Python discards an exception that a signal handler raises during `__del__`, and the middleware can block while the
-    node is removed. Nobody sends a second signal to a process whose terminal is closed, so an alarm terminates it.
+    node is removed. Nobody sends a second signal to a process whose terminal is closed. Therefore, an alarm terminates
+    the process.
     """
     signal.signal(number, signal.SIG_DFL)
     signal.signal(signal.SIGALRM, signal.SIG_DFL)

@@ -1,6 +1,6 @@
 """The parsers of `ros2`, with usage, help and error messages as in the real command.
 
-Only the module of the verb on the command line is imported, and that module imports rclpy only when it runs.
+Only the module of the verb on the command line is imported, and that module imports rclpy only when the verb runs.
 """
 
 from __future__ import annotations

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 _QUOTED = re.compile(r'#!"([^"]+)"(.*)')
 _UNQUOTED = re.compile(r"#!(/[^\s\"]+)(.*)")
 _LONGEST = 255
-"""The number of bytes of a script's first line that the kernel reads (BINPRM_BUF_SIZE of Linux, less the last byte)."""
+"""The number of bytes of a script's first line that the kernel reads (BINPRM_BUF_SIZE of Linux, minus the last
+byte)."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -84,7 +85,7 @@ def _path(args: argparse.Namespace) -> Path:
 
 
 def _program(path: Path) -> list[str]:
-    """Return the command for a script.
+    """Return the command that starts a file, with the interpreter in front if the kernel cannot start the script.
 
     setuptools quotes interpreter paths that contain spaces, but Linux accepts neither quoted nor very long paths in the
     first line of a script.

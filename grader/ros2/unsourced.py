@@ -35,7 +35,7 @@ def where_it_is(package: str) -> str:
 
 
 def meant(package: str, installed: Collection[str]) -> str:
-    """Return a hint with the most similar package if it is in a workspace but not installed, or else ""."""
+    """Return a hint about the most similar package if that package is in a workspace but not installed, or else ""."""
     unsourced = {_name(manifest) for workspace in _workspaces() for manifest in _manifests(workspace / "src")}
     likely = nearest(package, [*installed, *unsourced])
     if likely is None or likely in installed:

@@ -1,4 +1,7 @@
-"""Commands and verbs of `ros2` that need a full ROS 2. Each prints what to use instead, or why it is not needed."""
+"""Commands and verbs of `ros2` that need a full ROS 2.
+
+Each of them prints what to use instead, or why it is not needed.
+"""
 
 from __future__ import annotations
 

@@ -10,8 +10,8 @@ bubblewrap creates two kinds of containers:
   filter (system_calls.py), and limits on memory, processes, files, CPU and disk. usage.py watches totals that the
   kernel does not limit.
 
-The functions that build command lines start no process. The caller starts and stops the process. The standard streams
-of the process are pipes.
+The functions that build command lines start no processes. The caller starts and stops each process, and connects its
+standard streams to pipes.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ ROOM_DISK = 256 * MIB
 
 @dataclass(frozen=True)
 class View:
-    """The paths on the disk that are visible in a sandbox room or cell under the same names.
+    """The files and folders on the disk that are visible in a sandbox room or cell, at the same paths.
 
     Inside the room or cell, the folders in `hidden` appear as empty folders.
     """
@@ -117,10 +117,9 @@ def cell(
     first process of the cell. Without `first`, the first process is a process of bubblewrap, which has the same
     standard streams and can be controlled by the other processes of the cell.
 
-    `filter_fd` is the system call filter from system_calls.call_filter(). The process must inherit this descriptor. A
-    caller that runs as root must put the cell into a room, in which the cell's user is an ordinary user, because the
-    limit on processes does not apply to root. bubblewrap writes JSON with the pid of the cell's first process to
-    `info_fd`.
+    `filter_fd` is the descriptor from system_calls.call_filter(), which the process must inherit. A caller that runs as
+    root must put the cell into a room, in which the cell's user is an ordinary user, because the limit on processes
+    does not apply to root. bubblewrap writes JSON with the pid of the cell's first process to `info_fd`.
     """
     command = [_bwrap(), "--unshare-user", "--disable-userns", "--unshare-pid", "--unshare-ipc", "--unshare-uts"]
     command += ["--unshare-cgroup-try", "--uid", "1000", "--gid", "1000", "--hostname", "robot"]
@@ -152,8 +151,8 @@ def lone_cell(
     """Return the command that runs `argv` in a cell with a separate network, inside a room without other processes.
 
     `user` has the same meaning as in `room`, and `first` as in `cell`. Student code can change the memory of the first
-    process of its cell, so this process might not exit together with its parent. Student code cannot reach the first
-    process of the room.
+    process of its cell, so this process might not exit together with its parent. Therefore, the cell is in a room,
+    whose first process student code cannot reach.
 
         with call_filter() as filter_fd, cell_user() as user:
             command = lone_cell(["colcon", "build"], view, env=env, limits=Limits(), user=user, filter_fd=filter_fd)

@@ -1,4 +1,4 @@
-"""Enter a sandbox room or cell: a fork of a process that has imported everything becomes a process of the cell.
+"""Enter a sandbox room or cell: a fork of a process that has imported everything becomes a process inside it.
 
 bubblewrap creates the room or cell. `cat`, the first program in the room or cell, keeps it open. setns(2) moves a
 process into the namespaces of `cat`, and the forks of this process are processes of the room or cell. A fork must then
@@ -70,9 +70,9 @@ def enter(holder: int, *, cell: bool) -> None:
     The pid namespace only applies to processes that are forked afterwards. The process must have only one thread. If it
     belongs to root, it also leaves all supplementary groups. Afterwards, other processes of the user cannot inspect it.
 
-    Only a conductor knows the holder of a cell, and a conductor can be under the control of a node. Therefore, if
+    In a trial, the descriptor of a cell comes from a conductor, which may be under the control of a node. Therefore, if
     `cell` is true, the process with this descriptor must have namespaces that no process of a room has. The namespaces
-    may still be a trap: after this call, do not trust any file. Even an import or a traceback can run code from these
+    may still be a trap, so do not trust any file after this call: even an import or a traceback can run code from these
     mounts.
 
     Raises:
@@ -132,9 +132,9 @@ def keep(descriptors: Iterable[int]) -> None:
 def confine(limits: Iterable[tuple[int, int]], *, user: int | None, call_filter: bytes = b"") -> None:
     """Give up what a process in a room or cell must not have: other user ids, capabilities, privileges and resources.
 
-    `limits` are pairs of a constant of the module `resource` and a value. `user` is the user id to switch to if this
-    process runs as root, or None. `call_filter` comes from system_calls.program(). With an empty filter, all system
-    calls remain possible. The kernel kills this process when its parent exits.
+    `limits` contains pairs: a constant of the module `resource`, and a value. `user` is the user id to switch to if
+    this process runs as root, or None. `call_filter` comes from system_calls.program(). With an empty filter, all
+    system calls remain possible. The kernel kills this process when its parent exits.
 
     Raises:
         OSError: the kernel refused.
@@ -170,5 +170,5 @@ def allow_inspection(*, allow: bool) -> None:
 
 
 def sacrifice() -> None:
-    """Let the kernel kill this process first if memory runs out. Call `allow_inspection(allow=True)` first."""
+    """Let the kernel kill this process first if memory runs out. Before that, call `allow_inspection(allow=True)`."""
     Path("/proc/self/oom_score_adj").write_text("1000", "ascii")

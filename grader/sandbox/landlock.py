@@ -22,13 +22,13 @@ _VERSION = 1
 _PATH_BENEATH = 1
 _READ_FILE, _READ_FOLDER = 1 << 2, 1 << 3
 _FILE_RIGHTS = {1: 13, 2: 14, 3: 15, 5: 16}
-"""Maps a version of Landlock to the number of file rights that it knows, such as opening, executing, writing and
+"""Maps a version of Landlock to the number of file rights that it supports, such as opening, executing, writing and
 ioctl."""
 _NET_RIGHTS = {4: 2}
-"""The rights to bind and to connect a TCP socket."""
+"""Maps a version of Landlock to the number of network rights that it supports: to bind and to connect TCP sockets."""
 _SCOPES = {6: 2}
-"""The right to connect to abstract Unix sockets of other processes, and the right to send signals to other
-processes."""
+"""Maps a version of Landlock to the number of scopes that it supports: connections to abstract Unix sockets of other
+processes, and signals to other processes."""
 _SET_NO_NEW_PRIVILEGES = 38
 
 

@@ -60,7 +60,7 @@ _OPTIONS = {
     resource.RLIMIT_CORE: "core",
     resource.RLIMIT_SIGPENDING: "sigpending",
 }
-"""The options of prlimit(1)."""
+"""Maps resource limits to the options of prlimit(1)."""
 
 
 def require_memory() -> None:

@@ -1,4 +1,4 @@
-"""Own mounts: a process keeps only the files and folders in a list, in a separate mount namespace.
+"""Own mounts: in a separate mount namespace, a process can access only the files and folders in a list.
 
 This module is the second choice, for kernels without Landlock (landlock.py). The process needs the rights of root, or
 user namespaces for ordinary users, as bubblewrap does. The process must have only one thread.
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 _PIVOT_ROOT = {"x86_64": 155, "aarch64": 41}
-"""The number of the system call pivot_root on each processor. The C library has no function for this call."""
+"""The number of the system call pivot_root on each processor architecture. The C library has no function for this
+call."""
 _NEW_MOUNTS, _NEW_USER = 0x20000, 0x10000000
 _READ_ONLY, _REMOUNT, _BIND, _RECURSIVE, _PRIVATE = 1, 32, 4096, 16384, 1 << 18
 _KEPT = {

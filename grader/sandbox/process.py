@@ -41,7 +41,10 @@ class Finished:
 
 
 class _Tail:
-    """The beginning and the end of an output, the most useful parts of a log. Each has half of the limit."""
+    """Keeps the beginning and the end of an output, which are the most useful parts of a log.
+
+    Each of the two parts has at most half of the maximum size.
+    """
 
     def __init__(self, most: int) -> None:
         self._half = most // 2
@@ -90,9 +93,9 @@ class _Pump:
         return len(self.stdout) > self._most
 
     def serve(self, left: Callable[[], float], stopped: Callable[[], bool]) -> bool:
-        """Serve until the child closes its pipes or writes too much.
+        """Serve the pipes until the child closes them or writes too much.
 
-        Return False if no time is left or `stopped` returns True before that. `left` returns the remaining time (s).
+        Return False if the time runs out or `stopped` returns True before that. `left` returns the remaining time (s).
         `left` and `stopped` are called several times per second.
         """
         with self._selector:
@@ -138,9 +141,10 @@ def run(
 
     The beginning and the end of standard error are kept.
 
-    With `watch`, the child is killed when its processes together exceed these limits. The time for which they wait for
-    a processor does not count. On a crowded machine, the child may take up to MOST_TIME times `timeout_s`. The total
-    CPU time of its processes is also limited to `timeout_s`, so that they gain no time by keeping the processors busy.
+    With `watch`, the child is killed when its processes together exceed these limits. The time for which these
+    processes wait for a processor does not count. On a crowded machine, the child may take up to MOST_TIME times
+    `timeout_s`. The total CPU time of its processes is also limited to `timeout_s`, so that they gain no time by
+    keeping the processors busy.
 
         done = run(["cat"], stdin=b"text", timeout_s=60.0, most_stdout=1000, most_stderr=1000)
     """

@@ -58,7 +58,7 @@ _MMAP, _SOCKET, _SOCKETPAIR, _CLONE, _CLONE3, _FCNTL = 9, 41, 53, 56, 435, 72
 _SHARED_MEMORY = 0x21
 """MAP_SHARED | MAP_ANONYMOUS of mmap(2). The combination of the two flags is forbidden.
 
-A process can empty its page tables with madvise. Then this memory counts towards neither a tmpfs nor a process.
+After a process has emptied its page tables with madvise, such memory counts towards neither a tmpfs nor a process.
 """
 _SET_PIPE_SIZE = 1031
 """F_SETPIPE_SZ of fcntl(2).
@@ -130,7 +130,7 @@ def _usual_socket() -> list[bpf.Line]:
 def _one_of(index: int, values: Sequence[int], error: int, *, bits: int = 0) -> list[bpf.Line]:
     """Return the instructions that make a call fail unless this argument has one of the values.
 
-    Only the given bits of the argument are compared, or all of its low 32 bits.
+    Only the given bits of the argument are compared, or its low 32 bits if `bits` is 0.
     """
     load = [(bpf.LOAD, 0, 0, bpf.argument(index)), *([(bpf.AND, 0, 0, bits)] if bits else [])]
     lines = [(bpf.EQUAL, len(values) - number, 0, value) for number, value in enumerate(values)]

@@ -40,7 +40,8 @@ class Member:
 def read_tar(stream: bytes, most: int) -> dict[PurePosixPath, Member]:
     """Return at most `most` files and links of the stream.
 
-    Absolute paths and paths with ".." are ignored. If the stream is damaged, only files before the damage are returned.
+    Absolute paths, and paths that contain "..", are ignored. If the stream is damaged, only files before the damage are
+    returned.
     """
     found: dict[PurePosixPath, Member] = {}
     for path, member in _members(stream):

@@ -89,7 +89,7 @@ class Guard:
         self._thread.join()
 
     def worked_s(self, begin: float, end: float) -> float:
-        """Return a lower bound of the CPU time (s) that the cell used between two times of CLOCK_MONOTONIC."""
+        """Return a lower bound on the CPU time (s) that the cell used between two times of CLOCK_MONOTONIC."""
         first = self._worked[0][1]
         before = max((cpu for at, cpu in self._worked if at <= begin), default=first)
         return max((cpu for at, cpu in self._worked if at <= end + EVERY_S), default=first) - before
@@ -127,7 +127,10 @@ class Guard:
 
 
 def family(*pids: int) -> Iterator[int]:
-    """Yield the processes and all their descendants. Orphans become children of the cell's first process."""
+    """Yield the processes and all their descendants.
+
+    Orphans are included, because they become children of the cell's first process.
+    """
     waiting = [*pids]
     while waiting:
         process = waiting.pop()

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 FIRST_USER = 2_000_000_000
-"""The first of a range of ids that are not assigned to users or services: systemd.io/UIDS-GIDS and Debian's policy."""
+"""The first of a range of ids that are not assigned to users or services (systemd.io/UIDS-GIDS and Debian's policy)."""
 USERS = 65_536
 FEW_USERS = range(65_520, 65_534)
 """The ids that are used in a container in which the ids from FIRST_USER on are not available. systemd and Debian's

@@ -129,12 +129,12 @@ class _Queue:
         self._lock = Lock()
         self._closed = False
         self._doubts = False
-        """Whether a run exceeded its time limit. The tests may then also hang on the correct node."""
+        """Whether a run exceeded its time limit. If so, the tests may also hang on the correct node."""
         self.ended: list[Ended] = []
 
     @property
     def is_settled(self) -> bool:
-        """Whether a run on the correct node exceeded its time limit. No other run can then change a verdict."""
+        """Whether a run on the correct node exceeded its time limit. If so, no other run can change a verdict."""
         return any(each.over and not each.node for each in self.ended)
 
     def take(self) -> _Next | None:
@@ -142,8 +142,8 @@ class _Queue:
 
         After the tests have rejected the correct node, only the remaining runs on the correct node are started, since
         the tests then earn no points for rejecting broken nodes. If the tests may hang on the correct node and no run
-        on it has ended, the next run is an additional run on the correct node. Otherwise, tests could choose when one
-        of the other runs on the correct node takes place.
+        on it has ended, the next run is an additional run on the correct node. If a pending run were used instead,
+        tests could choose when this run takes place.
         """
         with self._lock:
             rights = [each for each in self.ended if not each.node]

@@ -25,7 +25,7 @@ Values = list[float]
 
 @dataclass
 class _State:
-    """The state of one node: the last pose (m), its arrival time (ns), whether the node turns forever, and counters."""
+    """The state of one node: the last pose (m), its arrival time (ns), whether the node is turning, and counters."""
 
     x: float = 0.0
     y: float = 0.0

@@ -38,10 +38,10 @@ _LENGTH = struct.Struct("<H")
 
 
 class Conversation:
-    """The grader's ends of the pipes of one run, as a context manager.
+    """The pipes between the grader and one run of the tests, as a context manager.
 
-    `childs` contains the other ends, which belong to the session. Call `passed` to close them as soon as the session
-    has received them.
+    `childs` contains the ends for the session. As soon as the session has received them, call `passed` to close them in
+    this process.
     """
 
     def __init__(self, node: str, brain: Brain, test_s: float, run_s: float, worked_s: WorkedS) -> None:
@@ -81,11 +81,11 @@ class Conversation:
         return self._process is not None
 
     def passed(self) -> None:
-        """Close the session's ends of the pipes."""
+        """Close the ends for the session, which has received them."""
         self._childs.close()
 
     def result(self) -> Ended:
-        """Respond to the requests of the run until it ends or its time is over, and return its result."""
+        """Respond to the requests of the run until it ends or exceeds its time limit, and return its result."""
         begun, over = time.monotonic(), False
         until = begun + LATEST * self._run_s + END_S
         with selectors.DefaultSelector() as selector:

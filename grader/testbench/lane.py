@@ -42,7 +42,7 @@ READY = b"ready\n"
 FILTER, ASKS, ANSWERS = 100, 3, 4
 """The same descriptors as in session.py."""
 OURS = (SESSION, Path(linux_calls.__file__), Path(entering.__file__), Path(holder.__file__))
-"""The files of the grader that a session imports."""
+"""The files of the grader that a session needs."""
 
 
 @dataclass(frozen=True)

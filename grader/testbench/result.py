@@ -43,8 +43,8 @@ class NodeRun:
     `exit_code` is the exit code of pytest, or None if the run did not finish on its own. `collected` is the number of
     tests that pytest found. The other fields describe the first test that did not pass: its name, the message, the
     file, the line, and what failed. This is the test itself ("failed"), a fixture ("setup") or the import of its file
-    ("import"). A student's process reports all of these values. Therefore, only the success or failure of a run counts,
-    and only in combination with the other runs.
+    ("import"). All values except `node`, `over` and `events` come from a cell, in which a student's process may have
+    changed them. Therefore, only the success or failure of a run counts, and only in combination with the other runs.
     """
 
     node: str
@@ -61,7 +61,7 @@ class NodeRun:
     file: str = ""
     line: int = 0
     events: NodeEvents | None = None
-    """What happened to the last node. None if the run created no node, or in an old recording."""
+    """What happened to the last node. The value is None if the run created no node, and in old recordings."""
 
     @property
     def accepted(self) -> bool:

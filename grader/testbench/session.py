@@ -46,8 +46,7 @@ _TYPES_AHEAD = (
 )
 _HEADER = struct.Struct("<idI")
 READY = b"ready\n"
-"""The session writes this line before any of the student's code runs. A failure after this line is not the machine's
-fault."""
+"""The session writes this line when it has imported everything, before any of the student's code runs."""
 STARTED = b"s"
 FILTER = 100
 """The descriptor of the call filter in the command line of a cell."""

@@ -1,8 +1,8 @@
 """The trials of one submission. The trials start during the build, and several trials can run in parallel.
 
-All trials wait for the build, so they start one after the other, which leaves most of a processor to the build.
-Simulated time does not depend on the speed of the machine, so parallel trials do not affect each other. A trial in wall
-time needs the processors to itself, so the caller first waits for the other trials (`settle`).
+All trials wait for the build, so they start one after the other, to leave most of a processor to the build. Simulated
+time does not depend on the speed of the machine, so parallel trials do not affect each other. A trial in wall time
+needs the processors to itself, so the caller first waits for the other trials (`settle`).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Runs(Protocol):
-    """A trial that is waiting for its node, or is already running it."""
+    """A trial whose node has not been started yet, or is already running."""
 
     def run(self, package: str, executable: str, tree: bytes) -> Recording:
         """Run the executable and return the recording, like `Trial.run`."""
@@ -91,7 +91,7 @@ class Ahead:
             pool.shutdown()
 
     def start(self, name: str, trial: Trial) -> None:
-        """Start the simulator and the launcher of this trial when the programs of the previous trials are ready.
+        """Start the simulator and the launcher of this trial as soon as those of the previous trials are ready.
 
         If the start fails, the trial's `run` raises the error.
         """

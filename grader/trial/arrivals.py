@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 MOST_AT_ONCE = 2000
 """The maximum number of messages or requests that are taken at once. The clock must advance even while very many
-messages arrive."""
+messages are arriving."""
 
 
 def take_messages(subscription: Subscription) -> None:

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from grader.trial.inputs import PlannedCall
 
 LATE_S = 1.0
-"""The maximum time that the trial waits for the service of a call, on the trial's clock (s)."""
+"""The maximum time (s), on the trial's clock, to wait until the service of a call is available."""
 FOUND_S = 0.5
-"""The maximum wall time (s) to discover the service of a call while simulated time stands still."""
+"""The maximum wall time (s) to wait until a service is discovered, while simulated time stands still."""
 
 
 class Caller:
@@ -46,7 +46,11 @@ class Caller:
         return any(call.response is None and not call.missing for call in self._made)
 
     def make_due(self, now_s: float, *, spin: Callable[[float], object] | None) -> None:
-        """Make the calls that are due. Pass a function as `spin` if the clock is stopped during this method."""
+        """Make the calls that are due.
+
+        If the clock stands still during this method, `spin` must be a function that spins the node for a
+        given time (s).
+        """
         while self._waiting and self._waiting[0][0].at_s <= now_s:
             call, client = self._waiting[0]
             if not client.service_is_ready() and not self._given_up(call, client, now_s, spin):

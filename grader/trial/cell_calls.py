@@ -2,8 +2,8 @@
 
 This file runs as a separate script. The script reads one line of JSON (`calls`, `script`, `function`, `python_path`,
 `env`, `install`, `files`) and then the install tree, a tar stream, from standard input. The script writes one line of
-JSON for each call. A call cannot write such lines itself: this process is not dumpable, so its child processes cannot
-open its standard output, and it is the first process of the cell, so no other process has this standard output. All
+JSON for each call. A call cannot write such lines itself. This process is not dumpable, so its child processes cannot
+open its standard output. It is also the first process of the cell, so no other process has this standard output. All
 processes that a call has started are killed before the next call, because they could change its result.
 """
 
@@ -34,7 +34,7 @@ Unlike wall time, CPU time does not depend on the load of the machine.
 PROGRAM_CPU_S = 5
 """The maximum CPU time of one run of a program (s), which also imports modules and reads a bag."""
 CALL_S = 20.0
-"""The maximum wall time of one call (s). After a call that exceeds one of these limits, no further call is made."""
+"""The maximum wall time of one call (s). After a call that exceeds one of the limits, no further call is made."""
 MOST_TEXT = 20_000
 POLL_S = 0.005
 TOO_LATE = "too late"
@@ -118,7 +118,7 @@ def _ended(child: int) -> str:
 
 
 def _end_processes(child: int) -> None:
-    """Kill all processes that a call has started. Without a cell, kill only its process group."""
+    """Kill all processes that a call has started. Without a cell, kill only the process group of the call."""
     with suppress(ProcessLookupError):
         if os.getpid() == 1:
             os.kill(-1, signal.SIGKILL)  # all processes of the cell, except this one

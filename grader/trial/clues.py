@@ -93,7 +93,7 @@ def _clues(path: str, tree: ast.Module) -> Iterator[Clue]:
 def _short(node: ast.Attribute) -> str:
     """Return the source of the expression, or only the name of its attribute if the source is long.
 
-    Otherwise, a long chain of attributes would be repeated in the clue for each of its parts.
+    Otherwise, the clue for each part of a long chain of attributes would repeat the chain.
     """
     return ast.unparse(node) if len(list(islice(ast.walk(node), MOST_NODES + 1))) <= MOST_NODES else node.attr
 

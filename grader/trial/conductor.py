@@ -3,7 +3,7 @@
 This process runs in a room of the sandbox, and the student's node in a cell inside this room (grader.sandbox). Both are
 forks of fork servers (grader.trial.fork_server). Without a sandbox, both are new processes. The conductor exchanges
 JSON lines with the grader's own process over its standard streams. The first line of input describes the trial. The
-conductor answers {"ready": true} when the simulator and the launcher are ready. The second line of input specifies what
+conductor sends {"ready": true} when the simulator and the launcher are ready. The second line of input specifies what
 to start, and the install tree follows this line. The last line of output is {"recording": {...}}, {"doubt": "...",
 "by_chance": false} if a trial with the other clock is needed, {"overwhelmed": "..."} if the node made the simulator
 fail, {"refused": "..."} if the machine refused something while the node was running, or {"fault": "..."} if the

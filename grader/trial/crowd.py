@@ -63,7 +63,7 @@ class Stalls:
         threads."""
 
     def look(self, now_s: float) -> tuple[float, float] | None:
-        """Return the stall since the last call, or None.
+        """Return the stall since the last call, or None if there was none.
 
         A stall is a period in which threads waited for a processor, or in which the hypervisor gave the processor to
         another virtual machine. A late frame alone is not a stall, because a node that keeps the simulator busy could

@@ -87,7 +87,7 @@ def _exit_on_errors() -> Iterator[None]:
     """If an error occurs, print one line and end this process.
 
     No traceback is printed, because Python would read source files, and perhaps import modules, from the disk that this
-    process sees. This may be a disk that student code has made (entering.enter), and the process may run as root.
+    process sees. Student code may have created this disk (entering.enter), and the process may run as root.
     """
     try:
         yield

@@ -24,7 +24,7 @@ MOST_DRAWS = 200
 
 @dataclass(frozen=True)
 class PlannedCall:
-    """A service of the node that the trial calls at the time `at_s` (s)."""
+    """A call that the trial makes to a service of the node, at the time `at_s` (s)."""
 
     at_s: float
     service: str

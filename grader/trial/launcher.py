@@ -6,8 +6,9 @@ is no fork server, as a separate script. The launcher reads one line of JSON (`s
 reading the install tree, the launcher runs the installed script as __main__, as the interpreter in the script's first
 line would.
 
-`ros_arguments` select simulated time. rclpy gets these arguments when it is initialized. The arguments never appear in
-sys.argv, because a program that reads its own arguments must find none, as with `ros2 run PACKAGE EXECUTABLE`.
+`ros_arguments` are the ROS arguments of the node, for example those that select simulated time. rclpy gets these
+arguments when it is initialized. The arguments never appear in sys.argv, because a program that reads its own arguments
+must find none, as with `ros2 run PACKAGE EXECUTABLE`.
 """
 
 from __future__ import annotations
@@ -72,7 +73,7 @@ class Postponed(types.ModuleType):
 
 @contextmanager
 def postponed(names: Iterable[str] = POSTPONED) -> Iterator[list[Postponed]]:
-    """Give placeholders for these modules to all modules that are imported inside the context.
+    """Inside the context, let imports of these modules return placeholders.
 
     A placeholder imports its module when it is used. Modules that are imported after the context get the real modules.
     Inside the context, the part of ROS 2 that generates the code of messages is not imported at all.

@@ -43,7 +43,7 @@ class NodeGroup:
         return all(process.ended() for process in self.processes)
 
     def ended_itself(self) -> bool:
-        """Return whether the trial's own node exited before it received SIGINT. Call this after it has exited."""
+        """Return whether the trial's own node exited before it received SIGINT. Call this after the node has exited."""
         return self.processes[0].ended_itself
 
     def interrupt(self) -> None:

@@ -195,7 +195,10 @@ class NodeProcess:
         return ProcessEnd(self._by, self._launcher.poll(), now_s, self._stopping_s(), self._out_of)  # type: ignore[arg-type]
 
     def _stopping_s(self) -> float | None:
-        """Return the time since SIGINT (s), less the time for which the node waited for a processor, or None."""
+        """Return the time since SIGINT (s), minus the time for which the node waited for a processor.
+
+        Return None if the grader has not sent SIGINT.
+        """
         if self._interrupted is None:
             return None
         passed_s = time.monotonic() - self._interrupted

@@ -17,9 +17,9 @@ MOST_GOALS = 1000
 class Call:
     """A service call, with its request and response as plain data, at the time `t_s` of the trial's clock.
 
-    If `by_trial` is False, a node made the call: either to the simulator, or to another node of the trial (then
-    `response` and `answered_s` are None). If `by_trial` is True, the trial called the node. In a call by the trial,
-    `response` and `answered_s` are None until the response arrives, and `missing` is True if no node offered the
+    If `by_trial` is False, a node called either the simulator or another node of the trial. In a call to another node,
+    `response` and `answered_s` are always None. If `by_trial` is True, the trial called the node. In a call by the
+    trial, `response` and `answered_s` are None until the response arrives, and `missing` is True if no node offered the
     service.
     """
 
@@ -39,7 +39,7 @@ class Call:
 
 @dataclass(frozen=True)
 class Offer:
-    """A service that a node of the submission offers, except the services that every node offers."""
+    """A service that a node of the submission offers. The services that every node offers are left out."""
 
     node: str
     service: str
@@ -52,7 +52,7 @@ class Goal:
 
     `t_s` is the time at which the simulator accepted the goal.
 
-    Each other time (s) is None if its event did not happen. The events are: a client requested the result
+    Each of the other times (s) is None if the event did not happen. The events are: a client requested the result
     (`result_asked_s`), a client requested cancellation (`cancel_asked_s`), and the goal ended with this `status`
     (`ended_s`).
     """
@@ -83,7 +83,7 @@ class PenChange:
 class Track:
     """The track of a turtle other than turtle1: rows of t_s (s), x and y (m) and theta (rad), one row per change.
 
-    The first row is the turtle's first frame. `gone_s` is the time at which the turtle was killed (s), or None.
+    The first row is from the turtle's first frame. `gone_s` is the time at which the turtle was killed (s), or None.
     """
 
     turtle: str

@@ -1,4 +1,7 @@
-"""The limit on the number of files that the conductor may open. It opens two files for each thread of a node."""
+"""The limit on the number of files that the conductor may open.
+
+The conductor opens two files for each thread of a node.
+"""
 
 from __future__ import annotations
 

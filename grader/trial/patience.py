@@ -43,8 +43,8 @@ class HandshakePatience:
     def ended(self, now_s: float, *, asleep: bool, wrote: bool, worked_s: float) -> bool:
         """Return whether the node has taken too long.
 
-        `now_s` is the time of the monotonic clock (s). `asleep` says whether all threads are sleeping. A thread that is
-        waiting for a processor is not sleeping. `wrote` says whether there was output to read. A node that writes a lot
+        `now_s` is the time of the monotonic clock (s). `asleep` is true if all threads are sleeping. A thread that is
+        waiting for a processor is not sleeping. `wrote` is true if there was output to read: a node that writes a lot
         sleeps until the output is read. `worked_s` is the CPU time (s) that the node has used.
         """
         if asleep and not wrote:
@@ -70,7 +70,7 @@ class TickPatience:
     def ended(self, now_s: float) -> bool:
         """Return whether the node has used too much CPU time, or the maximum wall time has passed.
 
-        CPU time counts only from the time when it is read for the first time.
+        Only the CPU time that is used after the first reading counts.
         """
         if now_s < self._request_s:
             return False
@@ -81,7 +81,7 @@ class TickPatience:
         return now_s > self._deadline_s or self._node.run_time_s() - self._cpu_s > TICK_CPU_S
 
     def several_worked(self) -> bool:
-        """Return whether several threads of the program shared the work, rather than one loop without a pause.
+        """Return whether several threads of the program shared the work. If not, one thread has a loop without a pause.
 
         The threads of rclpy's MultiThreadedExecutor share work by chance: until a thread begins to run a callback, the
         executor submits the same callback again and again, and wakes a thread each time.

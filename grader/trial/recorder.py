@@ -187,9 +187,9 @@ class Recorder(Node):
     def _endpoints(self, kind: Literal["publisher", "subscription"], topic: str, beside: object) -> set[Endpoint]:
         """Return the endpoints of other nodes on a topic.
 
-        A query takes fifty times as long as counting the endpoints. Therefore, they are queried again only if their
-        number or `beside` has changed. `beside` is everything else in the graph that shows whether the endpoints may
-        have changed.
+        Querying the endpoints takes fifty times as long as counting them. Therefore, they are queried again only if
+        their number or `beside` has changed. `beside` is everything else in the graph that shows whether the endpoints
+        may have changed.
         """
         publishes = kind == "publisher"
         amount = self.count_publishers(topic) if publishes else self.count_subscribers(topic)
@@ -219,7 +219,7 @@ class Recorder(Node):
         return result
 
     def _own_participant(self) -> bytes:
-        """Return the recorder's participant.
+        """Return the id of the recorder's DDS participant.
 
         No other node can publish on the topic /_grader/whoami, since the student's node does not exist yet.
         """

@@ -101,7 +101,7 @@ class Graph:
 class Frames:
     """The state of turtle1 in the simulator, one row per frame (16 ms), as arrays of shape (N,).
 
-    `t_s` is in s, `x` and `y` in m, `theta` in rad, `linear` in m/s and `angular` in rad/s. `wall` says whether a wall
+    `t_s` is in s, `x` and `y` in m, `theta` in rad, `linear` in m/s and `angular` in rad/s. `wall` is true if a wall
     limited the position.
     """
 
@@ -116,7 +116,9 @@ class Frames:
 
 @dataclass(frozen=True)
 class Output:
-    """The text of one output stream, decoded with replacement. `dropped` bytes exceeded the limit and were not kept.
+    """The text of one output stream, in which invalid bytes have been replaced.
+
+    `dropped` is the number of bytes that exceeded the limit and were not kept.
 
     `times` are the arrival times of the lines of `text` on the trial's clock (s), one per line.
     """
@@ -130,7 +132,7 @@ class Output:
 class ProcessEnd:
     """The end of the node's process.
 
-    `by` says what stopped the process: "itself" (before the scenario was over), or a signal. `out_of` is set if the
+    `by` is what stopped the process: "itself" (before the scenario was over), or a signal. `out_of` is set if the
     grader stopped the process because it used more "memory", "processes" or "files" than a node may use. `stop_s` is
     the time from SIGINT to the exit of the process (s of wall time), or None if the process exited on its own. `t_s` is
     the time of the exit on the trial's clock. `exit_code` is negative for a signal, as in subprocess.
@@ -182,16 +184,17 @@ class Recording:
     the node of the trial."""
     interventions: tuple[str, ...] = ()
     """The services and actions of the simulator that were called, in order, such as "spawn" or "teleport_absolute".
-    After a maximum number of calls, each further name is recorded only once."""
+    After a maximum number of calls, only names that are not in the tuple yet are added."""
     interventions_dropped: int = 0
     """The number of calls that were not kept because there were too many."""
     calls: tuple[Call, ...] = ()
-    """The service calls of the node to the simulator and of the trial to the node, in order. Their number is
-    limited."""
+    """The service calls, in order: from nodes to the simulator and to each other, and from the trial to the node. Their
+    number is limited."""
     goals: tuple[Goal, ...] = ()
     """The goals that the node sent to the actions of the simulator, in order, up to a limit."""
     offers: tuple[Offer, ...] = ()
-    """The services of the submission's nodes, if the trial calls any."""
+    """The services of the submission's nodes. They are recorded only if the trial calls services or has several
+    nodes."""
     pens: tuple[PenChange, ...] = ()
     """The changes to the pens, in order. A new turtle has turtlesim's default pen."""
     tracks: tuple[Track, ...] = ()

@@ -74,9 +74,10 @@ class Look:
 
 @dataclass(frozen=True)
 class Wait:
-    """The reason why a thread is waiting, such as "futex" or "nanosleep", or "running" if it is not waiting.
+    """A thread and the system call in which it is waiting.
 
-    `timed` says whether the wait has a timeout.
+    `call` is the name of the system call, such as "futex" or "nanosleep", or "running" if the thread is not waiting.
+    `timed` is true if the wait has a timeout.
     """
 
     tid: int
@@ -121,7 +122,7 @@ class Threads:
         self._refresh()
 
     def close(self) -> None:
-        """Close these files."""
+        """Close the files of the threads."""
         for pair in self._files.values():
             for fd in pair:
                 os.close(fd)

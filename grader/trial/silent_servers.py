@@ -35,7 +35,7 @@ class SilentServers:
         self._known: set[str] = set()
 
     def follow(self) -> bool:
-        """Create a server for each service that is new in the graph, and return whether a service was new."""
+        """Create a server for each service that is new in the graph, and return whether any server was created."""
         self._recorder.follow_services()
         fresh = [offer for offer in self._recorder.offers if offer.service not in self._known]
         fresh = fresh[: MOST_SERVICES - len(self._known)]

@@ -37,7 +37,7 @@ between two announcements (fastdds.xml). If the value were larger, the announcem
 leave no gap of this length for many seconds."""
 WAKE_S = 1.0
 """The maximum time to wait until each node has reacted to /clock at time 0 (s). A node that uses create_rate never
-does."""
+reacts."""
 MOST_CPU = 2.0
 """If the CPU time of a node exceeds this multiple of the trial's duration, the node would also be too slow in wall
 time, so its result must come from a trial in wall time."""

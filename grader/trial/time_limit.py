@@ -20,7 +20,7 @@ are running."""
 
 
 class TimeLimit:
-    """Kills the processes of a trial when they take too long. `starved` then says whether the machine was too busy."""
+    """Kills the processes of a trial when they take too long. `starved` is then true if the machine was too busy."""
 
     def __init__(self, conductor: ConductorProcess) -> None:
         self._conductor = conductor

@@ -22,7 +22,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the nodes. If no node offers or uses the action, print two counts of 0."""
+    """Print how many nodes use and offer the action, and the names of these nodes unless `--count` is given."""
     from grader.graph.names import absolute
 
     graph = look(args)

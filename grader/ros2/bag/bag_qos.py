@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 DEPTH = 1000
-"""The depth of the queue. The depth is larger than the depth in rosbag2 (10), because Python is slower than C++."""
+"""The depth of the queues. The depth is larger than in rosbag2 (10), because Python is slower than C++."""
 
 
 def offered(publishers: Sequence[Any]) -> list[Qos]:
@@ -23,7 +23,7 @@ def offered(publishers: Sequence[Any]) -> list[Qos]:
 
 
 def adapted(publishers: Sequence[Any]) -> QoSProfile:
-    """Return a profile that is compatible with every publisher: as strict as the least strict publisher."""
+    """Return the strictest profile that is compatible with every publisher."""
     profiles = [publisher.qos_profile for publisher in publishers]
     return _common(
         [profile.reliability == QoSReliabilityPolicy.RELIABLE for profile in profiles],
@@ -32,7 +32,7 @@ def adapted(publishers: Sequence[Any]) -> QoSProfile:
 
 
 def to_play(recorded: Sequence[Qos]) -> QoSProfile:
-    """Return a profile that is compatible with every subscription that matched the recorded publishers."""
+    """Return a profile that is compatible with every subscription that was compatible with all recorded publishers."""
     return _common(
         [profile.reliability is QosReliability.RELIABLE for profile in recorded],
         [profile.durability is QosDurability.TRANSIENT_LOCAL for profile in recorded],

@@ -1,4 +1,7 @@
-"""The node that records a bag. The node subscribes to each topic that appears, and writes the messages unchanged."""
+"""The node that records a bag.
+
+The node subscribes to the selected topics as they appear, and writes their messages unchanged.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class Recorder:
-    """Records a bag with the options of `bag record` until it is interrupted."""
+    """Records a bag, with the options of `bag record`, until a signal ends the recording."""
 
     def __init__(
         self, node: Node, writer: BagWriter | SplitWriter, args: argparse.Namespace, wanted: Callable[[str, str], bool]

@@ -40,8 +40,8 @@ _NO_HASH = f"RIHS01_{64 * '0'}"
 class BagWriter:
     """A new bag as a context manager. On exit, the writer writes the remaining messages and the metadata.
 
-    `folder` is the folder of the bag, which must not exist. `storage` is "mcap" or "sqlite3". `compression` is "none",
-    "file", "message" or "storage" (inside the MCAP file).
+    `folder` is the folder of the bag, which must not exist yet. `storage` is "mcap" or "sqlite3". `compression` is
+    "none", "file", "message" or "storage" (inside the MCAP file).
 
     Raises:
         Ros2Error: the folder cannot be created.

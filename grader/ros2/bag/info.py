@@ -1,4 +1,4 @@
-"""The verb `bag info`: print the content of a bag."""
+"""The verb `bag info`: print information about a bag."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Saved(NamedTuple):
-    """A message from a damaged file."""
+    """A message that was read from a file of a bag without the file's index."""
 
     stamp_ns: int
     topic: str

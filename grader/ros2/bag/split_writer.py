@@ -1,6 +1,6 @@
 """Write a bag that consists of several files.
 
-A new file begins when the current file has reached the maximum size or duration.
+A new file begins when another message would exceed the maximum size or duration of the current file.
 """
 
 from __future__ import annotations
@@ -32,8 +32,7 @@ class SplitWriter:
     current file is in a separate folder until it is complete. `ros2 bag reindex` also finds files in that folder.
 
     `folder`, `storage` and `compression` have the same meaning as for BagWriter. `most_bytes` is the maximum total size
-    of the messages in a file (bytes), and `most_s` is the maximum duration of the messages in a file (s). The value 0
-    means no limit.
+    of the messages in a file (bytes), and `most_s` is the maximum duration of a file (s). The value 0 means no limit.
 
     Raises:
         Ros2Error: the folder cannot be created.

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 PROTOCOL = 1
-"""A version number in the name of the socket. Each version of this code starts a separate daemon."""
+"""A version number in the name of the socket, so that a command never connects to a daemon of another version."""
 _DECIDE = (
     "FASTDDS_BUILTIN_TRANSPORTS",
     "FASTDDS_DEFAULT_PROFILES_FILE",
@@ -37,7 +37,7 @@ _DECIDE = (
 
 
 def domain() -> str:
-    """Return the domain id as text, as set by the user."""
+    """Return the domain id that the user has set, as text, or "0"."""
     return os.environ.get("ROS_DOMAIN_ID") or "0"
 
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     import argparse
 
 _PARTS = {"msg": "", "srv": "Request", "action": "Goal"}
-"""The part of each kind of interface that a user fills in."""
+"""Maps each kind of interface to the part that a user fills in. A message has no parts."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:

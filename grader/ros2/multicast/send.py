@@ -23,7 +23,7 @@ def run(args: argparse.Namespace) -> int:
     """Send the packet.
 
     Raises:
-        Ros2Error: the network refuses the packet.
+        Ros2Error: the packet could not be sent.
     """
     print("Sending one UDP multicast datagram...", flush=True)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM, socket.IPPROTO_UDP) as sender:

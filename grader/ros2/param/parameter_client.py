@@ -73,7 +73,7 @@ class Parameters:
         return found[0] if found else None
 
     def all_values(self) -> dict[str, Any]:
-        """Return all values by name."""
+        """Return a dictionary that maps the name of each parameter to its value."""
         names = self.names()
         found = self._call(GetParameters, "get_parameters", GetParameters.Request(names=names)).values
         return {name: parameter_value_to_python(value) for name, value in zip(names, found, strict=False)}
@@ -131,7 +131,7 @@ def type_name(kind: int) -> str:
 
 
 def value_text(value: ParameterValue, *, hide_type: bool) -> str:
-    """Return a value as `param get` prints it."""
+    """Return a value in the format of `param get`."""
     python = parameter_value_to_python(value)
     text = str(python.tolist() if hasattr(python, "tolist") else python)
     if hide_type:

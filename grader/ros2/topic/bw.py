@@ -46,7 +46,10 @@ class Bandwidth:
 
 
 def bandwidth(arrivals: Sequence[tuple[int, int]], now_ns: int) -> Bandwidth:
-    """Return the bandwidth from the first arrival until now. `arrivals` has the time (ns) and size of each message."""
+    """Return the bandwidth from the first arrival until now.
+
+    `arrivals` contains the time (ns) and the size (bytes) of each message.
+    """
     sizes = [size for _, size in arrivals]
     seconds = (now_ns - arrivals[0][0]) * 1e-9
     return Bandwidth(sum(sizes) / seconds, len(sizes), sum(sizes) / len(sizes), min(sizes), max(sizes))

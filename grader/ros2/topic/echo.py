@@ -118,7 +118,7 @@ class Printer:
         self._wanted = matching(args.filter_expr) if args.filter_expr else None
 
     def show(self, message: Any, info: dict[str, Any]) -> None:  # noqa: ANN401
-        """Print a message. `info` is the information that rclpy provides about the message's transport."""
+        """Print a message. `info` is what rclpy reports about the message, such as its time stamps."""
         if self._args.once and self.printed:
             return
         parts = [message_values.field(message, field) for field in self._args.field or ()] or [message]

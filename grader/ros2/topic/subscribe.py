@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def chosen_qos(node: Node, topic: str, args: argparse.Namespace) -> Any:  # noqa: ANN401
-    """Return the QoS that the options specify, or a QoS as strict as the QoS of the least strict publisher."""
+    """Return the QoS that the options specify, or else the strictest QoS that is compatible with every publisher."""
     profile = qos.profile(args)
     publishers = [info.qos_profile for info in node.get_publishers_info_by_topic(topic)]
     if qos.is_chosen(args) or not publishers:
