@@ -190,7 +190,7 @@ def to_text(drawn: Picture, *, ascii_only: bool = False) -> str:
     lines = [line for topic in topics for line in _rows(topic, counts, strokes, left, middle)]
     if drawn.alone:
         lines += [""] if lines else []
-        lines += [f"{_node(node.name, counts)}  none of the topics shown" for node in drawn.alone]
+        lines += [f"{_node(node.name, counts)}  uses none of the topics shown" for node in drawn.alone]
     legend = f"(node) {strokes.one} [topic] {strokes.one} (node): arrows point in the direction of the messages."
     return "\n".join([*lines, "", legend]) + "\n"
 

@@ -88,7 +88,7 @@ def types_of(found: tuple[Named, ...], name: str) -> tuple[str, ...]:
 
 
 def from_dict(data: dict[str, Any]) -> Look:
-    """Return the snapshot from data that `to_dict` returned."""
+    """Create a snapshot from data that `to_dict` returned."""
     return Look(
         nodes=tuple(
             NodeLook(node.pop("name"), **{key: _named(value) for key, value in node.items()}) for node in data["nodes"]

@@ -59,7 +59,7 @@ def readable_names() -> Iterator[None]:
     """Report a name in the graph that is not valid UTF-8, because rclpy cannot read a graph with such a name.
 
     Raises:
-        Ros2Error: there is such a name.
+        Ros2Error: a name in the graph is not valid UTF-8.
     """
     try:
         yield

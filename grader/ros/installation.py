@@ -214,7 +214,7 @@ def who_hears(env: Mapping[str, str]) -> str:
         return f"ROS domain {domain}, reachable only on this machine"
     if reach == "SUBNET":
         return f"ROS domain {domain}, reachable from the network (ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST limits it)"
-    note = ", with which commands cannot find each other's nodes" if reach == "OFF" else ""
+    note = ", so commands cannot find each other's nodes" if reach == "OFF" else ""
     return f"ROS domain {domain}, ROS_AUTOMATIC_DISCOVERY_RANGE={reach}{note}"
 
 
@@ -230,7 +230,7 @@ def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str
 
 
 def _users_path(ros: Ros, env: Mapping[str, str]) -> str:
-    """Return PATH with our folder of commands: last if a ROS 2 is sourced, or else first, so that `python3` has rclpy."""
+    """Return PATH with our folder of commands: last if a ROS 2 is sourced, else first, so that `python3` has rclpy."""
     path = env.get("PATH", "/usr/local/bin:/usr/bin:/bin")
     ours = str(Path(sys.prefix, "bin"))
     if ours in path.split(os.pathsep):

@@ -164,7 +164,7 @@ def _scalar(value: Any, declared: str) -> Any:  # noqa: ANN401
 def field(value: Any, path: str, *, complete: bool = True) -> Any:  # noqa: ANN401
     """Return a part of a message, such as "linear.x" or "poses[0].position".
 
-    If `complete` is false, the result is None if an array is too short to contain the element.
+    The result is None if `complete` is false and an array is too short to contain the element.
 
     Raises:
         Ros2Error: the message has no such field or element.

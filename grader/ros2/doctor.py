@@ -90,9 +90,9 @@ def _check_topics(node: Node) -> Examination:
 
 
 def _pairs(node: Node) -> Iterator[tuple[str, Any, Any, Any, str]]:
-    """For each publisher and subscription of a topic, yield the topic, both of them, and their QoS compatibility.
+    """Yield each pair of a publisher and a subscription on the same topic, with their QoS compatibility.
 
-    The last value is the reason if they are not compatible, or might not be compatible.
+    The first value is the topic. The last value is the reason if they are not compatible, or might not be compatible.
     """
     from rclpy.qos import qos_check_compatible
 

@@ -136,7 +136,7 @@ def _end(number: int, _: FrameType | None) -> None:
 
 
 def _forget_the_terminal() -> None:
-    """Flush standard output. If this fails because its reader has exited, discard the output."""
+    """Flush standard output. If this fails because the reader of the output has exited, discard the output."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         sys.stdout.flush()

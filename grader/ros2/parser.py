@@ -110,7 +110,7 @@ def _add_words(
     chosen: str | None,
     add: Callable[[Parser, str], None],
 ) -> None:
-    """Add the words that may come next. For the word on the command line, call `add` to add its arguments."""
+    """Add the words that may come next. For the word on the command line, call `add` to add the arguments."""
     width = max(map(len, about))
     words = parser.add_subparsers(
         title="Commands",

@@ -74,7 +74,9 @@ def _path(args: argparse.Namespace) -> Path:
         folder = installed[args.package_name] / "lib" / args.package_name
         mounted = noexec_folder(folder)
         if mounted and (folder / args.executable_name).is_file():
-            instead = "move your workspace to another file system, delete build, install and log in it, and build again"
+            instead = (
+                "move your workspace to another file system, delete its folders build, install and log, and build again"
+            )
             raise Ros2Error(noexec_sentence(mounted, instead))
         names = [path.name for path in all_of_them]
         hint = did_you_mean(args.executable_name, names, "No executable found")

@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 Line = tuple[int, int, int, int]
-"""A struct sock_filter: an operation, the numbers of instructions to skip if its result is true and if it is false, and
-a value."""
+"""A struct sock_filter: an operation, how many instructions to skip if it is true, how many if it is false, and a
+value."""
 
 LOAD, AND, EQUAL, AT_LEAST, ANY_BIT, RETURN = 0x20, 0x54, 0x15, 0x35, 0x45, 0x06
 ALLOW, ERRNO = 0x7FFF0000, 0x00050000

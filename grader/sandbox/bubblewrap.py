@@ -151,8 +151,8 @@ def lone_cell(
     """Return the command that runs `argv` in a cell with a separate network, inside a room without other processes.
 
     `user` has the same meaning as in `room`, and `first` as in `cell`. Student code can change the memory of the first
-    process of its cell, so this process might not exit together with its parent. Therefore, the cell is in a room,
-    whose first process student code cannot reach.
+    process of its cell, so this process might not exit together with its parent. Therefore, the cell is in a room:
+    student code cannot reach the first process of the room.
 
         with call_filter() as filter_fd, cell_user() as user:
             command = lone_cell(["colcon", "build"], view, env=env, limits=Limits(), user=user, filter_fd=filter_fd)
@@ -205,7 +205,7 @@ def why_unavailable() -> str | None:
         f"bubblewrap cannot create its namespaces ({lines[0]}). On Ubuntu 24.04, AppArmor does not let "
         "ordinary users create them; `sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0` allows this until "
         "the next reboot. "
-        'docs/security.md, "Without a sandbox", has a permanent rule and the options for containers'
+        'docs/security.md, "Without a sandbox", has a permanent solution and the options for containers'
     )
 
 

@@ -40,7 +40,8 @@ class Limits:
     total_memory: int = 2048 * MIB
     """The maximum memory of all processes and disks of a cell together (bytes), which usage.py watches."""
     processes: int = 600
-    """The maximum number of processes and threads together. A node needs no threads for its timers."""
+    """The maximum number of processes and threads together. Timers do not count, because a node needs no threads for
+    them."""
     open_files: int = 1024
     file_size: int = 256 * MIB
     disk: int = 256 * MIB

@@ -61,7 +61,7 @@ def forbid_all_but_reading() -> bool:
 
 
 def program() -> bytes:
-    """Return the filter."""
+    """Return the filter in the binary format of the kernel."""
     refuse, denied = bpf.ERRNO | errno.EPERM, bpf.ERRNO | errno.EACCES
     numbers = sorted(number for group in (*DENIED.values(), *FORBIDDEN.values()) for number in group.values())
     lines = [*bpf.begin(), *bpf.refusing(numbers, errno.EPERM)]

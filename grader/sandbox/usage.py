@@ -29,8 +29,8 @@ In a cell, the kernel also counts processes, and refuses new processes before th
 _DISKS = ("ws", "tmp", "dev/shm")
 _SOCKETS = {"udp": "", "udp6": "", "tcp": "sockstat", "tcp6": "sockstat6"}
 """Maps a list of sockets in /proc/PID/net to the file that counts these sockets. For a list of TCP sockets, the kernel
-looks through the TCP sockets of all networks, which takes 4 ms, so such a list is read only if this network has TCP
-sockets."""
+looks through the TCP sockets of all networks, which takes 4 ms. Therefore, such a list is read only if this network has
+TCP sockets."""
 _IN_USE = re.compile(rb"^TCP6?: inuse (\d+)", re.MULTILINE)
 _MOST_LISTED = 4 * 1024 * 1024
 """A list of sockets that is longer than this (bytes) has more than 25,000 lines, which happens only in an attack."""
@@ -44,7 +44,7 @@ _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 def exceeded(pids: Sequence[int], limits: Limits, *, in_room: bool = False) -> str | None:
     """Return the limit ("memory", "processes", "files") that these processes and their descendants exceed, or None.
 
-    With `in_room`, this process and the cell are in the same room, so that the cell can fill sockets of their network.
+    With `in_room`, this process and the cell are in the same room, so the cell can fill the sockets of their network.
     """
     memory = 0
     processes = 0
@@ -164,7 +164,7 @@ def _network(pid: int) -> str:
 
 
 def _waiting_bytes(pid: int) -> int:
-    """Return the size of the data in the queues of the UDP and TCP sockets of the process's network (bytes).
+    """Return how many bytes of data are waiting in the UDP and TCP sockets of the process's network.
 
     The kernel has one limit on this memory for all networks of the machine. If this limit is reached, messages of other
     trials are lost.

@@ -40,7 +40,7 @@ START_S = 120.0
 READY = b"ready\n"
 """The session writes this line when it is ready to run tests (see session.py)."""
 FILTER, ASKS, ANSWERS = 100, 3, 4
-"""The same descriptors as in session.py."""
+"""The descriptors of the call filter, of the requests and of the responses, as in session.py."""
 OURS = (SESSION, Path(linux_calls.__file__), Path(entering.__file__), Path(holder.__file__))
 """The files of the grader that a session needs."""
 

@@ -1,4 +1,4 @@
-"""The time that one run of the tests may take. A busy machine does not make a run exceed this time.
+"""The time that one run of the tests may take, regardless of how busy the machine is.
 
 The limits apply to wall time. They do not include the time for which the threads of the run, or the thread that
 responds to their requests, waited for a processor. The CPU time of all processes of the run together has the same
@@ -86,7 +86,7 @@ class Patience:
         return in_test_s >= self._test_s or now - self._begun - waited_s >= self._run_s
 
     def _is_stuck(self) -> bool:
-        """Return whether all threads of the run wait for each other, and have not run since the last call."""
+        """Return whether all threads of the run are waiting for each other, and have not run since the last call."""
         with suppress(GoneError, OSError, ValueError):
             threads = Threads(self._pid, not_of_dds)
             try:

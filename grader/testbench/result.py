@@ -17,7 +17,7 @@ LATEST_S = 1e9
 
 @dataclass(frozen=True)
 class NodeEvents:
-    """What happened to the last node of a run, which the failing test created.
+    """What happened to the node that was created last in a run, usually by the failing test.
 
     These values were counted by the grader, not by the student's process.
     """
@@ -43,8 +43,8 @@ class NodeRun:
     `exit_code` is the exit code of pytest, or None if the run did not finish on its own. `collected` is the number of
     tests that pytest found. The other fields describe the first test that did not pass: its name, the message, the
     file, the line, and what failed. This is the test itself ("failed"), a fixture ("setup") or the import of its file
-    ("import"). All values except `node`, `over` and `events` come from a cell, in which a student's process may have
-    changed them. Therefore, only the success or failure of a run counts, and only in combination with the other runs.
+    ("import"). A student's process may have changed all values except `node`, `over` and `events`. Therefore, only the
+    success or failure of a run counts, and only in combination with the other runs.
     """
 
     node: str
@@ -108,7 +108,10 @@ class Ended:
 
 
 def run_of(ended: Ended) -> NodeRun:
-    """Return the run with its report. Parts of the report that have an unexpected form are ignored."""
+    """Convert the data about an ended run, including its report.
+
+    Parts of the report that have an unexpected form are ignored.
+    """
     try:
         report = json.loads(ended.report)
     except (ValueError, RecursionError):
@@ -135,7 +138,7 @@ def run_of(ended: Ended) -> NodeRun:
 
 
 def runs_of(ended: tuple[Ended, ...]) -> tuple[NodeRun, ...]:
-    """Return the runs with their reports."""
+    """Convert the data about several ended runs, as `run_of` does."""
     return tuple(map(run_of, ended))
 
 

@@ -44,7 +44,7 @@ _NAMES = {
     "use_global_arguments",
 }
 _CLOCKS = {"Clock", "ROSClock"}
-"""Classes of clocks. A clock that the program creates itself does not follow /clock."""
+"""The names of clock classes. A clock that the program creates itself does not follow /clock."""
 _TIMELESS = {"threading.Lock", "threading.RLock", "threading.local", "threading.current_thread", "threading.get_ident"}
 """Names from `threading` that are not clues, because none of them waits for time to pass."""
 MOST_NODES = 30

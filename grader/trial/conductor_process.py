@@ -133,7 +133,7 @@ class ConductorInRoom(ConductorProcess):
     """A conductor that is a fork (grader.trial.fork_server) in a new room."""
 
     def __init__(self, ros: installation.Ros, nodes: int, errors: IO[bytes]) -> None:
-        """Create the room, and request the conductor and `nodes` nodes from the fork servers.
+        """Create the room, and request the conductor and the processes of `nodes` nodes from the fork servers.
 
         Raises:
             HolderError: bubblewrap could not create the room.

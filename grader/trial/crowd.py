@@ -17,8 +17,8 @@ that the node causes in the simulator counts as work of the node: if the simulat
 late, but not because of the machine.
 """
 SIMULATOR = 0.3
-"""The share of a processor that the simulator may use for itself. In measurements, it used a tenth of a processor. CPU
-time beyond this share counts as work for the node."""
+"""The share of a processor that the simulator may use for itself. In measurements, the simulator used a tenth of a
+processor. CPU time beyond this share counts as work for the node."""
 OTHERS = 0.2
 """Other programs are considered to use the machine if they take at least this share of one processor."""
 WAITED = 0.05
@@ -39,7 +39,7 @@ def is_crowded(waited_s: float, others_s: float, *, of_s: float) -> bool:
 def is_machines(stalled_s: float, others_s: float) -> bool:
     """Return whether the machine can be at fault for stalls of this total length (s).
 
-    A thread waits for a processor only while something else uses the processor. If the other programs used less CPU
+    A thread waits for a processor only while something else is using the processor. If the other programs used less CPU
     time than the stalls lasted, the threads of the node delayed each other, for example in a node that publishes
     without a pause.
     """

@@ -26,9 +26,9 @@ beginners but would slow down the simulator in every frame."""
 
 
 NOBODYS_HOME = Path("/nonexistent")
-"""The HOME of a server, which only root can create. LTTng, which rclpy loads, follows the instructions of any program
-that listens on a socket in HOME, so a folder in /tmp, which another user could create, is not safe. Each fork gets a
-HOME of its own."""
+"""The HOME of a server, which only root can create. rclpy loads LTTng, which follows the instructions of any program
+that listens on a socket in HOME. Therefore, a folder in /tmp would not be safe: another user could create it. Each fork
+gets a HOME of its own."""
 
 
 class ForkServer:

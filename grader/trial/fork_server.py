@@ -128,7 +128,7 @@ def _next_request(requests: socket.socket) -> tuple[dict[str, Any], list[int]]:
 
 
 def _forked() -> bool:
-    """Fork. Return whether this is the child process.
+    """Fork this process, and return whether this is the child process.
 
     If no child process can be created, return False. The socket for the result is then closed, so that the grader
     notices the failure, and other trials continue.
@@ -198,7 +198,7 @@ def _next_node(conductor: socket.socket, nodes: int) -> list[int]:
 
 
 def _fork_supervised(result: int, childs: Sequence[int]) -> None:
-    """Fork. Return in the child process. The parent process reports how the child process ends.
+    """Fork, and return only in the child process. The parent process reports how the child process ends.
 
     The parent process closes the descriptors `childs`, and kills the child process if the other end of the socket
     `result` is closed.

@@ -29,7 +29,7 @@ REQUEST_EVERY_S = 0.02
 
 
 class HandshakePatience:
-    """The time limit for a node to reach the point at which it waits for its clock.
+    """The time limit within which a node must begin to wait for its clock.
 
     `limit_s` is the maximum time that the node may sleep (s), and also the maximum CPU time that it may use (s). Time
     in which the node waits for the grader to read its output does not count as sleep.

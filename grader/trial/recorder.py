@@ -188,8 +188,8 @@ class Recorder(Node):
         """Return the endpoints of other nodes on a topic.
 
         Querying the endpoints takes fifty times as long as counting them. Therefore, they are queried again only if
-        their number or `beside` has changed. `beside` is everything else in the graph that shows whether the endpoints
-        may have changed.
+        their number or `beside` has changed. `beside` contains the types of the topic and the nodes in the graph: if
+        they have changed, the endpoints may have changed, too.
         """
         publishes = kind == "publisher"
         amount = self.count_publishers(topic) if publishes else self.count_subscribers(topic)

@@ -229,7 +229,7 @@ class Simulation:
     def follow_graph(self) -> bool:
         """Record new topics.
 
-        If several nodes are running, also record calls between them of new services. Return whether anything was new.
+        With several nodes, also record the calls of new services between them. Return whether anything new was found.
         """
         fresh = self.recorder.follow_graph()
         return (self._silent_servers is not None and self._silent_servers.follow()) or fresh

@@ -21,7 +21,7 @@ GRAPH_S = 5.0
 
 
 class AloneTrial(Simulation):
-    """A simulation without a node. Its clock counts the frames."""
+    """A simulation without a node. Each frame advances its clock by the length of a frame."""
 
     def __init__(self, start: Pose, prefixes: list[Path], inputs: Inputs) -> None:
         self._now_s = 0.0

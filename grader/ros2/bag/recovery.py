@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Saved(NamedTuple):
-    """A message that was read from a file of a bag without the file's index."""
+    """A message that was read without the index of the bag file."""
 
     stamp_ns: int
     topic: str

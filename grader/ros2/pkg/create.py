@@ -136,9 +136,8 @@ def _advice(wanted: NewPackage) -> list[str]:
     odd = [f"{what} name '{value}'" for what, value in names if value is not None and not _PYTHON_NAME.fullmatch(value)]
     if odd:
         advice.append(
-            f"The {' and the '.join(odd)} will cause problems. Begin with a letter, and use lower-case letters, digits "
-            "and _. "
-            "Python cannot import other names, and colcon warns about them."
+            f"The {' and the '.join(odd)} will cause problems. Begin with a letter, and use only lower-case letters, "
+            "digits and _. Python cannot import most other names, and colcon warns about them."
         )
     if wanted.build_type != "ament_python":
         advice.append(
