@@ -47,8 +47,8 @@ def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sour
     lines = [f"# For `source <(grader env)`: ROS 2 Jazzy, in domain {wanted['ROS_DOMAIN_ID']}."]
     lines += [f"export {name}={shlex.quote(value)}" for name, value in wanted.items() if env.get(name) != value]
     lines += [
-        # With another Python's library, no `python3` of .venv would start; `activate` of a venv does the same. With the
-        # properties of another Python, colcon fails.
+        # With PYTHONHOME of another Python, the `python3` of .venv would not start, so unset it, as `activate` of a
+        # venv does. With the properties of another Python, colcon fails.
         " ".join(["unset PYTHONHOME", *OF_ANOTHER_PYTHON]),
         # zsh cannot complete words before its own completion system has been initialized.
         'if [ -n "${ZSH_VERSION-}" ]; then',

@@ -59,7 +59,7 @@ def why_impossible() -> str | None:
     else:
         refused = None if _C.setns(own, _NAMESPACES["uts"]) == 0 else ctypes.get_errno()
         os.close(own)
-    if refused in (None, errno.EPERM):  # a kernel that knows the call allows it to root only
+    if refused in (None, errno.EPERM):  # this kernel supports the call, but only for root
         return None
     return f"the grader cannot enter a sandbox on this kernel, Linux {os.uname().release}. It needs Linux 5.8 or later"
 

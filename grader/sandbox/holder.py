@@ -72,7 +72,7 @@ class Holder:
         with open(self._info, "rb") as about:  # noqa: PTH123 - a descriptor
             try:
                 self._process.stdin.write(b"?")
-                if self._process.stdout.read(1):  # HOLDER runs, so that all namespaces and mounts exist
+                if self._process.stdout.read(1):  # HOLDER is running, so all namespaces and mounts exist
                     first = int(json.loads(about.read())["child-pid"])
                     self._first = pidfd_open(first)
                     children = Path(f"/proc/{first}/task/{first}/children").read_text("ascii")

@@ -145,7 +145,7 @@ class Conversation:
         elif event == b"t":
             answer = self._brain.tick(number, now_ns)
         data = json.dumps(answer).encode()
-        with suppress(OSError):  # a run that does not read its answers gets no further answers
+        with suppress(OSError):  # a run that does not read its responses gets no further ones
             os.write(self._answers, _LENGTH.pack(len(data)) + data)
 
     def _kill(self) -> None:

@@ -73,8 +73,8 @@ class Patience:
         if now - self._moved >= LOOK_S:
             self._moved = now
             self.stuck = self._is_stuck()
-        # Subtracting the time spent waiting for a processor makes these times shorter, so /proc is read only if one is
-        # too long.
+        # Subtracting the time spent waiting for a processor makes these times shorter, so /proc is read only if one of
+        # them is too long.
         is_late = now - self._begun >= self._run_s or now - self._test_begun >= self._test_s
         if self.stuck or not is_late:
             return self.stuck

@@ -70,7 +70,8 @@ class ForkServer:
             env |= CONDUCTORS if self._kind == "conductor" else {}
             start = interpreter(*module, python=str(self._ros.python), env=env, searches=True)
             # Without a session of its own, a node could write into the input of the user's terminal. Without the
-            # loader, it could change an interpreter that belongs to the user, since no read-only mount hides it.
+            # loader, a node could change an interpreter that belongs to the user, since no read-only mount hides this
+            # interpreter.
             self._process = subprocess.Popen(
                 loaded(start.argv),
                 stdin=subprocess.DEVNULL,

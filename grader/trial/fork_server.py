@@ -207,7 +207,7 @@ def _fork_supervised(result: int, childs: Sequence[int]) -> None:
     child = os.fork()
     if child == 0:
         results.close()
-        os.setsid()  # otherwise, signals to the own process group would reach the server and other trials
+        os.setsid()  # otherwise, signals to its process group would reach the server and other trials
         return
     entering.end_with_parent()  # entering a cell may have cancelled the earlier request
     for descriptor in childs:

@@ -193,7 +193,7 @@ class SimulatedTrial(Simulation):
 
     def _take_in(self) -> bool:
         """Handle everything that has arrived. Return whether the node may react to anything that arrived."""
-        # Plain messages and acknowledgements get no answer, so the node stays idle.
+        # Plain messages and acknowledgements get no response, so the node stays idle.
         if not self.may_act():
             return self.take_in() > 0
         return not all(isinstance(source, Subscription) for source in self.spin())
