@@ -27,7 +27,8 @@ def did_you_mean(name: str, candidates: Iterable[str], text: str = "", nodes: It
     """Return `text`, followed by a line that suggests the most similar candidate if one is similar enough.
 
     `nodes` contains the names of the running nodes. If all of them are hidden, like the node of this command, the line
-    says that no node is running: the node that the user named has not been started, or it runs in another domain.
+    says that no node is running. In this case, the node that the user named has not been started, or is running in
+    another domain.
     """
     others = [candidate for candidate in candidates if candidate != name]
     found = others[0] if len(others) == 1 and others[0].endswith(f"/{name}") else nearest(name, others)

@@ -176,8 +176,8 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
     The user's settings are kept, and workspaces that the user sourced are searched first. The ROS domain is `domain`,
     or if `domain` is None, the domain that the user has set. If the user has set no domain, each user gets a separate
     domain, so that classmates on one machine do not drive each other's turtles. If the ROS 2 installation was sourced,
-    however, the domain is 0, as usual in ROS 2, so that these nodes reach nodes in terminals where the user only
-    sourced the installation.
+    however, the domain is 0, the default of ROS 2. Nodes in terminals where the user only sourced the installation are
+    also in this domain.
 
     Raises:
         UsageError: ROS_DOMAIN_ID is not a valid domain id.

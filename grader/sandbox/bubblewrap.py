@@ -117,9 +117,9 @@ def cell(
     first process of the cell. Without `first`, the first process is a process of bubblewrap, which has the same
     standard streams and can be controlled by the other processes of the cell.
 
-    `filter_fd` is the descriptor from system_calls.call_filter(), which the process must inherit. A caller that runs as
-    root must put the cell into a room, in which the cell's user is an ordinary user, because the limit on processes
-    does not apply to root. bubblewrap writes JSON with the pid of the cell's first process to `info_fd`.
+    `filter_fd` is the descriptor from system_calls.call_filter(), which the process must inherit. The limit on
+    processes does not apply to root. Therefore, a caller that runs as root must put the cell into a room, in which the
+    cell's user is an ordinary user. bubblewrap writes JSON with the pid of the cell's first process to `info_fd`.
     """
     command = [_bwrap(), "--unshare-user", "--disable-userns", "--unshare-pid", "--unshare-ipc", "--unshare-uts"]
     command += ["--unshare-cgroup-try", "--uid", "1000", "--gid", "1000", "--hostname", "robot"]

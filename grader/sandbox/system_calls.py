@@ -2,9 +2,9 @@
 
 The filter forbids calls that no node needs and that attackers have used to escape from sandboxes. A list of allowed
 calls (instead of forbidden ones) would break with a new version of Python or Fast DDS. Namespaces, limits and mounts
-are the first defence, and this filter is the second. The filter also forbids memory that counts towards neither a tmpfs
-nor a process (memfd, System V shared memory), and calls that use up a user's or the machine's resources, because other
-cells may have the same user.
+are the first defence, and this filter is the second. The filter also forbids calls that allocate memory which counts
+towards neither a tmpfs nor a process (memfd, System V shared memory). Finally, it forbids calls that use up the
+resources of a user or of the machine, because other cells may have the same user.
 """
 
 from __future__ import annotations

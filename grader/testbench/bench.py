@@ -140,10 +140,10 @@ class _Queue:
     def take(self) -> _Next | None:
         """Return the next run, or None if no further run is needed.
 
-        After the tests have rejected the correct node, only the remaining runs on the correct node are started, since
-        the tests then earn no points for rejecting broken nodes. If the tests may hang on the correct node and no run
-        on it has ended, the next run is an additional run on the correct node. If a pending run were used instead,
-        tests could choose when this run takes place.
+        If the tests have rejected the correct node, they earn no points for rejecting broken nodes. Therefore, only the
+        remaining runs on the correct node are started after that. If the tests may hang on the correct node, and no run
+        on the correct node has ended, the next run is an additional run on this node. If a pending run were used
+        instead, tests could choose when this run takes place.
         """
         with self._lock:
             rights = [each for each in self.ended if not each.node]

@@ -1,11 +1,11 @@
 """Run a student's tests repeatedly: pytest and rclpy are imported once, and each run is a fork in a new sandbox cell.
 
 This file runs as a separate script, in a sandbox room. The session reads one line of JSON and the files of the package
-(a tar stream) from standard input, and writes READY to standard output as soon as it can run tests. Each request is a
-message on a Unix socket with three descriptors: the run's two pipes to the grader, and a socket for the result. On this
-socket, the session sends STARTED with a descriptor of the process that runs the tests (pidfd_open(2)). At the end, the
-session sends the exit code of pytest, the duration (s), the report's size, and the report. The session does not know
-whether a run uses the correct node or a broken one.
+(a tar stream) from standard input. As soon as the session can run tests, it writes READY to standard output. Each
+request is a message on a Unix socket with three descriptors: the run's two pipes to the grader, and a socket for the
+result. On this socket, the session sends STARTED with a descriptor of the process that runs the tests (pidfd_open(2)).
+At the end, the session sends the exit code of pytest, the duration (s), the report's size, and the report. The session
+does not know whether a run uses the correct node or a broken one.
 
 bubblewrap creates the cell, and a fork of the session enters it (grader.sandbox.entering). The session itself receives
 nothing from its runs: the fork reports to the grader, and ends together with its cell. Therefore, neither a cell nor

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
 MOST_CALLS, MOST_ALIKE = 1000, 200
 """The log keeps the first MOST_CALLS calls. After that, a call is kept only if the log contains fewer than MOST_ALIKE
-calls to services whose names end in the same word, such as the set_pen of every turtle."""
+similar calls. Similar calls are calls to services whose names end in the same word, such as the set_pen of every
+turtle."""
 
 
 class CallLog:

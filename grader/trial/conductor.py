@@ -4,10 +4,13 @@ This process runs in a room of the sandbox, and the student's node in a cell ins
 forks of fork servers (grader.trial.fork_server). Without a sandbox, both are new processes. The conductor exchanges
 JSON lines with the grader's own process over its standard streams. The first line of input describes the trial. The
 conductor sends {"ready": true} when the simulator and the launcher are ready. The second line of input specifies what
-to start, and the install tree follows this line. The last line of output is {"recording": {...}}, {"doubt": "...",
-"by_chance": false} if a trial with the other clock is needed, {"overwhelmed": "..."} if the node made the simulator
-fail, {"refused": "..."} if the machine refused something while the node was running, or {"fault": "..."} if the
-simulator failed for another reason.
+to start, and the install tree follows this line. The last line of output is one of these:
+
+- {"recording": {...}};
+- {"doubt": "...", "by_chance": false}: a trial with the other clock is needed;
+- {"overwhelmed": "..."}: the node made the simulator fail;
+- {"refused": "..."}: the machine refused something while the node was running;
+- {"fault": "..."}: the simulator failed for another reason.
 """
 
 from __future__ import annotations
@@ -52,17 +55,17 @@ trial."""
 REQUESTS_HZ = 500
 """If the simulator answers more requests from the node than this (Hz), the node caused all stalls, on any machine.
 
-When other programs keep the machine busy, CPU time alone does not show that the node is the cause, because the
-simulator and the node each get little of it. For comparison, a node that sends three requests per pose sends 190
-requests per second.
+CPU time alone does not show that the node is the cause if other programs keep the machine busy, because the simulator
+and the node then get little CPU time. For comparison, a node that sends three requests per pose sends 190 requests per
+second.
 """
 MESSAGES_HZ = 1000
 """If nodes other than the simulator send more messages than this (Hz), the node caused all stalls."""
 STARTED = 0.4
 STARTED_LEAST = 1.2
-"""The node caused all stalls if the processes that it started could use the whole machine. This is the case if,
-together, they were ready to run for at least the fraction STARTED of the time of all processors, and for at least
-STARTED_LEAST times the length of the trial. A single process cannot reach these limits.
+"""The node caused all stalls if the processes that it started could use the whole machine. This is the case if the
+total time for which these processes were ready to run reaches two limits: the fraction STARTED of the time of all
+processors, and STARTED_LEAST times the length of the trial. A single process cannot reach both limits.
 """
 SIMULATORS = ("/pose", "/color_sensor")
 """In each frame, the simulator publishes on topics whose names end with these strings, for each turtle."""

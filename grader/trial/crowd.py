@@ -13,8 +13,8 @@ STALL_S = 0.03
 """If the simulator or the node had to wait longer than this between two frames (s), arrival times are unreliable."""
 OWN_DOING = 0.5
 """If a node used a processor for at least this share of the time, it delayed itself, so the delay is not a stall. Work
-that the node causes in the simulator counts as work of the node: if the simulator answers thousands of calls, it is
-late, but not because of the machine.
+that the node causes in the simulator counts as work of the node. For example, the machine is not to blame if the
+simulator is late because it responds to thousands of calls.
 """
 SIMULATOR = 0.3
 """The share of a processor that the simulator may use for itself. In measurements, the simulator used a tenth of a
@@ -22,8 +22,8 @@ processor. CPU time beyond this share counts as work for the node."""
 OTHERS = 0.2
 """Other programs are considered to use the machine if they take at least this share of one processor."""
 WAITED = 0.05
-"""The machine is crowded if other programs use it and, in addition, the simulator and the node together wait for a
-processor for at least this share of the time."""
+"""The machine is crowded if other programs use it and the simulator and the node together wait for a processor for at
+least this share of the time."""
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
 
@@ -40,8 +40,8 @@ def is_machines(stalled_s: float, others_s: float) -> bool:
     """Return whether the machine can be at fault for stalls of this total length (s).
 
     A thread waits for a processor only while something else is using the processor. If the other programs used less CPU
-    time than the stalls lasted, the threads of the node delayed each other, for example in a node that publishes
-    without a pause.
+    time than the stalls lasted, the threads of the node delayed each other. This happens, for example, in a node that
+    publishes without a pause.
     """
     return others_s >= stalled_s
 

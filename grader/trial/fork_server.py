@@ -1,9 +1,9 @@
 """Fork conductors or nodes from a process that has already imported rclpy, so that a trial need not import it.
 
 A grader has two fork servers: one forks the conductors of its trials, and the other forks the nodes
-(grader.trial.launcher). They are separate, because the conductor reads the messages of a student's node, which must not
-be able to find out the memory layout of the conductor. A server has no data about the trials. Its forks enter the
-sandbox before they read anything, and student code never runs outside the sandbox.
+(grader.trial.launcher). They are separate, because a conductor reads the messages of a student's node, and the node
+must not be able to find out the memory layout of the conductor. A server has no data about the trials. Its forks enter
+the sandbox before they read anything, and student code never runs outside the sandbox.
 
 The server runs outside the sandbox. It reads requests from the grader on a socket, each with descriptors:
 

@@ -40,7 +40,7 @@ WAKE_S = 1.0
 reacts."""
 MOST_CPU = 2.0
 """If the CPU time of a node exceeds this multiple of the trial's duration, the node would also be too slow in wall
-time, so its result must come from a trial in wall time."""
+time. Therefore, its result must come from a trial in wall time."""
 GRAPH_EVERY = 31
 """The number of frames between two checks of the graph and of the DDS events (half a second)."""
 OWN_EVERY = 5

@@ -1,8 +1,8 @@
 """Choose random places for targets, which are turtles that a node must catch, nearest first.
 
-Places are drawn again until the order of the targets is unambiguous. A turtle that always goes to the nearest target
-must be able to reach them in only one order, and any other rule (by name, by the distance from the start) must give a
-different order.
+Places are drawn again until the order of the targets is unambiguous. If a turtle always goes to the nearest target,
+only one order must be possible. Any other rule (by name, by the distance from the start) must lead to a different
+order.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The address of the daemon for a user, a domain and a network.
+"""The address of the daemon, which depends on the user, the domain and the network.
 
 The socket is in a folder that only this user can access. The name of the socket depends on everything that determines
 which graph a node discovers.
