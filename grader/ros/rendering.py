@@ -35,7 +35,7 @@ def is_message(value: Any) -> bool:  # noqa: ANN401
 def plain(value: Any, form: Form | None = None, declared: str = "") -> Any:  # noqa: ANN401
     """Convert a message to dictionaries, lists, numbers and strings.
 
-    `declared` is the type of the field that contains the message.
+    `declared` is the type of the field that contains the value, if any.
     """
     form = form or Form()
     if is_message(value):

@@ -67,8 +67,8 @@ def why_impossible() -> str | None:
 def enter(holder: int, *, cell: bool) -> None:
     """Move this process into all namespaces of the process that this descriptor (pidfd_open(2)) refers to.
 
-    The pid namespace only applies to processes that are forked afterwards. The process must have only one thread. If it
-    belongs to root, it also leaves all supplementary groups. Afterwards, other processes of the user cannot inspect it.
+    The pid namespace only applies to processes that are forked afterwards. The process must have only one thread. A
+    process of root also leaves all supplementary groups. Afterwards, other processes of the user cannot inspect it.
 
     In a trial, the descriptor of a cell comes from a conductor, which may be under the control of a node. Therefore, if
     `cell` is true, the process with this descriptor must have namespaces that no process of a room has. The namespaces

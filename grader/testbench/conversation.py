@@ -81,7 +81,7 @@ class Conversation:
         return self._process is not None
 
     def passed(self) -> None:
-        """Close the ends for the session, which has received them."""
+        """Close the ends that the session has received."""
         self._childs.close()
 
     def result(self) -> Ended:

@@ -58,7 +58,7 @@ _MOST_REPORT = 64 * 1024
 
 
 class _Watcher:
-    """A pytest plugin that stores the results of the tests, and tells the grader whenever a test has ended."""
+    """A pytest plugin that stores the results of the tests, and reports to the grader whenever a test has ended."""
 
     def __init__(self) -> None:
         self.collected = 0

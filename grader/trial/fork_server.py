@@ -13,7 +13,7 @@ The server runs outside the sandbox. It reads requests from the grader on a sock
 - **node**: JSON with the control groups, the limits, the system call filter and the number of nodes. The descriptors
   are the socket on which the conductor requests nodes, and the socket for the result. For each node, the conductor
   sends only descriptors: a process in the node's cell, standard input, output and error, and the socket for the result.
-  The conductor sends them before it starts any node.
+  The conductor sends these descriptors before it starts any node.
 
 On the socket for the result, the server sends STARTED with a descriptor of the new process, and at the end STATUS. If
 the other end of this socket is closed, the process is killed.

@@ -1,4 +1,4 @@
-"""The time limit of a whole trial. Only a trial that would never end on its own should reach it."""
+"""The time limit of a whole trial. Only a trial that would never end on its own should reach this limit."""
 
 from __future__ import annotations
 

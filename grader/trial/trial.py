@@ -130,7 +130,7 @@ class Trial:
             self._ready = True
 
     def suspend(self) -> None:
-        """Suspend the simulator until the trial is used, since it uses 0.3 % of a core while it waits.
+        """Suspend the simulator until the trial is used, since a waiting simulator uses 0.3 % of a core.
 
         Any thread may call `suspend`. Without a sandbox, this method does nothing, because suspended processes would
         outlive a killed grader.

@@ -1,4 +1,4 @@
-"""The node that plays a bag. The node publishes the messages at their recorded rate."""
+"""The node that plays a bag. The node publishes the messages at the same intervals as in the recording."""
 
 from __future__ import annotations
 
