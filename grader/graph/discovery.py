@@ -114,7 +114,7 @@ def _remove(node: Node) -> None:
 
 
 def _leave_shared_memory_out(profile: Path) -> None:
-    """Set the environment variables for the Fast DDS profile.
+    """Set the environment variables so that Fast DDS uses this profile, without shared memory.
 
     The file loopback.xml explains why the nodes of `ros2` verbs do not use LOCALHOST with its shared memory.
     """

@@ -43,7 +43,7 @@ def has_package(name: str) -> bool:
 
 
 def contents(kind: str) -> dict[str, list[str]]:
-    """Return the lines of all resources of this kind (such as "rclcpp_components") by package, sorted by package."""
+    """Return the lines of the resource of this kind, such as "rclcpp_components", for each package that has one."""
     return {
         name: (prefix / _INDEX / kind / name).read_text("utf-8", "replace").splitlines()
         for name, prefix in _resources(kind).items()

@@ -54,7 +54,7 @@ def cell_user() -> Iterator[int | None]:
     try:
         file = os.open(_folder() / "users.lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
     except OSError as error:
-        message = f"The lock file of the sandboxes' user ids could not be opened: {error}."
+        message = f"The lock file for the user ids of sandboxes could not be opened: {error}."
         raise MachineError(message) from error
     try:
         # Start at a random id, so that a new cell rarely gets the id of a cell whose grader was just killed.

@@ -3,7 +3,7 @@
 The limits apply to wall time. They do not include the time for which the threads of the run, or the thread that
 responds to their requests, waited for a processor. The CPU time of all processes of the run together has the same
 limit, so that a run gains no time by keeping the processors busy itself. A run that can never continue is recognized
-earlier: each of its threads is waiting, without a time limit, for another thread of the same process.
+earlier, since each of its threads is waiting, without a time limit, for another thread of the same process.
 """
 
 from __future__ import annotations

@@ -55,9 +55,9 @@ trial."""
 REQUESTS_HZ = 500
 """If the simulator answers more requests from the node than this (Hz), the node caused all stalls, on any machine.
 
-CPU time alone does not show that the node is the cause if other programs keep the machine busy, because the simulator
-and the node then get little CPU time. For comparison, a node that sends three requests per pose sends 190 requests per
-second.
+If other programs keep the machine busy, the simulator and the node each get little CPU time. Therefore, CPU time alone
+does not show that the node is the cause. For comparison, a node that sends three requests per pose sends 190 requests
+per second.
 """
 MESSAGES_HZ = 1000
 """If nodes other than the simulator send more messages than this (Hz), the node caused all stalls."""

@@ -22,7 +22,7 @@ processor. CPU time beyond this share counts as work for the node."""
 OTHERS = 0.2
 """Other programs are considered to use the machine if they take at least this share of one processor."""
 WAITED = 0.05
-"""The machine is crowded if other programs use it and the simulator and the node together wait for a processor for at
+"""The machine is crowded if other programs use it, and the simulator and the node together wait for a processor for at
 least this share of the time."""
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 

@@ -48,7 +48,7 @@ NODES_SOCKET = 3
 MOST_REQUEST = 64 * 1024
 """The maximum size of a request (bytes)."""
 CONDUCTORS, NODES = 6, 5
-"""The number of descriptors that are sent with the request for a conductor, and with the cell of a node."""
+"""The numbers of descriptors that are sent to request a conductor, and to request a node."""
 CELLS_USER = 1000
 """The user id of the processes in a cell (bubblewrap.cell)."""
 _AHEAD = ("grader.trial.conductor", "grader.trial.simulated", "grader.trial.wall", "grader.trial.without_node")

@@ -30,8 +30,7 @@ if TYPE_CHECKING:
 
 
 def to_json(recording: Recording, *, messages: bool = True) -> dict[str, Any]:
-    """Convert a recording to plain data. Without `messages`, leave out the contents of the messages, which are in a
-    bag."""
+    """Convert a recording to plain data. Without `messages`, leave out the message contents, which are in a bag."""
     frames = {name: getattr(recording.frames, name).tolist() for name in Frames.__dataclass_fields__}
     return _to_json(recording, frames, messages=messages)
 
