@@ -1,4 +1,4 @@
-"""Completers for the Tab key: names in the running graph, and names of installed packages and types."""
+"""Completers for the Tab key: names in the graph, and names of installed packages and types."""
 
 from __future__ import annotations
 

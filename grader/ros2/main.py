@@ -1,6 +1,6 @@
 """The command `ros2`: run the `ros2` of a sourced ROS 2 if there is one, and otherwise one of our verbs.
 
-This module imports few modules, so that it starts quickly. A verb imports parts of rclpy only when it runs.
+This module imports few modules, so that the command starts quickly. A verb imports parts of rclpy only when it runs.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Read bags in all storage formats, recorded by rosbag2 or by the course's `ros2 bag`."""
+"""Read bags that rosbag2 or the course's `ros2 bag` recorded, in any storage format."""
 
 from __future__ import annotations
 
