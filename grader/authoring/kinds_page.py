@@ -53,7 +53,7 @@ HEAD = """\
 
 Every `[[check]]` in `exercise.toml` has a `kind`. This page lists all kinds with their parameters.
 [authors.md](authors.md#exercisetoml) lists the keys that every check has: `id`, `kind`, `points`, `needs`, `title`,
-`trial` and `hidden`. The name of a parameter ends with its unit.
+`trial` and `hidden`. If a parameter has a unit, its name ends with the unit.
 """
 
 
@@ -99,7 +99,7 @@ def _examples() -> dict[str, tuple[str, CheckSpec]]:
 
 
 def _section(kind: Kind[Any], step: str, spec: CheckSpec) -> str:
-    advice = " This is advice: it is worth 0 points, and a run can pass without it." if kind.advice else ""
+    advice = " This is advice: it is worth 0 points, and a submission can pass without it." if kind.advice else ""
     lines = [f"### {kind.name}", "", f"{kind.about}{advice}", "", f"Default title: *{kind.title}*", ""]
     if kind.parameters():
         lines += ["| parameter | unit | default | allowed | meaning |", "| --- | --- | --- | --- | --- |"]

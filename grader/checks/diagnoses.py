@@ -145,7 +145,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "wrong-position": "the logged position is wrong",
         "distance-zero": "the logged distance stays 0",
         "distance-from-start": "the distance is the straight line to the start instead of the length of the trajectory",
-        "distance-by-chords": "the distance adds one straight line per second instead of every small step",
+        "distance-by-chords": "the distance is the sum of one straight line per second instead of all small steps",
         "distance-from-zero": "the distance includes the step from x=0 y=0 to the first position",
         "wrong-distance": "the logged distance is wrong",
     },

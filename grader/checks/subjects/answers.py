@@ -269,7 +269,7 @@ ANSWERS = Kind(
     "answers.toml can be read",
     NoParams,
     answers,
-    about="`answers.toml` exists, is valid TOML, and answers only questions of the exercise.",
+    about="`answers.toml` exists, is valid TOML, and contains answers only to questions of the exercise.",
 )
 TEXT = Kind(
     "answer_text", "source", "The answer is right", OneOf, answer_text, about="The answer is one of the given strings."

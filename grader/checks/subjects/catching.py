@@ -267,5 +267,5 @@ WAITS_FOR_POSE = Kind(
     NoParams,
     waits_for_pose,
     about="Before the first pose of turtle1, which the simulator publishes at `pose_from_s`, the node sends turtle1 no "
-    "velocity command except zeros.",
+    "velocity commands, or only zeros.",
 )

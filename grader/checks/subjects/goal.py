@@ -27,8 +27,8 @@ STROKE_M = 0.3
 class Goal:
     """The position of the goal (m), and the largest allowed distance (m) between the turtle and the goal at the end."""
 
-    x_m: float = number(about="x of the goal.")
-    y_m: float = number(about="y of the goal.")
+    x_m: float = number(about="The x coordinate of the goal.")
+    y_m: float = number(about="The y coordinate of the goal.")
     tolerance_m: float = number(0.1, above=0, about="The maximum distance from the goal at the end.")
 
 

@@ -38,7 +38,9 @@ class CallsService:
     """A call to a simulator service with these fields. `after` is the name of a service that must be called first."""
 
     service: str = string("the full name of a service", start="/", about="The name of the service.")
-    fields: tuple[tuple[str, Any], ...] = table(about="The relevant fields of the request, with their values.")
+    fields: tuple[tuple[str, Any], ...] = table(
+        about="The fields of the request that are compared, with the required values."
+    )
     after: str = string(
         "the full name of a service",
         default=" ",
@@ -112,7 +114,9 @@ class AnswersCall:
         1, at_least=1, about="The number of the judged call, counted from 1 among the trial's calls to this service."
     )
     within_s: float = number(1.0, above=0, about="The maximum time until the response.")
-    fields: tuple[tuple[str, Any], ...] = table(about="The relevant fields of the response, with their values.")
+    fields: tuple[tuple[str, Any], ...] = table(
+        about="The fields of the response that are compared, with the required values."
+    )
 
 
 def answers_call(evidence: Evidence, params: AnswersCall) -> Finding:

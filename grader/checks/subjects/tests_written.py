@@ -182,8 +182,8 @@ STEADY = Kind(
     "The tests do not depend on chance",
     Steady,
     steady,
-    about="The test files call none of the given functions, under any name, and contain no loop that runs for "
-    "a fixed time.",
+    about="The test files call none of the given functions, not even under another name, and contain no loop that runs "
+    "for a fixed time.",
 )
 ASSERTS = Kind(
     "tests_assert",

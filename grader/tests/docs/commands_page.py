@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 PAGE = ROOT / "docs" / "commands.md"
 HEAD = """# All commands
 
-This page is generated from the help of the commands. `COMMAND --help` lists all options, and the Tab key completes
-commands and options.
+This page is generated from the help texts of the commands. `COMMAND --help` lists all options, and the Tab key
+completes commands and options. `grader --help` also lists the commands for authors and for setting up your machine, and
+`ros2 --help` also lists the commands that no lesson needs.
 
 ## In each new terminal
 
