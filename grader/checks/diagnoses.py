@@ -110,7 +110,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "numbers-unreadable": "the file with the student's numbers cannot be read",
         "own-number-missing": "a module does not have one of the student's numbers",
         "one-lobe": "the figure eight has only one lobe",
-        "wrong-side-first": "the first lobe goes to the wrong side",
+        "wrong-side-first": "the first lobe is on the wrong side",
         "lobe-not-round": "a lobe of the figure eight is not round",
         "lobe-radius": "a lobe of the figure eight has the wrong radius",
         "lobe-angle": "a lobe of the figure eight is not closed, or is too long",

@@ -104,7 +104,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "attribute-misspelt": "the name of an attribute or method is almost right",
         "attribute-missing": "the attribute or method does not exist",
         "attribute-too-early": "an attribute is used before it is assigned",
-        "message-field": "a field is used that the message does not have",
+        "message-field": "the code uses a field that the message does not have",
         "method-outside-class": "a method is not indented, so it is outside the class",
         "method-in-method": "a method is indented too far, so it is inside another method",
         "name-used-twice": "an attribute has the same name as a method and hides it",

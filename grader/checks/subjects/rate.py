@@ -52,9 +52,9 @@ class Rate:
 
     rate_hz: float = number(above=0, at_most=1000, about="The mean rate, from the first to the last arrival.")
     tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error of the mean rate.")
-    min_interval_s: float = number(at_least=0, about="The shortest interval between two arrivals.")
+    min_interval_s: float = number(at_least=0, about="The shortest allowed interval between two arrivals.")
     max_interval_s: float = number(
-        above=0, about="The longest interval between two arrivals, and from the last arrival to the end."
+        above=0, about="The longest allowed interval between two arrivals, and from the last arrival to the end."
     )
     first_within_s: float = number(3.0, above=0, about="The maximum time from the start to the first arrival.")
 

@@ -40,7 +40,9 @@ class Square:
 
     side_m: float = number(above=0, at_most=5, about="The length of a side.")
     side_tolerance_m: float = number(0.15, above=0, about="The maximum error of the length of a side.")
-    corner_tolerance_deg: float = number(7.0, above=0, about="The maximum difference between a corner and 90 degrees.")
+    corner_tolerance_deg: float = number(
+        7.0, above=0, about="The maximum difference between the angle of a corner and 90 degrees."
+    )
     closing_m: float = number(0.4, above=0, about="The maximum distance from the start to the end of the fourth side.")
     direction: str = choice("counter-clockwise", "clockwise", "either", about="The direction of the turn.")
 

@@ -36,12 +36,12 @@ Six = tuple[float, ...]
 class Values:
     """The values that each command must have. Fields that are not in the table must be 0."""
 
-    linear_x_m_s: float = number(0.0, about="linear.x of each command.")
-    linear_y_m_s: float = number(0.0, about="linear.y of each command.")
-    linear_z_m_s: float = number(0.0, about="linear.z of each command.")
-    angular_x_rad_s: float = number(0.0, about="angular.x of each command.")
-    angular_y_rad_s: float = number(0.0, about="angular.y of each command.")
-    angular_z_rad_s: float = number(0.0, about="angular.z of each command.")
+    linear_x_m_s: float = number(0.0, about="The value of linear.x in each command.")
+    linear_y_m_s: float = number(0.0, about="The value of linear.y in each command.")
+    linear_z_m_s: float = number(0.0, about="The value of linear.z in each command.")
+    angular_x_rad_s: float = number(0.0, about="The value of angular.x in each command.")
+    angular_y_rad_s: float = number(0.0, about="The value of angular.y in each command.")
+    angular_z_rad_s: float = number(0.0, about="The value of angular.z in each command.")
     linear_tolerance_m_s: float = number(1e-6, above=0, about="The maximum error of a linear value.")
     angular_tolerance_rad_s: float = number(1e-6, above=0, about="The maximum error of an angular value.")
 
