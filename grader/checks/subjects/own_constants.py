@@ -120,7 +120,7 @@ CONSTANTS = Kind(
     own_constants,
     about=(
         "The constants of a module have the given values, which can be the student's own numbers, and some code uses "
-        "the constants. The grader does not run the file, so it accepts a value that it cannot compute from the source. "
-        "It also accepts code that uses the number itself instead of the constant."
+        "the constants. The grader does not run the file, so it accepts a value that it cannot compute from the "
+        "source. It also accepts code that uses the number itself instead of the constant."
     ),
 )
