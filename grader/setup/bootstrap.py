@@ -96,7 +96,7 @@ def outdated(error: BaseException) -> Optional[str]:
     if not isinstance(error, ImportError) or stamp is None or stamp.digest == digest():
         return None
     again = f"cd {shlex.quote(str(ROOT))} && make demo"
-    return f"the course was changed ({error}) after its set-up. Set it up again: {again}"
+    return f"the course has changed since its set-up ({error}). Set it up again: {again}"
 
 
 def stands(stamp: Stamp, ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python]) -> bool:
@@ -202,7 +202,7 @@ def wait_for(lock: TextIO) -> None:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Update .venv. Return the exit code."""
+    """Create or update .venv. Return the exit code."""
     requested = read_arguments(arguments)
     ros = machine.sourced_ros(os.environ, VENV)
     problem = machine.platform_problem(platform.system(), platform.machine(), platform.libc_ver(), ros)

@@ -1,7 +1,8 @@
 """The last part of `make demo`: grade the solution of a step as a learner does, and print the times and the next steps.
 
-`python -m grader.setup.demo --since SECONDS`: SECONDS is the start of `make`, as a time in /proc/uptime, which does not
-change if somebody sets the clock. The times of the set-up are printed only if this run of `make` did the set-up.
+`python -m grader.setup.demo --since SECONDS`: SECONDS is the uptime (/proc/uptime) at the start of `make`. Unlike the
+system time, the uptime does not change if somebody sets the clock. The times of the set-up are printed only if this run
+of `make` did the set-up.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ STAGES = {
 def main(arguments: list[str] | None = None) -> int:
     """Grade the solution of step 03, or the starting point if there is no solution. Return the exit code."""
     parser = argparse.ArgumentParser(description="Grade the solution of a step and print what to type next.")
-    parser.add_argument("--since", type=float, default=uptime_s(), help="when the command began (the uptime, s)")
+    parser.add_argument("--since", type=float, default=uptime_s(), help="the uptime (s) when `make` began")
     since = parser.parse_args(arguments).since
 
     image, report = FOLDER / f"{STEP}.png", FOLDER / f"{STEP}.json"
@@ -76,7 +77,7 @@ def uptime_s() -> float:
 def set_up_seconds(elapsed_s: float) -> list[tuple[str, float]]:
     """Return the duration of each stage of the set-up (s), or an empty list if an earlier command did the set-up.
 
-    `elapsed_s` is the time since this command began.
+    `elapsed_s` is the time since `make` began.
     """
     stamp = read_stamp()
     if stamp is None or not 0 <= time.time() - STAMP.stat().st_mtime <= elapsed_s:

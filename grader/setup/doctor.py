@@ -53,7 +53,7 @@ NARROW = 60
 class Line:
     """The result of one test of the machine.
 
-    A line with the state `broken` means that the machine cannot grade. Other lines do not prevent grading.
+    A line with the state `broken` means that the machine cannot grade. Lines with other states do not prevent grading.
     """
 
     subject: str
@@ -110,7 +110,7 @@ def render(lines: Iterable[Line], console: Console) -> None:
 
 
 def look_at_system() -> Line:
-    """Return a line with the kernel, the machine and the distribution."""
+    """Return a line with the distribution, the kernel, the architecture and the number of cores."""
     observed = f"{_distribution()}, {platform.system()} on {platform.machine()}, {os.cpu_count()} cores"
     return Line("system", observed)
 
@@ -141,7 +141,7 @@ def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None)
         todo = f"source {quote(f'{stamp.ros}/setup.bash')}; or make demo, for the course's own ROS 2"
         yield Line("set-up", f"made for {made_for}, which is not sourced", "broken", todo)
     else:
-        observed = f"made for {made_for}, and {now} is sourced and used"
+        observed = f"made for {made_for}, but {now} is sourced and used"
         yield Line(
             "set-up",
             observed,
@@ -151,7 +151,7 @@ def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None)
 
 
 def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
-    """Yield lines about system programs and Python's headers, with one command that installs everything missing."""
+    """Yield lines about build tools and Python's headers, and one with the command that installs missing programs."""
     ros = machine.sourced_ros(env, bootstrap.VENV)
     needs = machine.missing_tools(env.get("PATH", ""), ros)
     headers = Path(sysconfig.get_path("include"), "Python.h").is_file()

@@ -119,7 +119,7 @@ def ascii_only(lines: str) -> str:
     """Return the lines of a .pth file in ASCII, without changing their meaning.
 
     With LC_ALL=C, or with a locale that the machine does not have, Python 3.10 to 3.12 reads .pth files as ASCII. If
-    the path of the course has other characters, no interpreter of .venv would start.
+    the path of the course contained other characters, no interpreter of .venv would start.
     """
     return "".join(
         line if line.isascii() else f"import sys; sys.path.append({line.rstrip()!a})\n"
@@ -141,7 +141,7 @@ def numpy_is_missing() -> bool:
 
 
 def _pip(requirements: Path) -> None:
-    """Run `pip install` with the lock file.
+    """Run `pip install` with a file of requirements and hashes.
 
     Raises:
         MachineError: pip failed.
@@ -162,7 +162,7 @@ def _uv(*arguments: str) -> float | None:
     """Run `uv pip install`. Return the duration of the download (s), or None if uv failed and pip may succeed.
 
     Raises:
-        MachineError: the disk is full or not writable.
+        MachineError: pip would fail for the same reason, such as a full disk.
     """
     command = uv("pip", "install", "--python", sys.executable, *arguments)
     if not _may_write(setup_errors.cache()):

@@ -1,4 +1,4 @@
-"""The environment of the installers venv, pip and uv, with only the user's settings for the network and the caches.
+"""The environment of the installers venv, pip and uv: only the settings for the network and the caches are kept.
 
 Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
 of Python 3.6.

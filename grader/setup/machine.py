@@ -1,4 +1,4 @@
-"""The properties of this machine: Pythons, a sourced ROS 2, system programs, and messages about missing programs.
+"""The properties of this machine (Pythons, a sourced ROS 2, system programs), and messages about missing programs.
 
 The set-up runs this module with any `python3`, before anything is installed. With an old Python, users must get a
 message instead of a SyntaxError. Therefore, this module and bootstrap.py use only the syntax of Python 3.6 and the
@@ -122,7 +122,7 @@ def platform_problem(system: str, machine: str, libc: Tuple[str, str], ros: Opti
 
 
 def is_offline(env: Mapping[str, str], root: Path = Path("/")) -> bool:
-    """Return whether no packages can be downloaded, because the machine has no route to a network.
+    """Return whether the machine has no route to a network, so that no packages can be downloaded.
 
     The result is False if a mirror, a proxy or a folder of wheels is configured. `root` is the folder that contains
     proc/.
@@ -213,7 +213,7 @@ def choose_python(
 
 
 def missing_tools(path: str, ros: Optional[SourcedRos]) -> List[Need]:
-    """Return the programs that the system lacks. A compiler is needed only if turtlesim is not installed."""
+    """Return the missing programs. A compiler, cmake and make are needed only if the sourced ROS 2 has no turtlesim."""
     tools = {"bwrap": Need("bubblewrap, the sandbox that student code runs in", "bubblewrap", NO_SANDBOX)}
     limits = Need("setpriv, prlimit and choom, which set the sandbox's limits", "util-linux")
     tools.update({"setpriv": limits, "prlimit": limits, "choom": limits})

@@ -55,7 +55,7 @@ def _groups(needs: Sequence[package_managers.Need]) -> List[List[package_manager
 
 
 def _rights(path: str) -> Optional[List[str]]:
-    """Return the prefix of a command that needs root: empty for root, otherwise sudo. Return None without sudo."""
+    """Return the prefix of a command that needs root: empty for root, otherwise sudo, or None if there is no sudo."""
     if os.getuid() == 0:
         return []
     sudo = package_managers.find_program("sudo", path)

@@ -37,7 +37,8 @@ _OFFLINE = re.compile(
     re.IGNORECASE,
 )
 _NO_LINK = re.compile(r"\[Errno (?:1|30|38|95)\] [^\n]*'lib' -> '")
-"""The message of venv on a file system without symbolic links. VirtualBox reports a read-only file system."""
+"""Matches the error message of venv on a file system without symbolic links. In a folder that VirtualBox shares, the
+message is that the file system is read-only."""
 _CERTIFICATE = re.compile("certificate (?:(?:is )?not (?:yet valid|valid yet)|(?:has )?expired)")
 _INDEXES = re.compile(r"^Looking in indexes: (.+)$", re.MULTILINE)
 _WRITE = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
@@ -90,9 +91,9 @@ def of_output(said: str, folder: Path) -> Optional[str]:
         return _of_number(errno.ENOSPC, _fullest([folder, Path(tempfile.gettempdir()), cache()]) or folder)
     if _NO_LINK.search(said):
         return (
-            f"The file system of {folder} has no symbolic links, which Python needs there (as on a USB stick or in a "
-            "folder that a virtual machine shares): copy the course's folder to another file system, such as your "
-            "home, and type the same command there."
+            f"The file system of {folder} does not support symbolic links, which Python needs there. This is common on "
+            "USB sticks and in folders that a virtual machine shares. Copy the course's folder to another file system, "
+            "such as your home, and type the same command there."
         )
     if number in _WRITE or number in (errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN):
         return _of_number(number, folder)

@@ -1,4 +1,4 @@
-"""The events of an action goal, which the action rotate_absolute reports to the owner of the simulator."""
+"""The events that the action rotate_absolute reports to the owner of the simulator."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ What = Literal["accepted", "cancel requested", "result requested", "succeeded", 
 
 @dataclass(frozen=True)
 class GoalEvent:
-    """An event of the goal with this id. turtlesim accepts every goal.
+    """An event of the goal `goal_id`. There is no event for a rejected goal, because turtlesim accepts every goal.
 
     `content` is the Goal if the goal was accepted, the Result if the goal has ended, and None otherwise.
     """

@@ -42,7 +42,7 @@ class Hooks:
     when a client calls a service ("spawn"), sends a goal ("rotate_absolute") or sets a parameter ("set_background" if
     only colours are set, otherwise "set_parameters"). `on_call(service, type, request, response, waited_s)` is called
     when the response to a call is sent, `waited_s` (s) after the call arrived. `on_goal(event)` is called for each
-    event of an action goal. `late` delays the responses if it is not None.
+    event of an action goal. If `late` is not None, it delays the responses.
     """
 
     on_command: Callable[[str, bytes, Any], object]
@@ -68,7 +68,7 @@ class Hooks:
 
 
 class TurtleInterface:
-    """The topics, services and action of the turtle called `name`. After a reset, they belong to the new turtle1."""
+    """The topics, services and action of the turtle called `name`. Those of turtle1 remain after a reset."""
 
     def __init__(
         self, node: Node, name: str, world: World, hooks: Hooks, pose_every: int = 1, pose_from_s: float = 0.0
@@ -108,16 +108,16 @@ class TurtleInterface:
 
     @property
     def idle(self) -> bool:
-        """Return whether no client is waiting for a rotation to end."""
+        """Return whether no goal of the action is active."""
         return self._rotate.idle
 
     def before_frame(self) -> None:
-        """Pass client requests on to the turtle before it moves."""
+        """Pass cancel requests on to the turtle before it moves."""
         if not self._rotate.idle:
             self._rotate.before_frame()
 
     def after_frame(self, now_s: float) -> None:
-        """Publish the turtle's pose and colour at `now_s` (s), and the feedback on its rotation."""
+        """Publish the pose and the colour if they are due at `now_s` (s). Send feedback on rotations, and results."""
         if not self._rotate.idle:
             self._rotate.after_frame()
         turtle = self._turtle()
@@ -203,9 +203,9 @@ class TurtleInterface:
 
 
 class _Sender:
-    """A publisher that serializes a message only if the message has changed.
+    """A publisher with its last message, which is serialized only when it changes.
 
-    An idle turtle always sends the same message.
+    A turtle that stands still always sends the same message.
     """
 
     def __init__(self, node: Node, message_type: type, topic: str, parts: ExitStack) -> None:

@@ -1,4 +1,4 @@
-"""`python -m grader.turtlesim.live`: run turtlesim in wall time for another process that shows its pictures.
+"""`python -m grader.turtlesim.live`: run turtlesim in wall time, and send pictures to another process.
 
 The program writes each new picture to standard output: four bytes with the length (big endian), followed by a PNG
 image. A slow reader misses some pictures, but never the last picture. The program exits when standard input is closed.
@@ -84,7 +84,7 @@ class _Screen:
         self._frames += 1
 
     def close(self) -> None:
-        """Write the last picture, and wait up to 2 s until the reader has read it."""
+        """Write the last picture, and wait up to 2 s for the reader to read it."""
         self._show()
         with self._ready:
             self._closed = True

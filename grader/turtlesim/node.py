@@ -38,7 +38,7 @@ MOST_NAME = 300
 """The maximum length of a name in a message. Any node can send any name, even with terminal control sequences."""
 
 _FRAMES_TO_LEAVE = 4
-"""The number of frames for which the entities of a killed turtle are kept, so that earlier requests get a response."""
+"""The number of frames for which the entities of a killed turtle are kept, so that earlier requests get responses."""
 
 
 def _nobody(*_: object) -> None:
@@ -46,7 +46,7 @@ def _nobody(*_: object) -> None:
 
 
 class TurtlesimNode(Node):
-    """The topics, services, actions and parameters of turtlesim, for a `World`."""
+    """A node with the topics, services, actions and parameters of turtlesim. Its turtles are in a `World`."""
 
     def __init__(
         self,
@@ -65,9 +65,9 @@ class TurtlesimNode(Node):
     ) -> None:
         """Create the node. turtle1 starts at `start` (m, m, rad), also after a reset.
 
-        `Hooks` describes the callbacks. Pose and colour are published every `pose_every` frames, the pose of turtle1
-        from `pose_from_s` (s) on. The real turtlesim publishes both in each frame. Services respond `answers_after_s`
-        (s) late. The turtles draw on `canvas`.
+        `Hooks` describes the callbacks. Pose and colour are published every `pose_every` frames, but the pose of
+        turtle1 is not published before `pose_from_s` (s). The real turtlesim publishes both in each frame. Services
+        delay each response by `answers_after_s` (s). The turtles draw on `canvas`.
         """
         self._pose_every, self._pose_from_s = pose_every, pose_from_s
         self._late = LateAnswers(answers_after_s) if answers_after_s else None

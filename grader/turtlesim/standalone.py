@@ -71,7 +71,7 @@ class View(Protocol):
 
     @property
     def feed(self) -> Feed:
-        """The callbacks of the view."""
+        """The callbacks and the canvas of the view."""
 
     def after_frame(self, node: TurtlesimNode) -> None:
         """Show the state after a frame, and handle the requests of the view."""

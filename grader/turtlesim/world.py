@@ -30,7 +30,7 @@ class World:
     def new_name(self) -> str:
         """Return the next free name of the form turtleN.
 
-        A number that was used in such a name is not used again before the next reset.
+        Between two resets, this method never returns the same name twice.
         """
         return next(name for number in self._numbers if (name := f"turtle{number}") not in self.turtles)
 

@@ -1,4 +1,4 @@
-"""Connections to a page. Idle connections of other users of the machine do not displace the connections of the page."""
+"""Connections to a page. Other users of the machine cannot block the page by opening idle connections."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     import asyncio
 
 MOST = 200
-"""If there are more connections, the oldest connection without a request is closed. Each connection needs a file."""
+"""If there are more connections, the oldest idle connection is closed. Each connection uses a file descriptor."""
 
 
 class Connection(H11Protocol):
@@ -21,11 +21,14 @@ class Connection(H11Protocol):
 
     @property
     def _waits(self) -> bool:
-        """Whether no complete request is waiting for its response."""
+        """Whether the connection is idle: each complete request on it has got its response."""
         return self.cycle is None or self.cycle.response_complete
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """Add the connection. uvicorn itself never closes a connection on which nothing arrives."""
+        """Add the connection, and close the oldest idle connection if there are too many.
+
+        uvicorn itself never closes a connection on which no request arrives.
+        """
         super().connection_made(transport)
         others = [each for each in self.connections if each is not self and not each.transport.is_closing()]
         alike = [each for each in others if isinstance(each, Connection)]

@@ -48,7 +48,7 @@ class Hands:
         self._drivers: set[object] = set()
 
     def receive(self, page: object, said: dict[str, Any]) -> bool:
-        """Handle a message from a page: held keys, a pressed key, or a button.
+        """Handle a message from a page: held keys, a pressed key, a button, or a request for log messages.
 
         Return whether any keys are held down.
         """

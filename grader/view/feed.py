@@ -24,16 +24,17 @@ if TYPE_CHECKING:
     from grader.turtlesim.turtle import Pen, Turtle
 
 EVERY_FRAMES = 2
-"""The number of frames between messages while something changes, for about 31 messages per second."""
+"""The number of frames between messages while something is changing, for about 31 messages per second."""
 SENT_EVERY_S = 0.25
-"""The interval between messages while nothing changes (s). With these messages, a view updates the rates and detects
-whether the simulator is running.
+"""The interval between messages while nothing is changing (s). With these messages, a view updates the rates and
+detects whether the simulator is still running.
 """
 MOST_LINES = 1500
-"""The maximum number of lines in a message. Each line has 60 bytes, so a message fits into the buffer of a socket."""
+"""The maximum number of lines in a message. A line takes about 90 bytes, so the message fits into a socket buffer."""
 MOST_RECEIVED, MOST_SENT = 64, 200
-"""The maximum numbers of topics in a message. 64 turtles have fewer topics, but a node can spawn and kill turtles
-without end while the view is busy, and each name can have 240 characters."""
+"""The maximum numbers of topics with commands, and of topics with published messages, in one message to the view. 64
+turtles have fewer topics, but a node can spawn and kill turtles without end while the view is busy, and each name can
+have 240 characters."""
 LARGEST = 1 << 20
 """The buffer size for receiving a message (bytes). No message is larger."""
 LARGEST_PICTURE = 100_000
@@ -61,7 +62,7 @@ class WatchedCanvas(Canvas):
 
 @dataclass
 class Received:
-    """The commands on a topic since the last message to the view: their number, and the time of the last one (s)."""
+    """The commands on a topic since the last message to the view: their number, and the last one with its time (s)."""
 
     count: int = 0
     last_s: float = 0.0

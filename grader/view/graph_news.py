@@ -31,7 +31,7 @@ class GraphNews:
         self._drawing: asyncio.Task[None] | None = None
 
     def look(self, system: System) -> None:
-        """Send the topics of this system to all pages, and its graph if the graph has changed."""
+        """Send the topics of this system to all pages, and also the graph if it has changed."""
         self._system = system
         if not self._hub.pages:
             return

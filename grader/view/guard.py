@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 NAMES = ("127.0.0.1", "localhost")
 """The host names that a request for this machine may contain. All ports are allowed, since ssh may forward another
-one."""
+port."""
 _HOST = re.compile(rf"({'|'.join(map(re.escape, NAMES))})(:\d+)?", re.ASCII)
 """Matches the host of a request. The content security policy of the response contains this host, so nothing else may
 be in it."""
@@ -32,7 +32,7 @@ def refusal(headers: Mapping[str, str], *, live: bool) -> str | None:
     """
     host = headers.get("host", "")
     if not _HOST.fullmatch(host):
-        return f"This page is only served to {' and '.join(NAMES)}."
+        return f"This page is served only at {' and '.join(NAMES)}."
     origin = headers.get("origin")
     if origin is None and live:
         return "The request has no Origin header: only the page is allowed to connect."
@@ -49,8 +49,8 @@ def admitted(token: str, shown: str) -> bool:
 class Door:
     """Admits a page that has the token or a code that is valid only once.
 
-    The browser that this process starts gets a code, because every user of the machine can read command lines. Another
-    user could be faster than the browser, so a code admits only programs of this user.
+    The browser that this process starts gets a code instead of the token, because every user of the machine can read
+    command lines. Another user could be faster than the browser, so a code admits only programs of this user.
     """
 
     def __init__(self, token: str) -> None:

@@ -66,8 +66,8 @@ def see_that_it_can_be_served(instead: str = "--view terminal works without it")
     missing = [name for name in _SERVED_WITH if find_spec(name) is None]
     if missing:
         message = (
-            f"the page needs {', '.join(missing)}, but this Python does not have it. `make demo` in the "
-            f"course's folder installs it; {instead}."
+            f"the page needs {', '.join(missing)}, which this Python does not have. `make demo` in the "
+            f"course's folder installs what is missing; {instead}."
         )
         raise MachineError(message)
 

@@ -48,8 +48,7 @@ class Page:
     async def serve(self, place: Place) -> bool:
         """Serve until the simulator exits or Ctrl-C is pressed. Return True.
 
-        Without a simulator, and unless `stays` is true, return False immediately if the page cannot be opened in a
-        browser.
+        Return False immediately if there is no simulator, `stays` is false, and the page cannot be opened in a browser.
         """
         self._ended = ended_by_signals()
         loop = asyncio.get_running_loop()

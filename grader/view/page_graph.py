@@ -18,7 +18,8 @@ up."""
 
 
 MOST_ARROWS = 2000
-"""Graphviz needs a second for this number of arrows, and the time grows with the square of the number."""
+"""The maximum number of arrows, of nodes and of topics. Graphviz needs a second for this number of arrows, and the time
+grows with the square of the number."""
 NOTHING: dict[str, Any] = {"width": 0.0, "height": 0.0, "nodes": [], "arrows": []}
 """The layout of a graph without nodes."""
 
@@ -30,7 +31,7 @@ def laid_out(drawn: Picture) -> dict[str, Any]:
     of an arrow are the start of a Bezier curve and three points for each segment. `tip` is the tip of the arrowhead.
 
     Raises:
-        MachineError: Graphviz cannot draw, or the graph is too large. Any program of the domain can create topics.
+        MachineError: Graphviz cannot draw, or the graph is too large (any program in the domain can create topics).
     """
     arrows = sum(len(topic.publishers) + len(topic.subscribers) for topic in drawn.topics)
     if max(arrows, len(drawn.nodes), len(drawn.topics)) > MOST_ARROWS:

@@ -85,7 +85,7 @@ def application(
 
 
 class Guard:
-    """Wraps an application: rejects forbidden requests, and adds the policy to every response."""
+    """Wraps an application: rejects forbidden requests, and adds security headers to the application's responses."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app

@@ -1,4 +1,4 @@
-"""Find the user at the other end of a connection from this machine in /proc/net/tcp and tcp6 (proc(5))."""
+"""Use /proc/net/tcp and tcp6 (proc(5)) to find the user who opened a connection from this machine."""
 
 from __future__ import annotations
 

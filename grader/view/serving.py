@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grader.view.hub import Hub
 
 _RECONNECTS_S = 2.0
-"""The maximum time to wait until a tab from an earlier view has reconnected (s)."""
+"""The maximum time to wait for a tab from an earlier view to reconnect (s)."""
 _TIMES = 20
 _SETTINGS: dict[str, Any] = {
     "log_level": "warning",

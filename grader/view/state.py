@@ -12,7 +12,7 @@ from grader.view.trail import Stroke, Trail, as_lists
 
 Rgb = tuple[int, int, int]
 MOST_RATES = 1000
-"""If there are more rates, those of silent topics are removed. A node can spawn and kill turtles without end."""
+"""If there are more rates, those of silent topics are removed: a node can spawn and kill turtles without end."""
 
 
 class TurtleState(NamedTuple):

@@ -54,7 +54,7 @@ class System:
 
 
 class Ears:
-    """A thread that spins `node`. The thread reads the graph at regular intervals and passes the graph to `tell`.
+    """A thread that spins `node`. At regular intervals, the thread passes the graph and the rates to `tell`.
 
     `known` returns the topics that are already counted by the simulator. `looking` returns whether a page shows the
     rates.

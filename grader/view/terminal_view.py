@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 
 FRAME_S = 0.066
 FIRST_HOLD_S = 0.6
-"""The time until a held key begins to repeat (s), which is half a second on most machines."""
+"""After its first press, a key counts as held for this time (s). On most machines, a held key repeats after 0.5 s."""
 HOLD_S = 0.25
-"""The interval between two repeats of a held key with the slowest settings (s)."""
+"""After each repeat, a key counts as held for this time (s): the interval between repeats with the slowest settings."""
 _LINES = 3
 
 

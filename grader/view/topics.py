@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from grader.view.system import System
 
 VIEWS = "/_view_"
-"""The prefix of the hidden nodes that views create."""
+"""The prefix of the names of the hidden nodes that views create."""
 
 
 def rows(system: System, state: State, show: Show) -> list[dict[str, object]]:

@@ -88,7 +88,7 @@ class Trail:
     def draw(self, lines: Iterable[Line]) -> list[Stroke]:
         """Add lines, and return the lines as strokes.
 
-        A line that starts at the end of a stroke continues that stroke.
+        A line that starts at the end of a stroke, with the same pen, continues that stroke.
         """
         new: dict[int, Stroke] = {}
         for x0, y0, x1, y1, red, green, blue, width in lines:

@@ -198,7 +198,7 @@ NO_GOAL_AFTER = Kind(
 SAYS_WHETHER_ACTIVE = Kind(
     "says_whether_active",
     "trial",
-    "The response says whether there was a goal",
+    "The response shows whether there was a goal",
     SaysWhetherActive,
     says_whether_active,
     about="In the response to each `[[trial.call]]` to the service, `success` shows whether a goal of "

@@ -264,7 +264,7 @@ def test_a_failed_import_after_an_update_names_the_command_that_sets_up_again(co
     assert bootstrap.outdated(error) is None, "the packages are those of the lock file"
     (course.root / "requirements.lock").write_text("newer")
     again = f"Set it up again: cd {course.root} && make demo"
-    assert bootstrap.outdated(error) == f"the course was changed (No module named 'new') after its set-up. {again}"
+    assert bootstrap.outdated(error) == f"the course has changed since its set-up (No module named 'new'). {again}"
     assert bootstrap.outdated(ValueError()) is None
 
 

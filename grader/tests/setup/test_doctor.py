@@ -118,7 +118,7 @@ def test_an_environment_made_for_another_ros_than_the_sourced_one_is_advice(bare
     bare.setattr(machine, "sourced_ros", lambda _env, _ours: JAZZY)
     (line,) = doctor.look_at_set_up({}, OURS)
     assert line.state == "advice"
-    assert line.observed == "made for the course's own ROS 2, and /opt/ros/jazzy is sourced and used"
+    assert line.observed == "made for the course's own ROS 2, but /opt/ros/jazzy is sourced and used"
 
 
 def test_an_environment_whose_ros_is_not_sourced_is_broken(bare: pytest.MonkeyPatch) -> None:

@@ -29,8 +29,8 @@ HERE = Path("/nowhere/course/.venv")
         ("certificate verify failed: certificate has expired (_ssl.c:992)", "If this time is wrong, set the clock"),
         ("certificate not valid yet: verification time 978307200 (UNIX)", "If this time is wrong, set the clock"),
         ("certificate expired: verification time 2682374400 (UNIX)", "If this time is wrong, set the clock"),
-        ("Error: [Errno 38] Function not implemented: 'lib' -> '/x/.venv/lib64'", "has no symbolic links"),
-        ("Error: [Errno 30] Read-only file system: 'lib' -> '/x/.venv/lib64'", "has no symbolic links"),
+        ("Error: [Errno 38] Function not implemented: 'lib' -> '/x/.venv/lib64'", "does not support symbolic links"),
+        ("Error: [Errno 30] Read-only file system: 'lib' -> '/x/.venv/lib64'", "does not support symbolic links"),
         ("BlockingIOError: [Errno 11] Resource temporarily unavailable", "cannot start more processes for you"),
     ],
 )

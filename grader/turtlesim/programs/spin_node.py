@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def run(make: Callable[[], Node]) -> int:
-    """Spin a node until Ctrl-C or SIGTERM, neither of which prints a traceback, and return the exit code."""
+    """Spin a node until Ctrl-C or SIGTERM, without printing a traceback, and return the exit code."""
     # Before this call, Ctrl-C terminates Python immediately. rclpy passes a signal on to the previous handler.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     with ExitStack() as stack:

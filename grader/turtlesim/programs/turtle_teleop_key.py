@@ -38,7 +38,7 @@ _NO_TERMINAL = (
     "ros2 run turtlesim turtle_teleop_key"
 )
 _DISCOVERY_S = 2.0
-"""The maximum time (s) that the discovery of a running turtlesim takes."""
+"""The node waits for the discovery of turtlesim until this time (s) after its start."""
 
 
 class Teleop(Node):

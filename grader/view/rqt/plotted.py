@@ -71,7 +71,7 @@ class Plotted:
                 self._node.destroy_subscription(self._topics.pop(topic).subscription)
 
     def look(self, observed: Observed) -> None:
-        """Subscribe to the topics of wanted fields that have appeared."""
+        """Subscribe to the topic of each wanted field as soon as the topic exists."""
         types = {end.topic: end.type for end in observed.ends if end.kind == "publisher"}
         for name, problem in list(self._wanted.items()):
             if problem:
@@ -88,7 +88,7 @@ class Plotted:
             self._new = {}
 
     def _begin(self, name: str, types: Mapping[str, str]) -> str:
-        """Subscribe to the topic of this field. Return the reason if the subscription is not possible yet, or ""."""
+        """Subscribe to the topic of this field. Return "", or the reason why the subscription is not possible yet."""
         topic = topic_of(name, types)
         if topic is None:
             return "Waiting for this topic."

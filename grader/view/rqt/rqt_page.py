@@ -60,7 +60,7 @@ class RqtPage:
     async def serve(self, place: Place, *, stays: bool) -> bool:
         """Serve until Ctrl-C. Return True.
 
-        Unless `stays` is true, return False immediately if the page cannot be opened in a browser.
+        Return False immediately if `stays` is false and the page cannot be opened in a browser.
         """
         ended, loop = ended_by_signals(), asyncio.get_running_loop()
 

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 TIMEOUT_S = 5.0
-"""The maximum time for a service to respond (s)."""
+"""The maximum time for a service to appear and to respond (s)."""
 MOST_WAITING = 20
 """The maximum number of pending calls."""
 _EVERY_NODES = "rcl_interfaces/srv/"
-"""The parameter services, which every node has. These services are at the end of the list."""
+"""The beginning of the types of the parameter services, which every node has. These services are listed last."""
 
 Answer = dict[str, object]
 """The `id` of a call, whether there was a response (`ok`), and a `text`: the response as YAML, or the error message."""
@@ -63,7 +63,7 @@ class _Call:
 
 
 class ServiceCaller:
-    """Calls services in the thread of the node. `tell` is called with each response.
+    """Calls services in the thread of the node. `tell` is called with the response to each call, or with an error.
 
     `check` must be called several times per second.
     """
@@ -92,7 +92,7 @@ class ServiceCaller:
         self.check()
 
     def check(self) -> None:
-        """Send the calls whose service is ready, and pass the responses to `tell`."""
+        """Send the calls whose services are ready, and pass responses and time-outs to `tell`."""
         for each in list(self._waiting):
             if each.future is None and each.client.service_is_ready():
                 each.future = each.client.call_async(each.request)

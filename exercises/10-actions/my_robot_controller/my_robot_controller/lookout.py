@@ -51,7 +51,7 @@ class LookoutNode(Node):
         pass
 
     def stop(self, request, response):
-        # TODO 8: if there is a goal, cancel it, without waiting. The response says whether there was a goal.
+        # TODO 8: if there is a goal, cancel it, without waiting. The response shows whether there was a goal.
         return response
 
 

@@ -100,7 +100,7 @@ class LookoutNode(Node):
             self.goal.cancel_goal_async()
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 8: if there is a goal, cancel it, without waiting. The response says whether there was a goal.
+        # # TODO 8: if there is a goal, cancel it, without waiting. The response shows whether there was a goal.
         # END STARTER
         return response
 
