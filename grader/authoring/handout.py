@@ -1,4 +1,4 @@
-"""Create the repository for students: the course without solutions and without the tests of the solutions."""
+"""Create the repository for students: the course without the solutions, the tests and the benchmarks."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ Then, step by step:
 
     grader start 01      # puts the step's starting point into ~/ros2_ws
     grader watch         # a verdict after every save; press h for a hint
-    grader start next    # when the step has passed
+    grader start next    # when you have passed the step
 
 Or in notebooks: `make notebooks`, then `jupyter lab exercises`. More: [docs/learner.md](docs/learner.md).
 

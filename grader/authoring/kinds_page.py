@@ -99,7 +99,8 @@ def _examples() -> dict[str, tuple[str, CheckSpec]]:
 
 
 def _section(kind: Kind[Any], step: str, spec: CheckSpec) -> str:
-    advice = " This is advice: it is worth 0 points, and a submission can pass without it." if kind.advice else ""
+    note = " This is advice: it is worth 0 points, and a submission can pass without following it."
+    advice = note if kind.advice else ""
     lines = [f"### {kind.name}", "", f"{kind.about}{advice}", "", f"Default title: *{kind.title}*", ""]
     if kind.parameters():
         lines += ["| parameter | unit | default | allowed | meaning |", "| --- | --- | --- | --- | --- |"]

@@ -82,7 +82,7 @@ class Bench:
         return self.bare[-1]
 
     def in_f(self, measure: Callable[[], Cost]) -> InF:
-        """Measure the reference F and `measure` alternately. Return the medians of the ratios."""
+        """Measure F and call `measure` alternately. Return the medians of the ratios."""
         pairs = [(self.f(), measure()) for _ in range(self._times)]
         return InF(
             statistics.median(one.wall_s / f.wall_s for f, one in pairs),

@@ -1,4 +1,4 @@
-"""Measure the cost of autograding a notebook relative to its parts, and the cost of a class relative to nbgrader alone.
+"""Measure how long it takes to autograde a notebook and a class, relative to nbgrader and `grader check` alone.
 
     python -m grader.benchmarks.notebooks [--repeat N] [--class N]
 

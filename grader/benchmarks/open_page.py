@@ -1,4 +1,4 @@
-"""Measure `grader open`: the time from save to verdict relative to `grader watch`, and the page's size and idle CPU.
+"""Measure `grader open`: the time from save to verdict relative to `grader watch`, the page's size and idle CPU time.
 
     python -m grader.benchmarks.open_page [--times 5] [--idle 30]
 
@@ -37,7 +37,7 @@ AIM_READY_S = 1.0
 AIM_IDLE = 0.01
 """The target for the share of one core that an idle page uses."""
 _DRIVER = ("node", "node-MainThread")
-"""The names of the process of Playwright's driver. A newer Node.js names its main thread."""
+"""The possible names of the process of Playwright's driver. The name depends on the version of Node.js."""
 _REST_S = 2.0
 _IDLE_S = 0.1
 """The processes are idle if they use at most this CPU time (s) within _REST_S."""

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 ENDINGS = (".zip", ".tar.gz", ".tgz", ".tar")
 OTHER_ENDINGS = (".7z", ".rar", ".tar.xz", ".tar.bz2", ".tar.zst", ".gz", ".xz", ".bz2")
-"""Archive formats that are not supported, although students hand them in."""
+"""Archive formats that students hand in, but that are not supported."""
 EVERY_ENDING = (*ENDINGS, *OTHER_ENDINGS)
 OF_THE_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS)
 

@@ -20,18 +20,17 @@ if TYPE_CHECKING:
 TRIES = 2
 """How many times a submission may kill its worker or end with an `error` before its result is final."""
 LOOK_S = 0.5
-"""The maximum time to wait for events of the engine (s)."""
+"""The maximum time to wait for events from the engine (s)."""
 
 
 def run(order: Order, todo: list[Todo], engine: Engine, results: Results, screen: Screen) -> list[Result]:
     """Grade the submissions and write each result as soon as it is ready, in any order.
 
     Submissions that end with an `error` are graded once more at the end if at least one other submission could be
-    judged. If another submission could be judged, the machine works, so the error occurred by chance or was caused by
-    the submission.
+    judged. In this case, the machine works, so the error occurred by chance or was caused by the submission.
 
     Raises:
-        MachineError: the machine cannot grade or write any more. Results that were written are kept.
+        MachineError: the machine can no longer grade submissions or write results. The results so far are kept.
     """
     one = _Run(order, deque(todo), engine, results, screen)
     with engine:
@@ -56,7 +55,7 @@ class _Run:
     graded: dict[Name, Result] = field(default_factory=dict)
 
     def goes_on(self) -> bool:
-        """Return whether any submission is left. Submissions that ended with an `error` come last."""
+        """Return whether any submission still has to be graded. Submissions that ended with an `error` come last."""
         if not self.waiting and not self.running and self.again:
             if len(self.again) < len(self.graded):
                 self.waiting.extend(self.again.values())
@@ -77,7 +76,7 @@ class _Run:
             self.engine.start(task)
 
     def hear(self, event: Event) -> None:
-        """Handle an event of a task."""
+        """Handle an event from the engine."""
         name = event.task.name
         if isinstance(event, Progress):
             self.screen.show(name, event.text)
@@ -106,7 +105,7 @@ class _Run:
 
 def _in_words(why: str) -> str:
     return (
-        f"The grader's process was lost twice while it graded this submission ({why}). The submission gets the status "
-        "error, which says nothing about the quality of the submission. Grade the submission alone with `grader "
-        "check`, or run the same command again."
+        f"The grader's process was lost twice while it was grading this submission ({why}). The submission gets the "
+        "status error, which says nothing about the quality of the submission. Grade the submission alone with "
+        "`grader check`, or run the same command again."
     )

@@ -20,7 +20,7 @@ gradescope = App(name="gradescope", help="Grade with Gradescope.", no_args_is_he
 
 
 class Clock(str, Enum):
-    """The clock of the trials in which submissions are judged."""
+    """The clock for the trials of a submission."""
 
     auto = "auto"
     simulated = "simulated"
@@ -164,7 +164,8 @@ def build(
         bool,
         typer.Option(
             "--trust-submissions",
-            help="Run submissions even if Gradescope allows no sandbox. A submission could then change its own mark.",
+            help="Run submissions even if Gradescope does not allow sandboxes. A submission could then change its own "
+            "mark.",
         ),
     ] = False,
 ) -> None:
@@ -172,7 +173,7 @@ def build(
     from grader.classroom.gradescope_archive import build_archive
 
     if file.is_dir() or file.suffix != ".zip":
-        message = f"{file} does not end in .zip. Choose a name that ends in .zip."
+        message = f"{file} is a folder, or does not end in .zip. Choose a file name that ends in .zip."
         raise UsageError(message)
     build_archive(exercise, file, checks, trusted=trusted)
     typer.echo(f"Upload {file} to Gradescope: open your assignment, then Configure Autograder.")

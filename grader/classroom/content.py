@@ -22,14 +22,15 @@ if TYPE_CHECKING:
     from grader.exercise.model import Exercise
 
 MOST_DEEP = 4
-"""answers.toml may be at most this many folders deep, if each of these folders contains nothing but the next one."""
+"""answers.toml may be inside up to this many nested folders, if each of them contains nothing but the next one."""
 
 
 @dataclass(frozen=True)
 class Refused:
-    """The submission cannot be graded. `reason` is a text for the student.
+    """A submission that cannot be graded. `reason` is a text for the student.
 
-    `of_the_machine` is True if the machine failed while reading the submission. Other submissions are still graded.
+    `of_the_machine` is True if the machine failed while reading the submission. Even then, other submissions are
+    graded.
     """
 
     reason: str
@@ -37,7 +38,7 @@ class Refused:
 
 
 def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused:
-    """Return the submission to grade. `student` is the id of the student.
+    """Return the submission to grade, or why it cannot be graded. `student` is the id of the student.
 
     Raises:
         DiskError: the disk for temporary files failed.
@@ -104,7 +105,10 @@ def _folder(found: Found) -> Iterator[Path]:
 
 
 def _archive(path: Path) -> Path | None:
-    """Return the archive: the path itself or, as in Moodle, the only file in the folder. Otherwise, return None."""
+    """Return the archive of a submission, or None.
+
+    The archive is the path itself if it is a file, or the only file in the folder, as in Moodle.
+    """
     try:
         if not path.is_dir():
             return path

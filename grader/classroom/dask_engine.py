@@ -3,7 +3,7 @@
 The machines need only this project, and receive submissions as bytes. Each thread of a Dask worker runs one of our
 worker processes (worker.py), so a submission that kills that process does not kill the Dask worker. This module decides
 which Dask worker gets which submission. Each thread gets one submission at a time, without a queue. Therefore, if a
-machine is lost, only the submissions that were running on this machine count as failed attempts.
+machine is lost, a failed attempt is counted only for the submissions that were running on this machine.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ CONNECT_S = 10.0
 WORKERS_S = 60.0
 """The maximum time to wait for the first worker, or for a new worker after all workers are gone (s)."""
 LOOK_S = 1.0
-"""The interval between checks for available workers (s)."""
+"""The interval at which the list of workers is updated (s)."""
 
 # The Dask worker's process keeps these workers after a task, so the next task does not have to start one.
 _idle: list[Worker] = []

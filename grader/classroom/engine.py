@@ -21,7 +21,7 @@ class Progress:
 
 @dataclass(frozen=True)
 class Finished:
-    """A task is done."""
+    """A completed task and its result."""
 
     task: Task
     done: Done
@@ -29,7 +29,7 @@ class Finished:
 
 @dataclass(frozen=True)
 class Died:
-    """The worker of a task was killed, ran out of memory, or was lost with its machine."""
+    """A task whose worker was killed, ran out of memory, or was lost with its machine."""
 
     task: Task
     why: str
@@ -67,5 +67,5 @@ class Engine(Protocol):
         """Return the events since the last call. Wait at most `timeout_s` (s) for the first event.
 
         Raises:
-            MachineError: this machine can no longer grade any submission.
+            MachineError: no further submission can be graded.
         """

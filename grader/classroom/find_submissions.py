@@ -248,7 +248,7 @@ def _of_student(student: str, path: Path, wanted: str | None) -> Iterator[Found]
 
 
 def _assignments(path: Path) -> list[str]:
-    """Return the exercises in a student's folder in nbgrader's layout."""
+    """Return the exercises in a student's folder if it has nbgrader's layout, or an empty list."""
     if not os.path.isdir(path) or _is_one(path):
         return []
     return [name for name in catalogue() if os.path.isdir(path / name) and not os.path.islink(path / name)]

@@ -56,8 +56,8 @@ def grade_class(request: Request, say: Callable[[str], None], tell: Callable[[st
 
     Raises:
         UsageError: the command is wrong.
-        MachineError: the machine cannot grade or write any more. Results that were already written are kept, and the
-        next run continues from there.
+        MachineError: the machine can no longer grade submissions or write results. The results so far are kept, and the
+            next run continues from there.
     """
     _engine_is_known(request)
     return grade_found(request, find_submissions(request.submissions, request.exercise, request.out), say, tell)
@@ -121,7 +121,7 @@ def _engine_is_known(request: Request) -> bool:
 
 
 def exit_code(graded: Sequence[Result], fail_under: float | None) -> int:
-    """Return 3 if the machine failed, 1 if a submission got less than `fail_under` percent, and 0 otherwise."""
+    """Return 3 if a submission could not be judged, 1 if one got less than `fail_under` percent, and 0 otherwise."""
     if any(result.report.with_status(Status.ERROR) for result in graded):
         return 3
     shares = [result.report.points / result.report.max if result.report.max else 0.0 for result in graded]

@@ -27,7 +27,7 @@ _WHEN = (1980, 1, 1, 0, 0, 0)
 def build_archive(exercise: str, file: Path, checks: Path | None, *, trusted: bool = False) -> None:
     """Write the archive. `checks` is a folder of private checks to include.
 
-    With `trusted`, submissions run even if Gradescope's container allows no sandbox.
+    With `trusted`, submissions run even if Gradescope's container does not allow sandboxes.
 
     Raises:
         UsageError: the exercise does not exist, the private checks are wrong, or this is not a checkout of the course.

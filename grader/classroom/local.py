@@ -1,4 +1,7 @@
-"""An engine with worker processes on this machine. The number of processes depends on the processors and the memory."""
+"""An engine with worker processes on this machine.
+
+The number of processes depends on the number of processors and the available memory.
+"""
 
 from __future__ import annotations
 

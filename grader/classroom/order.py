@@ -1,4 +1,4 @@
-"""The work of a run of `grader grade`: the submissions to grade, and the valid results of earlier runs."""
+"""What one run of `grader grade` has to do: which submissions to grade, and which earlier results are still valid."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ class Order:
     explain: bool = True
     """Whether the grader tests likely causes by fixing them in a copy of the submission."""
     in_cell: bool = True
-    """Whether submissions run in a sandbox. This is False only for trusted submissions on a machine without a
-    sandbox."""
+    """Whether submissions always run in a sandbox. This is False only for trusted submissions, on a machine without a
+    sandbox or with Dask."""
     trusted: bool = False
 
     @cached_property

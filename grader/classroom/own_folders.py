@@ -21,7 +21,7 @@ _BYTES = 16
 
 
 def mark(file: Path) -> None:
-    """Write a mark to the new file, and remember it. The mark is not remembered if the home is not writable."""
+    """Write a mark to the new file, and add the mark to this user's list of marks if the list is writable."""
     made = secrets.token_hex(_BYTES)
     file.write_text(made, "ascii")
     with suppress(OSError):
@@ -43,7 +43,7 @@ def is_marked(file: Path) -> bool:
 
 
 def is_among(folder: Path, others: Iterable[Path]) -> bool:
-    """Return whether the folder is in one of the other folders. The last part of its path may be a link."""
+    """Return whether `folder` is in one of the other folders. `folder` itself may be a link."""
     place = Path(os.path.realpath(folder.parent))
     return any(place.is_relative_to(os.path.realpath(each)) for each in others)
 

@@ -123,7 +123,7 @@ class Results:
 
 @contextmanager
 def opened(folder: Path, submissions: Sequence[Path] = ()) -> Iterator[Results]:
-    """Yield the folder, created if necessary, and lock it against other runs.
+    """Create the folder if necessary, lock it against other runs, and yield it.
 
     `submissions` are the folders of the class, in which a student could have put a folder with forged results.
 

@@ -143,7 +143,7 @@ def _submission(task: Task, files: dict[str, bytes] | None = None) -> Submission
 
 
 def _refused(task: Task, exercise: Exercise, reason: str) -> Graded:
-    """Return a result with 0 points for a submission without a package. The first outcome states the reason."""
+    """Return a result with 0 points for a submission that could not be read. The first outcome states the reason."""
     what = "a package" if exercise.package else "answers.toml"
     title = f"The submission contains {what}"
     expected = f"One folder with {what} in it, or a .zip or .tar.gz of this folder."

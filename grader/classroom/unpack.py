@@ -42,7 +42,7 @@ class NotUnpackedError(UnreadableError):
 
 @dataclass(frozen=True)
 class Member:
-    """A file of an archive, or a folder if `content` is None. `parts` are the names in the path of the member."""
+    """A file in an archive, or a folder if `content` is None. `parts` are the names in the path of the member."""
 
     parts: tuple[str, ...]
     content: bytes | None = None

@@ -58,7 +58,7 @@ class Worker:
     def send(self, task: Task) -> None:
         """Send a task to the worker, which handles one task at a time.
 
-        If the process has exited, the next `receive` reports the exit.
+        If the process has exited, the next `receive` returns None.
         """
         with suppress(BrokenPipeError, ConnectionResetError):
             self.connection.send(task)

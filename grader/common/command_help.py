@@ -33,7 +33,7 @@ class Command(TyperCommand):
     """A command whose help fits every terminal."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:  # noqa: ANN401 - typer brings its own click
-        """Parse the arguments. Raises UsageError if a step is given next to a package instead of with --exercise."""
+        """Parse the arguments. Raises UsageError if a step is given as a second argument instead of with --exercise."""
         words = list(args)
         if len(words) == 2 and any("--exercise" in param.opts for param in self.params):
             meant = with_exercise(ctx.command_path, words)
@@ -93,8 +93,8 @@ def _format_help(
 def _without(module: str, name: str) -> Iterator[None]:
     """Put a stand-in with the attribute `name` in place of a module, unless the module is already imported.
 
-    typer imports these names and does not use them for a help text. Importing their modules takes longer than printing
-    the text.
+    typer imports these names, but does not need them to print a help text. Importing their modules takes longer than
+    printing the text.
     """
     if module in sys.modules:
         yield

@@ -20,7 +20,7 @@ def run_and_exit(command: Callable[[], object], explain: Callable[[Exception], s
     """Run the command, and exit. Decision 9 in docs/design.md lists the exit codes.
 
     `explain` is called for an error that is not one of the grader's own errors. It returns a sentence for the user, or
-    None if it does not know the error.
+    None for an error that it cannot explain.
     """
     raise_lost_stops()
     try:

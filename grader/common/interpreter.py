@@ -20,8 +20,8 @@ SEARCHED = (
 )
 """Variables that contain a path or a list of paths from which programs, libraries or modules are loaded."""
 OF_ANOTHER_PYTHON = ("_PYTHON_SYSCONFIGDATA_NAME", "_PYTHON_HOST_PLATFORM", "_PYTHON_PROJECT_BASE")
-"""Variables that make sysconfig describe another Python, so that most other Pythons cannot import it. The compilers of
-conda and tools for cross-compilation set them."""
+"""Variables that make sysconfig use the build data of another Python, which most Python installations do not have.
+conda's compilers and tools for cross-compilation set these variables."""
 _CODE = "import sys; sys.path[:] = filter(None, sys.path)\n"
 """Code that removes the current folder from sys.path. The option -P of Python 3.11 does the same, but with -P, IPython
 does not let the cells of a notebook import modules from the notebook's folder."""
@@ -75,9 +75,9 @@ def interpreter(
 
 
 def clean(env: Mapping[str, str]) -> Dict[str, str]:
-    """Return the environment without empty or relative entries in search paths, which depend on the current folder.
+    """Return the environment without the entries in search paths that depend on the current folder.
 
-    The result has no variables that describe another Python.
+    These are empty and relative entries. The variables in OF_ANOTHER_PYTHON are also removed.
     """
     cleaned = {name: value for name, value in env.items() if name not in OF_ANOTHER_PYTHON}
     for name in SEARCHED:

@@ -1,4 +1,4 @@
-"""Ctrl-C, SIGTERM and SIGHUP: no object is left half created, and no signal is lost."""
+"""Handle Ctrl-C, SIGTERM and SIGHUP so that no object is left half created and no signal is lost."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def stops_deferred() -> Iterator[None]:
 
 
 def raise_lost_stops() -> None:
-    """From now on, raise a KeyboardInterrupt again if Python discards it, instead of printing it.
+    """From now on, if Python discards a KeyboardInterrupt, raise it again instead of only printing it.
 
     Python discards an exception that is raised in a callback of `os.fork` or in `__del__`, and the command would
     continue as if nobody had pressed Ctrl-C.

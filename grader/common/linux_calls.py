@@ -1,4 +1,4 @@
-"""Linux system calls, even if the `os` module of this Python does not have them.
+"""Linux system calls that the `os` module of some Python installations does not have.
 
 Python has only the system calls that were declared in the C headers of the machine on which Python was built. For
 example, the Python of conda is built for old systems, so it has no `os.pidfd_open`, even on a new kernel.

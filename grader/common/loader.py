@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _HEADER = struct.Struct("<4sBB26xQ14xHH")
-"""Values in the header of an ELF file (elf(5)): magic number, class, byte order; offset, size and number of the entries
-in the program header table."""
+"""Values in the header of an ELF file (elf(5)): the magic number, the class and the byte order; the offset of the
+program header table, and the size and the number of its entries."""
 _SEGMENT = struct.Struct("<I4xQ16xQ16x")
 """Values in an entry of the program header table: the type, offset and length of a segment."""
 _ELF, _64_BITS, _LITTLE_ENDIAN, _INTERPRETER = b"\x7fELF", 2, 1, 3

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def needed_command(app: typer.Typer, words: Sequence[str]) -> TyperGroup:
-    """Return the application with only the command that is given in `words`, or with all commands if none is given.
+    """Return the application with only the command that is given in `words`, or the whole application if there is none.
 
     To create a command, typer evaluates the annotations of all its options. Evaluating the annotations of all commands
     would take longer than running most commands.

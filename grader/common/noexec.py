@@ -25,7 +25,10 @@ def noexec_folder(path: Path) -> Optional[Path]:  # noqa: UP045 - valid in Pytho
 
 
 def noexec_sentence(folder: Path, instead: str) -> str:
-    """Return the sentence for a folder that `noexec_folder` has found. `instead` says what else to do."""
+    """Return the sentence for a folder that `noexec_folder` has found.
+
+    `instead` is a phrase that says what to do instead.
+    """
     remount = f"sudo mount -o remount,exec {shlex.quote(str(folder))}"
     return (
         f"{folder} is mounted with the option noexec, so the system runs no programs from there: "

@@ -1,4 +1,4 @@
-"""Prepare a process of the grader, so that it works with any settings of the user.
+"""Prepare a process of the grader so that it works with any user settings.
 
 A command of the grader calls `prepare` before it does anything else. Child processes inherit the changes, except for
 the warnings filter.

@@ -1,4 +1,4 @@
-"""Output to a terminal without control characters: names and texts in the ROS graph can come from any program.
+"""Write to a terminal without control characters, because names and texts in the ROS graph can come from any program.
 
 A terminal executes the control sequences in its output. Such a sequence can hide a line, write to the clipboard
 (OSC 52), or make the printed address a link to another one (OSC 8).

@@ -15,8 +15,8 @@ _MOST_BITS = 31
 class QuickExit:
     """Ends this process quickly if its exit code is set.
 
-    All functions that are registered with atexit still run. Objects in modules that were imported later than those in
-    `kept` are finalized, so that a file that a submission left open is written.
+    All functions that are registered with atexit still run. If `kept` is set, the objects of all other modules are
+    finalized, so that the files that a submission left open are written completely.
     """
 
     code: object = None
@@ -26,7 +26,10 @@ class QuickExit:
 
     @classmethod
     def prepare(cls) -> None:
-        """Register `_end` with atexit. Call this method first, because Python calls the functions in reverse order."""
+        """Register `_end` with atexit.
+
+        Call this method before any other function is registered, because Python calls the functions in reverse order.
+        """
         atexit.register(cls._end)
 
     @classmethod

@@ -1,4 +1,4 @@
-"""Files that every user may read. If root runs the grader, student code runs in a cell as another user.
+"""Make files readable by every user. If root runs the grader, student code runs in a cell as another user.
 
 Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
 of Python 3.6.

@@ -24,7 +24,7 @@ class _Messages(io.FileIO):
     """
 
     def write(self, data: ReadableBuffer, /) -> int:
-        """Write the data, and return how much was written, or lost because the disk is full."""
+        """Write the data, and return the number of bytes that were written, or that were lost on a full disk."""
         try:
             return super().write(data)
         except OSError as error:

@@ -1,4 +1,4 @@
-"""One sentence for each system error, saying what to do: full disk, no memory, too many open files or processes.
+"""A sentence for each system error (full disk, no memory, too many open files or processes) that says what to do.
 
 Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
 of Python 3.6.
@@ -79,7 +79,7 @@ def path_and_reason(error: OSError) -> Tuple[str, str]:
 
 
 def of_the_machine(error: OSError) -> bool:
-    """Return whether the error means that the machine has no disk space or memory, or too many files or processes."""
+    """Return whether the machine has run out of disk space or memory, or has too many open files or processes."""
     return error.errno in _SCARCE
 
 

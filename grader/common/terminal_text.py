@@ -64,7 +64,7 @@ def hanging(line: str, width: Optional[int], first: str = "", rest: str = "") ->
 
 
 def example(command: str, width: int, indent: str = "  ") -> List[str]:
-    """Return the lines of an example, which are one command: all lines but the last end with a backslash."""
+    """Return the lines of an example command. All lines but the last end with a backslash."""
     if len(indent + command) <= width:
         return [indent + command]
     *lines, last = _broken(_OPTION.sub("\\1" + _SPACE, command), width - 2, indent, indent * 2)

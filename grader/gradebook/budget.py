@@ -44,7 +44,7 @@ class Budget:
 
 @dataclass
 class Account:
-    """The totals of all messages that a kernel has sent. `key` is the key that signs the kernel's messages."""
+    """The totals of all messages that a kernel has sent. The kernel signs its messages with `key`."""
 
     key: bytes
     budget: Budget = Budget()
@@ -53,7 +53,7 @@ class Account:
     _signatures: set[bytes] = field(default_factory=set)
 
     def take(self, parts: Sequence[bytes]) -> None:
-        """Check a message and add it to the total.
+        """Check a message and add it to the totals.
 
         Raises:
             FrameError: the data is not a message of Jupyter's protocol, or the budget is exceeded.

@@ -40,7 +40,7 @@ def honest(cell: NotebookNode) -> None:
 
 
 def put_right(nb: NotebookNode) -> None:
-    """Replace outputs from the kernel that are not valid for nbformat, so that the notebook can be written."""
+    """Replace outputs that are too long or not valid for nbformat, so that the notebook can be written."""
     left = MOST_OUTPUT
     for cell in nb.cells:
         if cell.cell_type != "code":

@@ -1,4 +1,4 @@
-"""The folders of a class, as configured in nbgrader_config.py of the course."""
+"""The folders of a class, as configured in the course's nbgrader_config.py."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class ClassFolders:
         return Path(self.course.root) / CLASS / HANDED_IN / student / step
 
     def autograded(self, student: str, step: str) -> Path:
-        """Return the path of the notebook that autograde ran. The notebook at this path does not always exist."""
+        """Return the path of the notebook that autograde writes. The file may not exist yet."""
         return Path(self.course.format_path(self.course.autograded_directory, student, step)) / f"{step}.ipynb"
 
     def submissions(self, steps: Sequence[str]) -> list[tuple[str, str]]:
@@ -126,8 +126,8 @@ def open_class(folder: Path | None) -> ClassFolders:
 
     The default is the current folder.
 
-    nbgrader_config.py is a program that this function executes. The current folder may belong to a student, so the
-    current folder is used only if it is the folder of a class that this user created.
+    nbgrader_config.py is a program that this function executes. The current folder may belong to a student, so it is
+    used only if it belongs to this copy of the course or to a class that this user created.
 
     Raises:
         UsageError: nbgrader_config.py does not exist, or this user did not create the class.

@@ -130,7 +130,7 @@ def install(
         ),
     ] = None,
 ) -> None:
-    """Install the Jupyter kernel "ROS 2 Jazzy (course)", which needs no sourced ROS 2."""
+    """Install the Jupyter kernel "ROS 2 Jazzy (course)", which works without sourcing ROS 2."""
     from grader.exercise.model import course_folder
     from grader.notebook.kernel import DISPLAY_NAME
     from grader.notebook.kernel import install as install_kernel

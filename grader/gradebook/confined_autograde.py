@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 CHECK_S = 300
-"""The time limit for an instructor's cell (s), which builds and runs a package, sometimes in wall time."""
+"""The time limit (s) for an instructor's cell, which builds and runs a package, sometimes in wall time."""
 SHOWN = ("stream", "display_data", "execute_result", "error", "update_display_data")
 """The types of messages that add outputs to a notebook cell."""
 
@@ -106,7 +106,7 @@ class ConfinedKernelManager(AsyncKernelManager):
 class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
     """Runs a submitted notebook in a sandbox cell.
 
-    If the kernel dies, the remaining cells of the notebook get an error.
+    If the kernel dies, each remaining cell of the notebook gets an error as its output.
     """
 
     trust_submissions = Bool(
@@ -186,7 +186,10 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
             return None
 
     def on_comm_open_jupyter_widget(self, msg: dict[str, Any]) -> None:
-        """Do nothing, because the kernel could make the replies of a widget's front end arbitrarily long."""
+        """Do nothing.
+
+        With a widget, the kernel could make the replies that it receives from nbclient arbitrarily long.
+        """
 
     def _get_timeout(self, cell: NotebookNode | None) -> int | None:
         locked = cell is not None and cell.get("metadata", {}).get("nbgrader", {}).get("locked")
@@ -213,7 +216,7 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
 
 
 def _order(submission: Path, folder: Path, connection_file: str, *, trusted: bool) -> Order:
-    """Return the command that the relay must start. `folder` is the folder of the relay."""
+    """Copy the submission to the relay's `folder`, and return the command that the relay must start."""
     confined = bubblewrap.require(trusted=trusted)
     copy, home, workspace = folder / "submission", HOME, WORKSPACE
     copy_of(submission, copy, notebooks=False)

@@ -40,7 +40,7 @@ class Unconfirmed:
 
 
 def withhold(grade: Any) -> None:  # noqa: ANN401 - nbgrader's Grade
-    """Set a cell to 0 points until the score is confirmed or a person grades it.
+    """Set a cell to 0 points until its score is confirmed or a person grades the cell.
 
     A manual grade and extra credit stay unchanged.
     """
@@ -71,7 +71,7 @@ def unconfirmed(
     steps: Collection[str] = (),
     unread: Collection[Name] = (),
 ) -> list[Unconfirmed]:
-    """Return the cells whose scores no grader result confirms, by exercise and student, except those graded manually.
+    """Return the cells whose scores the grader has not confirmed, except those that were graded manually.
 
     `steps` selects the exercises. If `steps` is empty, all exercises are used. `unread` are submissions that could not
     be read this time, so their stored results do not count.

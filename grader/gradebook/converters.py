@@ -1,4 +1,4 @@
-"""Variants of nbgrader's converters and collect step, which use only files that the reading process accepts."""
+"""Variants of nbgrader's converters and of its collect step that use only files that the reading process accepts."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class BoundedAutograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore
     def init_destination(self, assignment_id: str, student_id: str) -> bool:
         """Initialize the destination as nbgrader's method does, and return its result.
 
-        An invalid submission time makes only this submission fail.
+        If the submission time is invalid, only this submission fails.
         """
         read(readable.time_of, Path(self._format_source(assignment_id, student_id)))
         return bool(super().init_destination(assignment_id, student_id))
@@ -115,7 +115,7 @@ class BoundedCollect(ExchangeCollect):  # type: ignore[misc, unused-ignore]
             record: dict[str, Any] = super()._path_to_record(path)
             why = inbound.why_not(Path(path), record["username"], owned=self.check_owner)
         except Exception:
-            record, why = {}, "the name has no valid time"
+            record, why = {}, "the name does not contain a valid time"
         if why:
             self.log.warning("Not collected, because %s: %s", why, tree.shown(path))
             return {"username": "", "filename": "", "timestamp": _NEVER}

@@ -61,7 +61,7 @@ class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]
 
 
 def _rows(gradebook: Any, steps: Collection[str], students: Collection[str]) -> Iterator[list[str]]:  # noqa: ANN401
-    """Yield a line for each combination of an assignment in `steps` and a student in `students`.
+    """Yield a row for each combination of an assignment in `steps` and a student in `students`.
 
     If `steps` is empty, all assignments are used. If `students` is empty, all students are used.
     """

@@ -26,8 +26,8 @@ class HideHiddenTests(ClearHiddenTests):  # type: ignore[misc, unused-ignore]
     """Removes from the feedback the lines of hidden tests, and all outputs of a kernel that has run hidden tests.
 
     Student code in the kernel can store the source of a hidden test and print it below any cell: below a later cell,
-    below an instructor's cell with a hook, below an earlier cell by updating its display, or in a widget. Therefore,
-    the outputs of a notebook with hidden tests are not shown.
+    below an instructor's cell (with a hook), below an earlier cell (by updating its display), or in a widget.
+    Therefore, the outputs of a notebook with hidden tests are not shown.
     """
 
     def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:

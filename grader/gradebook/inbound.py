@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 def why_not(folder: Path, student: str, *, owned: bool) -> str:
     """Return the reason why a folder in the exchange cannot be the submission of a student, or an empty string.
 
-    With `owned`, the folder must belong to the student or to this user, unless the student has no account here.
+    With `owned`, the folder must belong to the student or to this user, unless the student has no account on this
+    machine.
     """
     if not folder.name.isprintable():
         return "the name has control characters"

@@ -1,8 +1,8 @@
 """Complete a submitted package with the files that only its notebook contains.
 
 A student may write a node in a cell and never run the cell, or hand in only the notebook. In these cases, the text of
-the cell counts if the file next to the notebook is missing or is still the starting point. No cell is run,
-and files that a kernel wrote during autograde are ignored.
+the cell counts if the file next to the notebook is missing or unchanged from the starting point. No cell is run, and
+files that a kernel wrote during autograde are ignored.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from traitlets.config import Config
 
 SHOWN = ["image/png", "image/jpeg", "text/plain"]
-"""The kinds of output that are shown, by priority."""
+"""The kinds of output that are shown, in order of priority."""
 TAGS = {
     *bleach.sanitizer.ALLOWED_TAGS,
     *("br", "code", "del", "div", "h1", "h2", "h3", "h4", "h5", "h6", "hr", "p", "pre", "span", "sub", "sup"),

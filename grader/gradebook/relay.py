@@ -61,7 +61,7 @@ class Order:
 
     @classmethod
     def read(cls, folder: Path) -> Order:
-        """Read an order that was written by `write`."""
+        """Read the command that `write` has written."""
         data = json.loads((folder / ORDER_FILE).read_text("utf-8"))
         view = View(**{name: tuple(map(Path, paths)) for name, paths in data.pop("view").items()})
         return cls(**data, view=view)

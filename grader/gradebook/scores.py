@@ -85,8 +85,8 @@ def sync(
 
     Raises:
         UsageError: nothing was collected, a step is not in the gradebook, or another sync is running.
-        MachineError: the machine cannot grade or write. The scores that are not confirmed are worth 0 points in this
-            case too.
+        MachineError: the machine cannot grade submissions or write scores. Scores that are not confirmed are set to 0
+            points in this case too.
     """
     from sqlalchemy.exc import OperationalError, SQLAlchemyError
 
@@ -188,7 +188,7 @@ def _of_the_machine(error: BaseException | None) -> bool:
 
 
 def _in_words(error: BaseException) -> str:
-    """Return the error on one line, together with the error's cause, if any."""
+    """Return the message of the error's cause, or of the error if it has no cause, shortened to one line."""
     cause = error.__cause__ or error
     text = (cause.strerror if isinstance(cause, OSError) else str(cause)) or type(cause).__name__
     return shorten(text.rstrip("."), 120)

@@ -48,7 +48,10 @@ def start(
         ),
     ] = "next",
     workspace: Workspace = None,
-    student: Annotated[Optional[str], typer.Option(help="Your student id, which determines your numbers.")] = None,  # noqa: UP045
+    student: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option(help="Your student id. Your numbers in some steps depend on it."),
+    ] = None,
     fresh: Annotated[
         bool,
         typer.Option(
@@ -70,7 +73,7 @@ def run(
         typer.Argument(help="An executable of the step. Default: the first one.", metavar="EXECUTABLE"),
     ] = None,
     workspace: Workspace = None,
-    view: Annotated[bool, typer.Option("--view/--no-view", help="Show the turtle on a page on this machine.")] = True,
+    view: Annotated[bool, typer.Option("--view/--no-view", help="Show the turtle on a local web page.")] = True,
 ) -> None:
     """Build your package and run its node together with a turtlesim that you can watch. Ctrl-C ends both."""
     from grader.learner import run_node
@@ -116,7 +119,9 @@ def solution(
 
 
 def watch(
-    path: Annotated[Path | None, typer.Argument(help="Folder of a package. Default: your current step.")] = None,
+    path: Annotated[
+        Path | None, typer.Argument(help="Folder of a package, or a step such as 03. Default: your current step.")
+    ] = None,
     exercise: Annotated[
         Optional[str],  # noqa: UP045
         typer.Option(help="The exercise, if the folder does not determine it.", autocompletion=known_steps),

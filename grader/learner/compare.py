@@ -36,7 +36,7 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
     """Print the differences from the solution, and the answers to the questions under "To think about".
 
     Raises:
-        UsageError: the step has not passed yet.
+        UsageError: the learner has not passed the step yet.
     """
     exercise = find_exercise(step)
     root = progress.workspace_of(folder)

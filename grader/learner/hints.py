@@ -22,7 +22,7 @@ def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
     """Return the next hint of a step (by default, of the current step) or of a part of the step.
 
     After all hints have been shown, the last hint for a failed check is repeated, or the last hint if no check failed.
-    A single letter in `step` means this part of the current step.
+    If `step` is a single letter, it is a part of the current step.
 
     Raises:
         UsageError: no step was started, or the step does not have the part.
@@ -62,7 +62,7 @@ def has_next(exercise: Exercise, known: StepProgress) -> bool:
 
 
 def flowing(text: str) -> str:
-    """Return the text without the line breaks of its file, so that the terminal can wrap it."""
+    """Join the lines of each paragraph, so that the terminal can wrap the text."""
     return "\n\n".join(" ".join(paragraph.split()) for paragraph in text.split("\n\n"))
 
 

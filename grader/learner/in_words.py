@@ -33,7 +33,10 @@ def _sentence(begin: str, names: list[str]) -> str:
 
 
 def _parts(text: str) -> dict[str, str] | None:
-    """Return the functions and methods of a Python file without comments and docstrings, or None if it has errors."""
+    """Return the code of each function by name, without comments and docstrings, or None if the text has errors.
+
+    The code outside functions is included as one more item.
+    """
     try:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError):

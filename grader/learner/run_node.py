@@ -42,7 +42,7 @@ class Program:
 
 
 def program_of(step: str | None, executable: str | None, workspace: Path | None) -> Program:
-    """Return the program to run. The default is the program of the current step.
+    """Return the program to run. The default is the first program of the current step.
 
     Raises:
         UsageError: the step has no node, was not started, or does not run this executable.
@@ -75,7 +75,7 @@ def _refuse_program_as_step(name: str) -> None:
 
 
 def executables(exercise: Exercise) -> list[str]:
-    """Return the names of the executables that the exercise runs, each once."""
+    """Return the names of the executables that the exercise's trials run, without duplicates."""
     return list(dict.fromkeys(trial.executable for trial in exercise.trials if trial.executable and not trial.calls))
 
 
@@ -83,8 +83,8 @@ def run(program: Program, *, view: bool) -> int:
     """Build the package, and run the program with a turtlesim until Ctrl-C. Return the exit code for the user.
 
     If `view` is true, a page shows the turtle. If a turtlesim is already running, the program drives the turtle of that
-    turtlesim. The exit code is 0 after Ctrl-C. The exit code is 1 if the build failed or the node exited with an error.
-    The output of the build and the node appears on the terminal.
+    turtlesim. The exit code is 0 if the node runs until Ctrl-C or exits without an error, and 1 otherwise. The output
+    of the build and the node appears on the terminal.
     """
     from grader.ros import shell
 
@@ -103,8 +103,10 @@ def run(program: Program, *, view: bool) -> int:
                 f"{program.folder / 'setup.py'}."
             )
             return 1
-        with nullcontext() if _beside_another(env) else _turtlesim(env, view=view):
-            say(f"{program.executable} is running. Press Ctrl-C to stop the program and turtlesim.\n")
+        beside = _beside_another(env)
+        with nullcontext() if beside else _turtlesim(env, view=view):
+            ended = "the program" if beside else "the program and turtlesim"
+            say(f"{program.executable} is running. Press Ctrl-C to stop {ended}.\n")
             return _until_it_ends(program, script, _with_overlay(env, overlay, program.folder))
 
 

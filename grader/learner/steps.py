@@ -44,7 +44,7 @@ def start(step: str, folder: Path | None, *, student: str | None = None, fresh: 
     """Start a step in the workspace. The name "next" stands for the step after the current one.
 
     Raises:
-        UsageError: the step does not exist, or `step` is "next" and the current step has not passed yet.
+        UsageError: the step does not exist, or `step` is "next" and the learner has not passed the current step yet.
     """
     root = progress.workspace_of(folder)
     exercise = _next(progress.load(root)) if step == "next" else find_exercise(step)
@@ -82,14 +82,14 @@ def begin_message(begun: Begun) -> str:
         "",
         f"The lesson:           {lesson}",
         "Grade your work:      grader check",
-        "Grade every save:     grader watch",
+        "Grade on every save:  grader watch",
         f"In each new terminal: source {quote(str(_setup_file()))}",
     ]
     return "\n".join(lines)
 
 
 def _setup_file() -> Path:
-    """Return the file that adds ROS 2 and `grader` to a new terminal of the user's shell."""
+    """Return the file to source in a new terminal to make ROS 2 and `grader` available in the user's shell."""
     shell = "zsh" if Path(os.environ.get("SHELL", "")).name == "zsh" else "bash"
     return Path(sys.prefix, f"setup.{shell}")
 
@@ -105,7 +105,10 @@ def current(folder: Path | None) -> tuple[Exercise, Path] | None:
 
 
 def note(exercise: Exercise, submission: Path, report: Report, folder: Path | None = None) -> str:
-    """Store a report in the learner's progress. Return a message about the next command to type, or an empty string."""
+    """Store a report in the learner's progress if the submission is in the workspace.
+
+    Return a message about the next command to type, or an empty string.
+    """
     root = progress.workspace_of(folder)
     begun = progress.load(root)
     if begun.current is None:
@@ -113,7 +116,7 @@ def note(exercise: Exercise, submission: Path, report: Report, folder: Path | No
     if not submission.resolve().is_relative_to(root):
         lesson_named_it = report.exit_code == 1 and exercise.id in begun.steps and exercise_of_folder(submission)
         own = workspace.work_folder(exercise, root)
-        return f"Your own work on this step is in {own}: grader check {exercise.id[:2]}" if lesson_named_it else ""
+        return f"To grade your own work in {own}, type: grader check {exercise.id[:2]}" if lesson_named_it else ""
     known = progress.update(root, lambda before: before.graded(exercise.id, report))
     if report.exit_code != 0:
         return ""
@@ -200,9 +203,8 @@ def _next(known: progress.Progress) -> Exercise:
         return find_exercise(next(iter(catalogue())))
     if not known.step(known.current).passed:
         message = (
-            f"{known.current} has not passed yet: `grader check` shows what is missing, and `grader hint` helps. To "
-            "skip "
-            "this step for now, name another step, as in `grader start 04`."
+            f"You have not passed {known.current} yet: `grader check` shows what is missing, and `grader hint` helps. "
+            "To skip this step for now, name another step, as in `grader start 04`."
         )
         raise UsageError(message)
     waiting = _waiting(known)
@@ -212,14 +214,14 @@ def _next(known: progress.Progress) -> Exercise:
 
 
 def _waiting(known: progress.Progress) -> list[str]:
-    """Return the steps after the current step that have not passed yet, or all later steps if all have passed."""
+    """Return the later steps that have not passed yet, or all later steps if all of them have passed."""
     names = list(catalogue())
     later = names[names.index(known.current or names[0]) + 1 :]
     return [name for name in later if not known.step(name).passed] or later
 
 
 def _open_steps(known: progress.Progress) -> str:
-    """Return a sentence that lists the steps that have not passed yet, for the end of the course."""
+    """Return the message for a learner at the last step: the steps that have not passed yet, or that none are left."""
     missing = [name for name in catalogue() if not known.step(name).passed]
     if not missing:
         return f"{known.current} was the last step. You have finished the course. `grader status` shows all steps."

@@ -41,7 +41,7 @@ SUSPEND_S = 20.0
 MOST_FOLDERS = 1000
 """The maximum number of folders of a package that are watched."""
 _LOOK_MS = 500
-"""The interval between checks that the path still leads to the watched folder (ms)."""
+"""The interval (ms) at which the watcher tests whether the path still leads to the watched folder."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class _Sources(DefaultFilter):
 
 
 def folders(top: Path) -> list[str]:
-    """Return the folder and the folders in it that can have sources, without following symbolic links.
+    """Return the folder and those of its subfolders that can contain sources, without following symbolic links.
 
     A link to `/` in a package would otherwise use up the user's inotify watches.
     """

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 BELOW = 5
-"""The number of lines below a report: for the watched folder, the list of keys, and what a key press prints."""
+"""The number of lines reserved below a report for the watched folder, the list of keys, and the output of a key."""
 KEYS = "h hint · l list · n next · r rerun · q quit"
 
 
@@ -73,7 +73,7 @@ class _Screen:
 
         Return the step that the learner has started in the meantime, or None to quit.
 
-        The first report clears the screen. `notice` is printed below the submission's report.
+        Every report clears the screen. `notice` is printed below the first report.
         """
         self._grade(notice)
         self._prove(events)

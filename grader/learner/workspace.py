@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
 
 APART = "apart"
-"""The folder in a workspace for separate workspaces. colcon must not build them together with this workspace."""
+"""The folder in the learner's workspace that contains separate workspaces. colcon must not build them together with the
+learner's packages."""
 _PACKAGE_FILES = ("package.xml", "setup.py", "setup.cfg")
 """Package files to which later steps add lines."""
 _ENTRY_POINT = re.compile(r"[\"'](?P<name>[\w.-]+) = [\w.]+:\w+[\"'],?")
@@ -32,9 +33,9 @@ _TASK = re.compile(r"(?:#|<!--)\s*(TODO \d+: .+?)\s*(?:-->)?$", re.MULTILINE)
 class Started:
     """The result of `start`. The paths of files are relative to `folder`.
 
-    `kept` is the folder to which older work was moved (with --fresh). `lacking` maps each package file that already
-    existed to the lines of the step's version that the file does not contain. If the step is new to the folder, `tasks`
-    maps each of these package files to the tasks in the step's version (TODO 1: ...).
+    `kept` is the folder to which older work was moved (with --fresh). For each package file that already existed,
+    `lacking` has the lines of the step's version that are missing from the file, and `tasks` has the missing tasks
+    (TODO 1: ...). If `start` has added no file, `tasks` is empty.
     """
 
     folder: Path
@@ -84,7 +85,7 @@ def work_folder(exercise: Exercise, workspace: Path) -> Path:
 def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = False) -> Started:
     """Add the files of the step that are missing from the workspace. With `fresh`, existing work is moved away first.
 
-    If the numbers of the step differ for each student, the numbers of `student` are written.
+    If each student has different numbers in this step, the numbers of `student` are written.
 
     Raises:
         UsageError: the workspace is not a folder.
@@ -212,7 +213,7 @@ def _tasks(theirs: Path, mine: bytes) -> tuple[str, ...]:
 
 
 def _ignored(folder: Path) -> Path:
-    """Create a folder in the workspace that colcon ignores, for packages other than the learner's."""
+    """Create a folder in the workspace that colcon ignores."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / IGNORE_MARKER).touch()
     return folder

@@ -2,9 +2,9 @@
 
     python -m grader.notebook.bridge FOLDER WORKSPACE
 
-The kernel's sockets are on the cell's disk, so the cell needs no writable folder of the machine. The relay that reads
-the pipes (grader.gradebook.relay) limits how much it reads. FOLDER is a read-only copy of the submission. The kernel
-works on a second copy of the submission, in WORKSPACE.
+The kernel's sockets are on the cell's disk, so the cell does not need write access to a folder outside the cell. The
+relay that reads the pipes (grader.gradebook.relay) limits how much it reads. FOLDER is a read-only copy of the
+submission. The kernel works on a second copy of the submission, in WORKSPACE.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Bridge:
     """The sockets of a kernel, and the messages that wait until the kernel is listening."""
 
     def __init__(self, folder: Path, key: dict[str, Any]) -> None:
-        """Create the sockets in `folder`. `key` contains the settings for signatures from the connection file."""
+        """Create the sockets in `folder`. `key` contains the signature settings from the connection file."""
         self.connection_file = folder / "kernel.json"
         info = {"transport": "ipc", "ip": str(folder / "socket"), "kernel_name": "", **key}
         self._context = zmq.Context()

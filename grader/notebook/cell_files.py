@@ -1,6 +1,6 @@
-"""The files that a notebook's cells write next to the notebook, and the text that counts if cell and file differ.
+"""The files that a notebook's cells write next to the notebook, and which text counts if a cell and its file differ.
 
-A student hands in the package (or the answers) next to the notebook. A magic writes a cell to one of its files:
+A student hands in the package (or the answers) next to the notebook. A magic writes a cell to one of these files:
 
     %%node draw_circle.py    <package>/<package>/draw_circle.py
     %%package package.xml    <package>/package.xml
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
 MAGICS = ("node", "package", "answers")
 KEPT = ".kept"
-"""The folder for files that were changed elsewhere before a cell replaced them. This folder is hidden, so its files are
-not graded."""
+"""The folder for the old versions of files that were changed outside the notebook before a cell replaced them. This
+folder is hidden, so its files are not graded."""
 SOLUTIONS = "solutions"
 """The folder with the notebooks that contain the solutions. This folder has the same name in the course and in a class
 of nbgrader."""

@@ -1,6 +1,6 @@
 """`check("03-circle-publisher")` in a cell: grade the work next to the notebook, and show the verdict below the cell.
 
-The verdict is a table with pictures, or text in a program without HTML. If nothing has changed, the previous
+The verdict is a table with pictures, or text in a program that cannot show HTML. If nothing has changed, the previous
 verdict is returned, so cells that return the points of individual checks are fast.
 """
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from grader.notebook.cells import Cells
 
 GRACE_S = 5.0
-"""The maximum time for a worker to exit after the cell was interrupted (s)."""
+"""The maximum time for a worker to exit after the cell has been interrupted (s)."""
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,7 @@ def _tell(
 
 
 def _guard() -> None:
-    """Mark the future child processes of the kernel, and start the guardian that stops marked processes later."""
+    """Mark the kernel's future child processes, and start the guardian that stops them after the kernel has exited."""
     mark = f"{os.getpid()}-{secrets.token_hex(8)}"
     # Only this process has the write end of the pipe, because Python does not pass descriptors to child processes.
     # The guardian must not inherit the kernel's folder or mark.
@@ -69,4 +69,4 @@ def _guard() -> None:
 
 
 _guardians: list[subprocess.Popen[bytes]] = []
-"""Holds the guardian until the kernel exits. If the object were deleted, its pipe would close."""
+"""Keeps the guardian's Popen object until the kernel exits. If the object were deleted, its pipe would be closed."""

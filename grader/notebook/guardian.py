@@ -1,4 +1,4 @@
-"""The guardian, which stops the processes of a kernel after the kernel has exited, whatever the reason.
+"""The guardian, which stops the processes of a kernel after the kernel has exited for any reason.
 
     python guardian.py MARK          its standard input is a pipe that only the kernel keeps open
 

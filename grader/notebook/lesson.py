@@ -13,9 +13,10 @@ _LOCAL_LINK = re.compile(r"(?<!!)\[([^\]]+)\]\((?!https?://|#)[^)\s]+\)")
 
 
 def pieces(lesson: Path) -> list[str | Path]:
-    """Return the lesson as a sequence of Markdown texts and image files. Links to other files become plain text.
+    """Return the lesson as a sequence of Markdown texts and image files.
 
-    If a notebook is copied without other files, links to those files no longer work.
+    Links to other files become plain text, because they would not work in a notebook that is copied without those
+    files.
     """
     # `split` returns texts and the paths of images in turn.
     split = _IMAGE.split(lesson.read_text(encoding="utf-8"))

@@ -1,11 +1,12 @@
-"""Find out whether nbgrader executes the notebook, and whether the kernel runs inside a sandbox cell."""
+"""Find out whether nbgrader is executing the notebook, and whether the kernel runs inside a sandbox cell."""
 
 from __future__ import annotations
 
 import os
 
 CONFINED = "GRADER_CONFINED"
-"""The variable that is set in a kernel inside a sandbox cell, where another sandbox cell cannot be started."""
+"""The environment variable that is set in a kernel inside a sandbox cell. No further sandbox cell can be started
+there."""
 
 
 def grading() -> bool:

@@ -1,7 +1,7 @@
 """The released notebook of a step, byte for byte identical to the output of nbgrader's generate_assignment.
 
 This module repeats the steps of nbgrader 0.9 (LockCells, ClearSolutions, ClearOutput, ClearHiddenTests,
-ComputeChecksums), so that a course can be released without Jupyter. A test compares the results.
+ComputeChecksums), so that a course can be released without Jupyter. A test compares the results with those of nbgrader.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def without_hidden_tests(source: str, name: str) -> str:
             kept += [] if hidden else [line]
         elif mark == hidden:
             message = (
-                f"{name}: {line.strip()!r} where hidden tests {'have already begun' if hidden else 'have not begun'}."
+                f"{name}: {line.strip()!r}, but hidden tests {'have already begun' if hidden else 'have not begun'}."
             )
             raise UsageError(message)
         else:

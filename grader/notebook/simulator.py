@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
 START_S = 30.0
-"""The maximum time until the first picture of turtlesim, even on a busy machine (s)."""
+"""The maximum time to wait for turtlesim's first picture (s). A busy machine may need many seconds."""
 
 
 class Simulator:

@@ -1,7 +1,7 @@
 """The source notebook of a step: text written by hand, with inserted parts of the solution and of exercise.toml.
 
 A cell that begins with `%%node`, `%%package` or `%%answers` gets the text of its file in the solution, including the
-markers. Each check of exercise.toml gets a grade cell at the end of the notebook, with the same id and points.
+markers. Each check in exercise.toml gets a grade cell with the same id and points at the end of the notebook.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def _grade_cell(exercise: Exercise, spec: CheckSpec) -> Cell:
 
 
 def _about(name: str, *, grade: bool = False, solution: bool = False, locked: bool = False) -> dict[str, Any]:
-    """Return the metadata with which nbgrader recognizes a cell (schema 3)."""
+    """Return the metadata by which nbgrader recognizes a cell (schema 3)."""
     return {
         "grade": grade,
         "grade_id": name,

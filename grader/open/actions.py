@@ -61,7 +61,7 @@ class Actions:
         return {}
 
     def ask(self, request: Request) -> object:
-        """Run a verb of `ros2` that changes nothing."""
+        """Run a `ros2` command that changes nothing."""
         words = arguments(str(request.get("text", "")))
         env = users_environment(None, lambda _: None, {**os.environ, "GRADER_ROS2_DAEMON": "0"})
         found = answer(words, env)

@@ -36,7 +36,7 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
     """Serve the page and grade, until Ctrl-C or SIGTERM is received, or the terminal is closed.
 
     Raises:
-        UsageError: another program uses the port, or the user is not allowed to use the port.
+        UsageError: another program is using the port, or the user is not allowed to use the port.
         MachineError: a library that the page needs is not installed, or the server has exited.
     """
     see_that_it_can_be_served("`grader watch` works without it")
@@ -59,7 +59,7 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
             Thread(target=_pass_on, args=(connection, events), daemon=True).start()
             with suppress(ConnectionError):
                 grading.run(Desk(lambda content: _send(connection, content)), events, workspace)
-            message = "The process that serves the page has exited. Repeat the command."
+            message = "The process that serves the page has exited. Run the command again."
             raise MachineError(message)
     except KeyboardInterrupt:
         print()
@@ -67,7 +67,7 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
 
 @contextmanager
 def _page(place: Place, workspace: Path | None, *, opens: bool) -> Iterator[socket.socket]:
-    """Start the process that serves the page, and yield the connection to this process.
+    """Start the process that serves the page, and yield a connection to that process.
 
     Closing the connection stops the process.
     """

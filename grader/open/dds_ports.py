@@ -63,7 +63,7 @@ def reserve(domain: int) -> Ports:
         if len(own) < OWN and (pair := _bound(participant_ports(domain, number))):
             own[number] = pair
     if not own:
-        message = f"Too many nodes run in ROS domain {domain} on this machine. Stop some of them."
+        message = f"Too many nodes are running in ROS domain {domain} on this machine. Stop some of them."
         raise MachineError(message)
     sockets = tuple(chain.from_iterable(own.values()))
     for first in range(FIRST_OWN + OTHERS, FIRST_OWN + OTHERS + _TRIED):

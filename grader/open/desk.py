@@ -83,7 +83,7 @@ class Desk:
         self._set(replace(self._content, early={each.id: _check(each) for each in outcomes}, problem=""))
 
     def judged(self, report: Report) -> None:
-        """Show a verdict. Keep the details of the last verdict until `detailed` is called."""
+        """Show a verdict. Keep the details of the previous verdict until `detailed` is called."""
         checks = {outcome.id: _check(outcome) for outcome in report.outcomes}
         before = self._content.verdict
         made = Verdict(checks, verdict(report), tone(report), before.html if before else "")

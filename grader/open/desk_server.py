@@ -141,7 +141,7 @@ def _refused() -> Response:
 async def _wanted(request: Request) -> dict[str, Any]:
     """Return the JSON object in the body of the request.
 
-    Raises OverflowError if the body is too large, or ValueError for other data.
+    Raises OverflowError if the body is too large, or ValueError if it is not a JSON object.
     """
     body = b""
     async for chunk in request.stream():

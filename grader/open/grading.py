@@ -26,7 +26,7 @@ RERUN, STEP = "rerun", "step"
 
 
 def run(desk: Desk, events: Events, workspace: Path | None) -> None:
-    """Grade after every save and command, until the events end."""
+    """Grade after every save and command, until there are no more events."""
     options = Options(in_cell=bubblewrap.usable())
     current = steps.current(workspace)
     while True:

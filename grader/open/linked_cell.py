@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from grader.ros.installation import Ros
 
 LIMITS = replace(NODE_LIMITS, cpu_s=4 * 3600)
-"""The limits of a node in a trial, but with more processor time."""
+"""The limits of a node in a trial, but with more CPU time."""
 PROFILE = Path(grader.graph.__file__).with_name("loopback.xml")
 """The Fast DDS profile for a network that has only 127.0.0.1."""
 LAUNCHER = Path(grader.trial.__file__).with_name("launcher.py")
@@ -103,7 +103,7 @@ def linkable() -> bool:
 
 
 def environment(ros: Ros, domain: int, overlays: Sequence[Path] = ()) -> dict[str, str]:
-    """Return the environment of a node in this cell. `overlays` are install folders inside the cell."""
+    """Return the environment of a node in a linked cell. `overlays` are install folders inside the cell."""
     env = installation.environment(ros, home=bubblewrap.HOME, overlays=overlays, domain=domain)
     # The profile has the settings of LOCALHOST, but without shared memory, which the cell does not share.
     reach = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT", "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILE)}
@@ -112,7 +112,7 @@ def environment(ros: Ros, domain: int, overlays: Sequence[Path] = ()) -> dict[st
 
 @contextmanager
 def linked_cell(ros: Ros, domain: int) -> Iterator[LinkedCell]:
-    """Start the launcher of trials in a cell, with a relay to this ROS domain. Leaving the context stops the cell.
+    """Start trial/launcher.py in a cell, with a relay to this ROS domain. Leaving the context stops the cell.
 
     Raises:
         MachineError: the cell could not be started, or all ports are in use.

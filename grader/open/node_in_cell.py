@@ -62,7 +62,7 @@ def run(program: Program) -> int:
     domain = int(env["ROS_DOMAIN_ID"])
     with linked_cell(ros, domain) as cell:
         _start(cell, program, built, ros, domain)
-        print(f"{program.executable} runs in a sandbox.\n", flush=True)
+        print(f"{program.executable} is running in a sandbox.\n", flush=True)
         return _until_it_ends(cell, program)
 
 

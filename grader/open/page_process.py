@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 LONGEST = 1 << 26
 """The maximum size of a line (bytes). The HTML of a verdict is much smaller."""
 _LOOK_S = 1.0
-"""The interval between checks of whether another command has changed the learner's progress (s)."""
+"""The interval at which changes to the learner's progress are detected (s)."""
 
 
 class PageProcess:
@@ -76,7 +76,7 @@ class PageProcess:
             await self._programs.stop()
 
     async def _follow(self, reader: asyncio.StreamReader, ended: asyncio.Event) -> None:
-        """Show each new content of the page until the grading process has exited."""
+        """Show each update of the page's content until the grading process has exited."""
         try:
             with suppress(ConnectionError):
                 while line := await reader.readline():

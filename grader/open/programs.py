@@ -141,9 +141,9 @@ class Programs:
         return Address(int(found[1]), found[2]) if found else None
 
     async def beside_another(self) -> bool:
-        """Return whether a turtlesim that this object has not started is running.
+        """Return whether a turtlesim is running that was not started by this object.
 
-        A second turtlesim would get the same commands.
+        A second turtlesim would receive the same commands.
         """
         return not self.turtlesim.running and await asyncio.to_thread(_turtle_is_there)
 

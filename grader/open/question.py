@@ -41,7 +41,7 @@ _MOST_WORDS = 8
 LONGEST = 20_000
 """The maximum length of the output of a command (characters)."""
 HZ_S = 5.0
-"""The time for which `ros2 topic hz` measures (s)."""
+"""The duration of `ros2 topic hz` (s)."""
 PATIENCE_S = 15.0
 
 

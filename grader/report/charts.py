@@ -129,9 +129,9 @@ def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> 
     low, high = min(measured.intervals), max(measured.intervals)
     caption = f"{len(series)} intervals, {_s(measured.mean_s)} s on average, from {_s(low)} to {_s(high)} s."
     if stalled:
-        others = "1 interval is" if stalled == 1 else f"{stalled} intervals are"
+        others, them = ("1 interval is", "it") if stalled == 1 else (f"{stalled} intervals are", "them")
         caption += (
-            f" {others} left out, because the start of the trial or a stall of the machine may have changed them."
+            f" {others} left out, because the start of the trial or a stall of the machine may have changed {them}."
         )
     drawn = ""
     if wanted:
@@ -161,8 +161,8 @@ def _s(seconds: float) -> str:
 def values(evidence: Evidence, name: str = "values", bins: int = BINS) -> Chart | None:
     """Draw the values of the commands over time. Return None if there are no commands.
 
-    The fields linear.x and angular.z always have a row. Another field has a row if the exercise requires the field or
-    if its value was not always 0.
+    The fields linear.x and angular.z always have a row. Another field has a row if the exercise requires a value other
+    than 0 or if the value was not always 0.
     """
     commands = evidence.commands
     if not commands:

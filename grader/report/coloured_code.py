@@ -1,4 +1,4 @@
-"""Source code in coloured pieces, with the few classes that the pages' style sheet (page.css) defines."""
+"""Source code in coloured pieces, with the few CSS classes that the style sheet page.css defines."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The page of one submission: the verdict, the checks with the code that they point to, the replay, graph and logs.
+"""The page of one submission: the verdict, the checks with the code that they refer to, the replay, graph and logs.
 
-The page omits everything that differs from run to run (wall times and paths of recordings), so generating it again from
-a recording gives an identical page.
+The page omits everything that differs from run to run (wall times and paths of recordings), so a page that is generated
+again from a recording is identical.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class ShownCheck:
 
 
 def save_html(evidence: Evidence, report: Report, file: Path) -> None:
-    """Write the page. If the file cannot be written, raises the errors of `output_file.write`."""
+    """Write the page. Raises the same errors as `output_file.write`."""
     save_page(html_page(evidence, report), file)
 
 
@@ -125,7 +125,7 @@ def _page(evidence: Evidence, report: Report) -> str:
 
 
 def shown_checks(evidence: Evidence, report: Report) -> list[ShownCheck]:
-    """Return every check. The same lines of code are shown only once."""
+    """Return all checks for a page. The same lines of code are shown only once."""
     shown: list[ShownCheck] = []
     room = CODE_BYTES
     for number, outcome in enumerate(report.outcomes, 1):

@@ -1,4 +1,4 @@
-"""The page of a class, made from its reports: points, the most common failures and their causes, machine errors.
+"""The page of a class, made from its reports: points, the most common failures with their causes, and machine errors.
 
 The reports are the JSON files below a folder. If there is a page with the same name next to a report, the class page
 links to that page.
@@ -182,7 +182,7 @@ def _link(file: Path, folder: Path) -> str:
 
 
 def failures(entries: Iterable[Entry]) -> list[FailedCheck]:
-    """Return the failed checks, beginning with the check that most submissions failed."""
+    """Return the failed checks, the most frequent first."""
     checks: dict[tuple[str, str], FailedCheck] = {}
     for entry in entries:
         for outcome in entry.failed:

@@ -36,7 +36,7 @@ def make_page(template: str, scripts: Sequence[str], data: object, values: Mappi
 
 
 def save_page(page: str, file: Path) -> None:
-    """Write a page. If the page cannot be written, raises the errors of `write`."""
+    """Write a page. Raises the same errors as `output_file.write`."""
     write(file, page.encode("utf-8", "replace"))
 
 

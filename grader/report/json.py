@@ -1,6 +1,6 @@
 """Convert a report to JSON and back.
 
-Schema 4. Every key is always present. Strings are never null unless stated below.
+Schema 4. Every key except `change` is always present. Strings are never null unless stated below.
 
     schema        4; schemas 1 to 3 can be read too: 1 has no `confined`; in 1 and 2, `max` excludes checks with
                   "error"; 1 to 3 have no `tried`
@@ -13,8 +13,8 @@ Schema 4. Every key is always present. Strings are never null unless stated belo
     points, max   sums over the outcomes; a check with status "error" counts 0 points
     outcomes      [{id, kind, title, status: "passed", "failed", "skipped" or "error", points, max, seen, expected,
                   cause, diagnosis: stable id of the cause or null, where: {file, line or null} or null, hidden,
-                  advice: true if a failure costs no points and no pass, near_edge,
-                  tried: the result of changing the cause in a copy, or an empty string,
+                  advice: true if a failure costs no points and does not prevent a pass, near_edge,
+                  tried: the result of fixing the cause in a copy, or an empty string,
                   change: that change as a unified diff, only if it has proved the cause}]
     seconds       {stage: wall time in s}; differs from run to run
     recordings    [paths of the recordings that were kept]

@@ -76,5 +76,5 @@ def _case(suite: ET.Element, student: str, report: Report, outcome: Outcome) -> 
 
 
 def _text(text: str) -> str:
-    """Keep only printable characters, because XML 1.0 cannot represent most other characters."""
+    """Replace characters that are not printable, because XML 1.0 cannot represent most of them."""
     return printable(text)

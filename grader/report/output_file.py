@@ -1,7 +1,7 @@
 """Write files that the user named on the command line.
 
 The file may be in the folder of a student, who may have put a symbolic link there that leads to a file of the user.
-Therefore, no such link is followed. The links of the system, such as /dev/stdout, are followed.
+Therefore, such links are not followed, except those of the system, such as /dev/stdout.
 """
 
 from __future__ import annotations

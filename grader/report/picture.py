@@ -50,7 +50,7 @@ class Panel:
 
 
 def save_picture(evidence: Evidence, report: Report, file: Path) -> None:
-    """Write the picture as a PNG file. If the file cannot be written, raises the errors of `write`."""
+    """Write the picture as a PNG file. Raises the same errors as `output_file.write`."""
     write(file, read(_png, evidence, report))
 
 
@@ -61,7 +61,10 @@ def _png(evidence: Evidence, report: Report) -> bytes:
 
 
 def draw_picture(evidence: Evidence, report: Report) -> Image.Image:
-    """Return one image with the pictures of all trials. If there is no trajectory to draw, the picture says so."""
+    """Return one image with the pictures of all trials.
+
+    If there is no trajectory to draw, the picture shows the reason.
+    """
     trials = [each for each in evidence.views() if not each.trial.calls and not each.trial.beside] or [evidence]
     panels = _panels(len(trials))
     page = _page(panels)

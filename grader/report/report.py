@@ -31,7 +31,7 @@ class Report:
     seed: int | None
     outcomes: tuple[Outcome, ...]
     seconds: dict[str, float] = field(default_factory=dict)
-    """The wall time of each stage. Wall time is ignored when two reports are compared."""
+    """The wall time of each stage (s)."""
     recording: str | None = None
     confined: bool = True
     """False if the student's code ran outside a sandbox, with resource limits only."""
@@ -135,7 +135,7 @@ def _in_one_line(difference: str) -> str:
 
 
 def _why_this_clock(evidence: Evidence) -> str:
-    """Return the reason for the clock of the first trial, and for each clock that differs from this one."""
+    """Return the reason for the clock of the first trial, and the reasons for any other clocks in later trials."""
     first = evidence.run.recording
     if first is None and evidence.run.called is not None:
         return "No node was run. Your code was called, without a simulator."

@@ -1,6 +1,7 @@
-"""Scene: the drawing of a run on the turtle's canvas, as pure data in metres. picture.py and svg.py paint the scene.
+"""Scene: the drawing of a run on the turtle's canvas, as pure data in metres.
 
-The PNG, the page and the notebooks use the same scene, so they always show the same drawing.
+scene_image.py and svg.py paint the scene. The PNG, the page and the notebooks use the same scene, so they always show
+the same drawing.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ MOST_TICKS = 150
 TURNED_RAD = 0.1
 """A turtle that turned by less than this (rad) is considered not to have turned."""
 TICK_M = 0.11
-"""Half the length of a tick."""
+"""Half the length of a tick (m)."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +103,7 @@ def executables(evidence: Evidence) -> str:
 
 def _without_recording(evidence: Evidence) -> Scene:
     if evidence.run.bench is not None:
-        return Scene(notice="The tests need no turtle.")
+        return Scene(notice="The tests do not need a turtle.")
     return _bag_scene(evidence) or Scene(notice="The node was not run.")
 
 

@@ -31,7 +31,7 @@ def paint(scene: Scene, side_px: int) -> Image.Image:
 
 
 class _Canvas:
-    """A canvas that is being drawn. The methods of the canvas take coordinates in metres."""
+    """A canvas that is being drawn. Its methods take coordinates in metres."""
 
     def __init__(self, side: int) -> None:
         self.image = Image.new("RGB", (side, side), SEA)

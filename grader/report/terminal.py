@@ -68,7 +68,7 @@ def render_changes(before: Report, after: Report, console: Console) -> None:
 
 
 def early(outcomes: Sequence[Outcome]) -> list[str]:
-    """Return one line per mistake that the files alone show, so that users see it before the package is built."""
+    """Return one line for each mistake that the files alone show. Users see these lines before the package is built."""
     shown = [(outcome, outcome.finding) for outcome in outcomes if not outcome.hidden]
     lines = [
         f"{outcome.title}: {finding.observed}" + (f" ({finding.where})" if finding.where else "")
@@ -162,7 +162,7 @@ def _footnotes(report: Report, *, verbose: bool) -> list[str]:
     simulated_alone = report.clock == "simulated" and "in wall time: " not in why
     notes = [] if simulated_alone and not verbose else [f"{clock}: {why}" if clock and why else clock or why]
     if report.seed is not None:
-        notes.append(f"The turtle's start pose was drawn with seed {report.seed}.")
+        notes.append(f"The turtle's random start pose was generated with seed {report.seed}.")
     if not report.confined:
         notes.append(UNCONFINED)
     if report.recording is not None:

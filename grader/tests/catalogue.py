@@ -94,9 +94,9 @@ def page() -> str:
 
 
 def amounts() -> dict[str, tuple[int, int, int]]:
-    """Return the amounts of cases of each exercise.
+    """Return the numbers of cases for each exercise.
 
-    For each exercise, these are its mistakes that a report names, the diagnoses that they show, and its correct
+    The numbers count the mistakes that a report names, the diagnoses that these mistakes show, and the correct
     submissions that differ from our solution.
     """
     found = {}

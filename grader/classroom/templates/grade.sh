@@ -3,7 +3,7 @@
 #
 #   grade.sh SUBMISSION STUDENT EXERCISE OUT [options of `grader grade`, such as --fail-under 60]
 #
-# On GitHub Actions, the script writes the step's summary and annotations, and with GRADESCOPE_RESULTS=FILE,
+# On GitHub Actions, the script writes the step's summary and annotations. With GRADESCOPE_RESULTS=FILE, it writes
 # Gradescope's results. Exit codes: 0 graded, 1 below --fail-under, 2 wrong command, 3 grader or machine broken.
 set -euo pipefail
 [ $# -ge 4 ] || { sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }

@@ -1,4 +1,4 @@
-"""The benchmark of the mistakes: with how many nodes a case is compared."""
+"""The benchmark of mistakes: F includes one node for each trial of an exercise."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Each diagnosis stands in one group at most, and every diagnosis in a group exists."""
+"""Each diagnosis is in at most one group, and every diagnosis in a group exists."""
 
 from __future__ import annotations
 

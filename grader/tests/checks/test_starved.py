@@ -1,4 +1,4 @@
-"""A lack of processor time is not blamed on the node, and what no busy machine explains is still a failed check."""
+"""A lack of CPU time is not blamed on the node, but a busy machine does not excuse any other failure."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The grader uses processes' descriptors and locks in a Python that was built for an old system, too."""
+"""The grader can use pidfds and file locks even in a Python that was built for an old system."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A file system that is mounted with the option noexec is named, with what to do."""
+"""If a file system is mounted with the option noexec, a message contains its path and says what to do."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Commands whose standard streams are closed, or have no code for ✓ and →."""
+"""Commands whose standard streams are closed, or whose encoding does not have ✓ and →."""
 
 from __future__ import annotations
 

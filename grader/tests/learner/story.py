@@ -164,7 +164,7 @@ def walk(learner: Learner, steps: list[str]) -> None:
     screen.send("h")
     screen.expect("Hint 1 of")
     screen.send("n")
-    screen.expect("has not passed yet")
+    screen.expect("You have not passed")
     for step, following in pairwise([*steps, ""]):
         learner.solves(step)
         await_verdict(screen, r"Passed: 100 of 100 points")

@@ -146,7 +146,7 @@ def test_fresh_moves_the_old_work_to_a_folder_that_colcon_ignores(home: Path) ->
 
 def test_next_waits_until_the_step_has_passed(home: Path) -> None:
     assert steps.start("next", None).exercise.id == FIRST
-    with pytest.raises(UsageError, match="has not passed yet"):
+    with pytest.raises(UsageError, match="You have not passed"):
         steps.start("next", None)
     passed(FIRST)
     assert steps.start("next", None).exercise.id == SECOND
@@ -182,7 +182,7 @@ def test_a_failure_in_the_folder_that_a_lesson_names_points_to_the_workspace(hom
     assert steps.note(exercise, named, failed) == ""
     steps.start("01", None)
     own = home / "ros2_ws/src/my_robot_controller"
-    assert steps.note(exercise, named, failed) == f"Your own work on this step is in {own}: grader check 01"
+    assert steps.note(exercise, named, failed) == f"To grade your own work in {own}, type: grader check 01"
     assert steps.note(exercise, named, report("passed")) == ""
     assert steps.note(exercise, home, failed) == ""
 

@@ -48,6 +48,20 @@ def test_one_command_shows_the_turtle_and_ctrl_c_ends_everything(learner: Learne
     assert [pid for pid in started if Path(f"/proc/{pid}").exists()] == []
 
 
+def test_ctrl_c_stops_only_the_program_if_another_turtlesim_is_running(learner: Learner) -> None:
+    simulator = learner.types("sim")
+    simulator.expect("Spawning turtle")
+    child = learner.types("run", "--no-view")
+    child.expect("A turtlesim is already running, and the node uses it.")
+    child.expect(r"Press Ctrl-C to stop the program\.")
+    child.expect(r"\[draw_circle\]: ")
+    child.sendintr()
+    child.expect(pexpect.EOF)
+    assert simulator.isalive()
+    simulator.sendintr()
+    simulator.expect(pexpect.EOF)
+
+
 def test_a_crash_shows_the_learners_own_file(learner: Learner) -> None:
     node = learner.home / "ros2_ws" / NODE
     right = node.read_text("utf-8")

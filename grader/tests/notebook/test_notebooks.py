@@ -97,7 +97,7 @@ def test_hidden_tests_are_not_released() -> None:
         (code("x = 1", solution=True), "a solution cell has no BEGIN SOLUTION"),
         (code("### BEGIN HIDDEN TESTS\nx\n### END HIDDEN TESTS"), "a cell that is not graded contains hidden tests"),
         (code("### BEGIN HIDDEN TESTS\nx", grade=True, points=1), "has no END HIDDEN TESTS"),
-        (code("### END HIDDEN TESTS\nx", grade=True, points=1), "where hidden tests have not begun"),
+        (code("### END HIDDEN TESTS\nx", grade=True, points=1), "but hidden tests have not begun"),
     ],
 )
 def test_a_notebook_that_would_release_too_much_is_an_error(cell: dict[str, Any], why: str) -> None:

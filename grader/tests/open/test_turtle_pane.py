@@ -124,7 +124,7 @@ def drive(learner: Course, browser: Browser) -> None:
 
     page.get_by_role("button", name="Run it").click()
     page.locator("#node-lines").get_by_text("[draw_circle]").wait_for()
-    where = "draw_circle runs in a sandbox." if bubblewrap.usable() else NO_CELL
+    where = "draw_circle is running in a sandbox." if bubblewrap.usable() else NO_CELL
     page.locator("#node-lines").get_by_text(where).wait_for()
     page.locator("#rosout").get_by_text("[INFO] [draw_circle]: ").wait_for()
     page.locator('#graph [data-name="/draw_circle"]').wait_for()

@@ -1,4 +1,4 @@
-"""A run that can never go on is ended early, and a run that only takes its time is not."""
+"""A run that can never continue is ended early, but a slow run is not."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The reasons for which a node keeps running after Ctrl-C."""
+"""The reasons why a node keeps running after Ctrl-C."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The sentences about commands that draw another path."""
+"""The sentences about commands that lead to a wrong path."""
 
 from __future__ import annotations
 
