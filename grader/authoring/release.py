@@ -53,7 +53,7 @@ def released(solution: Path) -> dict[str, ReleasedFile]:
 
     `solution` is the folder of a step in solutions/.
 
-    Raises UsageError, which names the file and the line, if a marker is wrong or a released file cannot be parsed.
+    Raises UsageError, with the file and the line, if a marker is wrong or a released file cannot be parsed.
     """
     files: dict[str, ReleasedFile] = {}
     found = _read(solution)
@@ -100,7 +100,7 @@ def _fresh_notebooks(solution: Path) -> dict[str, bytes]:
 
 
 def stale(solutions: Path, exercises: Path) -> tuple[str, ...]:
-    """Return one sentence for each file of exercises/ that differs from the result of `release`."""
+    """Return one sentence for each file in exercises/ that differs from the result of `release`."""
     steps = sorted({folder.name for root in (solutions, exercises) for folder in root.iterdir() if folder.is_dir()})
     return tuple(line for step in steps for line in _stale_step(solutions / step, exercises / step))
 

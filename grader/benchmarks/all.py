@@ -94,8 +94,8 @@ def main() -> None:
     """Measure all costs and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--times", type=int, default=5, help="number of measurements, whose median is printed")
-    parser.add_argument("--class", dest="students", type=int, default=16, help="submissions in the class (default: 16)")
-    parser.add_argument("--sync", type=int, default=6, help="notebooks that gradebook sync grades (default: 6)")
+    parser.add_argument("--class", dest="students", type=int, default=16, help="size of the class (default: 16)")
+    parser.add_argument("--sync", type=int, default=6, help="number of notebooks for `gradebook sync` (default: 6)")
     arguments = parser.parse_args()
     before = os.getloadavg()[0]
     with tempfile.TemporaryDirectory() as folder:

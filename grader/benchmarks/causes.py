@@ -15,8 +15,8 @@ Each statement is checked in two ways: against the diagnoses that the operators 
 depend on diagnoses (the difference between the two packages, the source and the recording;
 grader/tests/operators/facts.py). The benchmark also lists each wrong package whose report missed the cause, with the
 difference from the correct package. `--keep` stores recordings, and `--again` judges stored recordings again without
-running anything. If a run with `--keep` is stopped, the next run continues where it stopped. At the end, the benchmark
-checks a few wrong packages without and with `--explain`, and prints the ratio of the CPU times.
+running anything. If a run with `--keep` is stopped, the next run continues from there. At the end, the benchmark checks
+a few wrong packages without and with `--explain`, and prints the ratio of the CPU times.
 """
 
 from __future__ import annotations

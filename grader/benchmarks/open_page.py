@@ -37,7 +37,7 @@ AIM_READY_S = 1.0
 AIM_IDLE = 0.01
 """The target for the share of one core that an idle page uses."""
 _DRIVER = ("node", "node-MainThread")
-"""The possible names of the process of Playwright's driver. The name depends on the version of Node.js."""
+"""The possible process names of Playwright's driver. The name depends on the version of Node.js."""
 _REST_S = 2.0
 _IDLE_S = 0.1
 """The processes are idle if they use at most this CPU time (s) within _REST_S."""
@@ -84,7 +84,7 @@ def main() -> None:
 
 
 def _begun(stack: ExitStack, home: Path) -> Course:
-    """Start the step with `grader start` in a new home folder, and return the course in this folder."""
+    """Start the step with `grader start` in a new home folder, and return the Course object of this folder."""
     home.mkdir()
     learner = stack.enter_context(contextmanager(course)(home))
     learner.run("start", CIRCLE)

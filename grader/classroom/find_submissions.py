@@ -47,8 +47,8 @@ class Found:
     student: str
     exercise: str
     path: Path
-    """An absolute path whose links were resolved. If the path contains a link when the submission is read, a student
-    has replaced a folder with this link, so the submission is not graded."""
+    """An absolute path in which all links have been resolved. If the path contains a link when the submission is read,
+    a student has replaced a folder with this link, so the submission is not graded."""
     refused: str = ""
     """The reason why the submission cannot be graded, if the reason is already known."""
 

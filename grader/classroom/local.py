@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from grader.classroom.task import Task
 
 MEMORY_A_TASK = 1536 * 1024 * 1024
-"""The memory that the grader plans for each task (bytes). A cell may use more memory than this (sandbox.Limits), but
-few cells do, and never all of them at the same time."""
+"""The memory that each task is expected to need (bytes). A cell may use more memory than this (sandbox.Limits), but few
+cells do, and never all of them at the same time."""
 WAITING_A_JOB = 2
-"""The number of additional tasks per job that may run while other tasks wait for wall time."""
+"""The number of additional tasks per job that may run while other tasks are in a trial in wall time."""
 TASK_S = 1800.0
 """A worker that is busy for longer than this (s) is considered hung. This time is longer than the sum of all time
 limits for one submission."""

@@ -33,7 +33,7 @@ def mark(file: Path) -> None:
 
 
 def is_marked(file: Path) -> bool:
-    """Return whether the file contains a mark of this user. A link counts as not marked."""
+    """Return whether the file contains a mark of this user. For a link, the result is False."""
     try:
         if file.is_symlink() or not file.is_file() or file.stat().st_size != 2 * _BYTES:
             return False

@@ -56,7 +56,7 @@ def estimate(done: int, of: int, seconds: float) -> str:
 
 @contextmanager
 def screen(amount: int, *, several: bool) -> Iterator[Screen]:
-    """Yield a display of the progress of a number of submissions.
+    """Yield a display that shows the progress of `amount` submissions.
 
     If `several` is true, the screen also shows the exercise of each submission.
     """

@@ -26,7 +26,7 @@ def read_owners(file: Path) -> dict[str, str]:
 def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> dict[int, dict[str, str]]:
     """Return a mapping from each line number to the values of that line by column.
 
-    The columns in `needed` are never empty, and the values of the first of these columns are unique.
+    The values of the columns in `needed` are never empty, and the values of the first of these columns are unique.
 
     Raises:
         UsageError: the file is not a roster. If a single line is wrong, the message contains its number.

@@ -77,9 +77,9 @@ class Done:
 def perform(
     task: Task, tell: Callable[[str], None] = lambda _: None, now: Callable[[Pace], None] = lambda _: None
 ) -> Done:
-    """Grade a task. `now` is called whenever a trial starts or stops waiting for wall time.
+    """Grade a task. `now` is called whenever a trial in wall time begins or ends.
 
-    Other submissions can use the processors while the trial waits.
+    During such a trial, other submissions can use the processors.
 
     Raises:
         MachineError: the task was created by another version of the grader, or no sandbox is available.
@@ -98,7 +98,7 @@ def perform(
         return _with_page(_refused(task, exercise, task.content))
 
     class Waiting(Trial):
-        """A trial that reports when it starts and stops waiting for wall time."""
+        """A trial that reports when a run in wall time begins and ends."""
 
         def run(self, package: str, executable: str, tree: bytes) -> Recording:
             if self._plan.clock != "wall":

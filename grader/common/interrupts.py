@@ -17,7 +17,7 @@ _SOON_S = 0.01
 
 @contextmanager
 def stops_deferred() -> Iterator[None]:
-    """Defer the signals that stop the command until the end of the context.
+    """Until the end of the context, defer the signals that stop the command.
 
     Some objects of rclpy cannot be destroyed without a traceback if an exception interrupts their `__init__`.
     """

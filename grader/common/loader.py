@@ -1,7 +1,7 @@
 """Start a program in such a way that the link /proc/PID/exe does not lead to the file of the program.
 
 /proc/PID/exe leads to the file that a process executes. The read-only mounts of a sandbox do not protect a file that is
-opened in this way. If the file belonged to the user of the sandbox (for example, a Python that this user has
+opened through this link. If the file belonged to the user of the sandbox (for example, a Python that this user has
 installed), code in the sandbox could change the file. If the system's dynamic loader runs the program, /proc/PID/exe
 leads instead to the loader, which belongs to root.
 """

@@ -14,7 +14,7 @@ from typing import Optional, Tuple
 OF_THE_DISK = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS})
 """Errors that mean that the disk is full or broken. Any other error concerns a single file."""
 ROOM = "free some space there, or set another folder with XDG_CACHE_HOME, XDG_STATE_HOME or TMPDIR"
-_WRITABLE = "use a folder on another disk, also for XDG_CACHE_HOME, XDG_STATE_HOME and TMPDIR"
+_WRITABLE = "use a folder on another disk, and also set XDG_CACHE_HOME, XDG_STATE_HOME and TMPDIR to such folders"
 _SCARCE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN, errno.EIO})
 _NOT_ALLOWED = "see the output of `grader doctor`"
 

@@ -51,7 +51,7 @@ class ConfinedKernelManager(AsyncKernelManager):
     submission = Unicode("")
     trusted = Bool(default_value=False)
     why = ""
-    """The reason why the kernel was stopped, or an empty string if it exited by itself."""
+    """The reason why the kernel was stopped, or an empty string if it exited on its own."""
     _folder = Instance(tempfile.TemporaryDirectory, allow_none=True)
     _life = -1
 

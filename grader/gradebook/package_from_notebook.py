@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def graded_folder(exercise: Exercise, submitted: Path, together: Path) -> Path:
-    """Return the folder to grade: `submitted`, or `together` with the package completed from the notebook's cells.
+    """Return the folder to grade: `submitted`, or `together` if the notebook's cells complete the package.
 
     Raises:
         UnreadableError: the submission cannot be read.

@@ -1,4 +1,4 @@
-"""Additional steps of `nbgrader generate_assignment`, which insert starting points and strip solutions from files.
+"""Additional steps of `nbgrader generate_assignment` that insert starting points and strip solutions from files.
 
 If a step finds a mistake, the step raises an error, so that nbgrader removes its output and no solution is released.
 """

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class RestoreCells(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
-    """Restores the instructor's cells. nbgrader runs this step immediately after it clears the outputs."""
+    """Restores the instructor's cells. nbgrader runs this step immediately after clearing the outputs."""
 
     def preprocess(self, nb: NotebookNode, resources: dict[str, Any]) -> tuple[NotebookNode, dict[str, Any]]:
         """Restore the cells that generate_assignment stored in the gradebook."""

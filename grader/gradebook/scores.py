@@ -1,4 +1,4 @@
-"""`grader gradebook sync` and `compare`: write the scores that count, and list kernel scores that differ.
+"""`grader gradebook sync` and `compare`: write the scores that count, and list different scores from kernels.
 
 Scores from a kernel are provisional. These functions grade the submitted package in the sandbox and write the scores to
 nbgrader's gradebook through its API. A check that the grader cannot judge is worth 0 points and needs a manual grade
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Synced:
-    """The result of a sync: the numbers of submissions and of changed scores, and the work that was not judged."""
+    """The result of a sync: how many submissions were graded, how many scores have changed, and what was not judged."""
 
     submissions: int
     changed: int

@@ -143,7 +143,7 @@ def _print(text: str) -> None:
 
 
 def place(path: Path | None, exercise: str | None, workspace: Path | None = None) -> tuple[Exercise, Path]:
-    """Return the exercise and the folder that contains the learner's work on it.
+    """Return the exercise and the folder that contains the learner's work on the exercise.
 
     Raises:
         UsageError: neither the path nor the learner's progress determines the exercise.

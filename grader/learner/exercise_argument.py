@@ -80,10 +80,10 @@ def _check_there(step: Exercise, place: Path) -> None:
 
 
 def open_package(place: Path, *, typed: bool) -> Submission:
-    """Open the package in a folder. `typed` says whether the user typed a path.
+    """Open the package in a folder. `typed` is true if the user typed a path.
 
     Raises:
-        UsageError: the folder does not contain exactly one package. If no path was typed, the message also names the
+        UsageError: the folder does not contain exactly one package. If no path was typed, the message also contains the
             command that starts the first step.
     """
     try:

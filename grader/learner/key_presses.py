@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def single_keys() -> Iterator[Callable[[], str] | None]:
-    """Yield a function that waits for a key and returns it ("" at the end of input).
+    """Yield a function that waits for a key press and returns the key ("" at the end of input).
 
     If there is no terminal, yield None.
     """

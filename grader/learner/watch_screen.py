@@ -66,7 +66,7 @@ class _Screen:
         self._below: list[str] = []
         """The text that was printed below the report."""
         self._asked = False
-        """Whether a key has printed text since the last report. The printed text must stay on the screen."""
+        """Whether a key press has printed text since the last report. This text must stay on the screen."""
 
     def show(self, events: Events, notice: str) -> steps.Begun | None:
         """Show reports until the learner quits or starts another step.

@@ -179,7 +179,7 @@ def _package_files(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, 
 
 
 def lacking_text(path: str, lines: Sequence[str]) -> str:
-    """Return the sentence that tells the learner to add `lines` to the package file `path`, and where in this file."""
+    """Return the sentence that tells the learner where to add `lines` in the package file `path`."""
     one = len(lines) == 1
     what, these = ("one more line", "this line") if one else ("more lines", "these lines")
     if all(_ENTRY_POINT.fullmatch(line) for line in lines):

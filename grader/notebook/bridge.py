@@ -3,7 +3,7 @@
     python -m grader.notebook.bridge FOLDER WORKSPACE
 
 The kernel's sockets are on the cell's disk, so the cell does not need write access to a folder outside the cell. The
-relay that reads the pipes (grader.gradebook.relay) limits how much it reads. FOLDER is a read-only copy of the
+relay that reads the pipes (grader.gradebook.relay) limits the amount of data. FOLDER is a read-only copy of the
 submission. The kernel works on a second copy of the submission, in WORKSPACE.
 """
 

@@ -23,7 +23,10 @@ there."""
 
 
 def released_notebook(data: bytes, name: str) -> bytes:
-    """Return the released version of a source notebook. Raises UsageError, which names the cell with a mistake."""
+    """Return the released version of a source notebook.
+
+    Raises UsageError, with the number of the cell, for a mistake.
+    """
     try:
         notebook = json.loads(data)
         for number, cell in enumerate(notebook["cells"], 1):

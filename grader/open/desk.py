@@ -50,7 +50,7 @@ class Content:
     number: int = 0
     verdict: Verdict | None = None
     early: dict[str, dict[str, object]] | None = None
-    """Checks that fail because of the files, shown until the verdict is ready."""
+    """The failed checks that were judged from the files alone. They are shown until the verdict is ready."""
     digest: str = ""
     """The digest of the submission that was read last."""
     lacking: list[dict[str, object]] = field(default_factory=list)
@@ -79,7 +79,7 @@ class Desk:
         self._set(replace(self._content, digest=digest, lacking=lacking))
 
     def early(self, outcomes: Sequence[Outcome]) -> None:
-        """Show the checks that fail because of the files."""
+        """Show the failed checks that were judged from the files alone."""
         self._set(replace(self._content, early={each.id: _check(each) for each in outcomes}, problem=""))
 
     def judged(self, report: Report) -> None:

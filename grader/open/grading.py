@@ -44,7 +44,7 @@ def run(desk: Desk, events: Events, workspace: Path | None) -> None:
 
 
 def _await_step(events: Events) -> bool:
-    """Wait for an event after which a step may have been started. Return False when there are no more events."""
+    """Wait for a command after which the current step may have changed. Return False when there are no more events."""
     return any(happened.key == STEP for happened in events)
 
 

@@ -32,7 +32,7 @@ READY_S = 30.0
 NO_CELL = "There is no sandbox here, so the program runs under your account, as in a terminal."
 _LOOK_S = 0.05
 _NO_DAEMON = {"GRADER_ROS2_DAEMON": "0"}
-"""Without this variable, a ros2 daemon would be started, which would not exit together with the page."""
+"""Without this variable, a ros2 daemon would be started, and would continue to run after `grader open` has exited."""
 _ADDRESS = re.compile(r"See the turtle move: http://127\.0\.0\.1:(\d+)/#(\S+)")
 _SCREENS = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
 

@@ -20,7 +20,8 @@ MOST_COLOURED = 60_000
 """The maximum length of a file that is coloured (characters). It would take too long to colour a longer file."""
 
 NEWLINE = re.compile(r"\r\n|\r|\n")
-"""The line endings that Python recognizes. str.splitlines recognizes more, so it would count lines differently."""
+"""The line endings that Python recognizes. str.splitlines recognizes more line endings, so it would count lines
+differently."""
 
 
 @dataclass(frozen=True)

@@ -36,5 +36,5 @@ def _suspicion(report: Report, errors: int, judged: int) -> str:
     if report.with_status(Status.ERROR) and errors >= REPEATED and judged:
         return f"suspicious: it could not be judged in {errors} consecutive attempts, but other submissions could"
     if any(outcome.finding.diagnosis == UNREADABLE for outcome in report.outcomes):
-        return "the grader could not read all of it"
+        return "the grader could not read the whole submission"
     return ""

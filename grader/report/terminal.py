@@ -1,7 +1,7 @@
 """Print a report to the terminal: one line per check with details below it, and the verdict at the end.
 
-A terminal gets colours and a hanging indent. The same words are written to a pipe, but with each entry on one line. All
-text from a student is printed as plain text, without markup or control characters.
+On a terminal, the report has colours and a hanging indent. In a pipe, it has the same words, with each entry on one
+line. All text from a student is printed as plain text, without markup or control characters.
 """
 
 from __future__ import annotations
