@@ -38,7 +38,7 @@ def build_archive(exercise: str, file: Path, checks: Path | None, *, trusted: bo
     exercise_from(sources)  # report mistakes here, not on Gradescope
     root = course_folder().parent
     if not (root / "Makefile").is_file():
-        message = f"The archive needs a checkout of the course, but {root} is not a checkout."
+        message = f"The archive can be created only in a checkout of the course, but {root} is not a checkout."
         raise UsageError(message)
     try:
         with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:

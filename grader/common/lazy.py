@@ -1,8 +1,8 @@
 """Import numpy and catkin_pkg on first use, because the import takes 0.1 s and most commands do not need them.
 
-Use `from grader.common.lazy import np` in modules that many commands import but only a few commands use. A module that
-is first used in a child process is imported again in each child. `load_numpy` and `load_catkin_pkg` import the modules
-before the fork, so that the child processes do not have to import the modules again.
+Use `from grader.common.lazy import np` in modules that many commands import, although only a few commands need numpy. A
+module that is first used in a child process is imported again in each child. `load_numpy` and `load_catkin_pkg` import
+the modules before the fork, so that the child processes do not have to import the modules again.
 
 If one thread forks while another thread imports numpy, the child process waits forever for an import that never
 finishes (grader/submission/reader.py). Therefore, code that forks must hold the lock `IMPORTING`.

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 BELOW = 5
-"""The number of lines reserved below a report for the watched folder, the list of keys, and the output of a key."""
+"""The number of lines reserved below a report for the watched folder, the list of keys, and what a key press prints."""
 KEYS = "h hint · l list · n next · r rerun · q quit"
 
 

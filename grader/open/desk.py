@@ -113,7 +113,7 @@ def to_json(content: Content) -> str:
 
 
 def from_json(text: str | bytes) -> Content:
-    """Return the content from the output of `to_json`."""
+    """Return the content that `to_json` has written."""
     data = json.loads(text)
     made = data["verdict"]
     return Content(**{**data, "verdict": made and Verdict(**made)})
