@@ -16,7 +16,7 @@ class Cause:
     """The cause of a failed check: the id of the diagnosis, a text that explains the cause, and the place in the code.
 
     The text is empty if the observation needs no explanation. `fix` is the smallest change that would fix the mistake,
-    if known. The grader tests this change but never shows it to a student.
+    if known. The grader tests this change. Students see the change only if exercise.toml sets `show_fix`.
     """
 
     diagnosis: Diagnosis

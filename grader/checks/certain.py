@@ -97,10 +97,10 @@ CONCLUSIONS: frozenset[Diagnosis] = frozenset(
         "wrong-rate",
     }
 )
-"""Conclusions from the source code or from values, which a busy machine does not change."""
+"""Conclusions from the source code or from values, neither of which changes on a busy machine."""
 
 SHOWN = FROM_FILES | FROM_EXCEPTIONS | FROM_GRAPH | FROM_CONTENT
 FACTS = SHOWN | FROM_ORDER
 """A report states these causes as facts, and all other causes as possibilities until a tested fix confirms them."""
 ON_EVERY_MACHINE = SHOWN | CONCLUSIONS
-"""Diagnoses that hold on a busy machine, too. In wall time, a lack of processor time may cause all the others."""
+"""Diagnoses that also hold on a busy machine. In wall time, a lack of processor time may explain all others."""

@@ -27,7 +27,7 @@ class Edit:
 
 
 def at(where: Where | None, old: str, new: str) -> tuple[Edit, ...]:
-    """Return a tuple with an edit of this line, or an empty tuple if the place has no line number."""
+    """Return a tuple with an edit of the line at `where`, or an empty tuple if `where` has no line number."""
     return () if where is None or where.line is None else (Edit(where.file, where.line, old, new),)
 
 

@@ -24,11 +24,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Judgement:
-    """The findings of all checks, judged from the evidence that exists so far.
+    """The findings of all checks, based on the evidence that exists so far.
 
     `findings` contains a finding for every check. The findings in `settled` are final, because the evidence of their
-    stage was complete. Any other finding is an error, or means that the node was not run, or that a required check has
-    not passed yet.
+    stage was complete. Any other finding may change when more evidence exists.
     """
 
     exercise: Exercise
@@ -63,8 +62,8 @@ def judge(evidence: Evidence) -> tuple[Outcome, ...]:
     """Return the outcome of every check, in the order of the exercise.
 
     A check is skipped if a check that it needs did not pass. The message of the skipped check contains the title of the
-    first check that did not pass. If the machine could not produce the evidence for a check (`evidence.fault`), the
-    status of that check and of every check that needs it is `error`.
+    first check that did not pass, unless that check is hidden. If the machine could not produce the evidence for a
+    check (`evidence.fault`), the status of that check and of every check that needs it is `error`.
     """
     return judge_so_far(evidence, {}).outcomes
 
@@ -103,7 +102,7 @@ class Early:
     blocked: frozenset[str]
 
     def may_run(self, evidence: Evidence) -> bool:
-        """Return whether the trial may still be needed, since at least one of its checks is not blocked."""
+        """Return whether the trial may be needed: at least one of the checks that use its recording is not blocked."""
         exercise, trial = evidence.exercise, evidence.trial.id
         return any(_judges_trial(exercise, spec, trial) and spec.id not in self.blocked for spec in exercise.checks)
 
@@ -156,7 +155,7 @@ def _is_made(evidence: Evidence, stage: Stage) -> bool:
 
 
 def _is_complete(evidence: Evidence, spec: CheckSpec) -> bool:
-    """Return whether no later stage can add evidence that this check would use."""
+    """Return whether all evidence for this check exists, or can no longer be collected."""
     stage = KINDS[spec.kind].stage
     return _is_made(evidence, stage) or (stage == "trial" and evidence.run.overwhelmed is not None)
 

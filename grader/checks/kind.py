@@ -39,7 +39,8 @@ class Kind(Generic[P]):
     """A type of check. `check` is a pure function: the same evidence and parameters give the same finding.
 
     `title` is the title that a student sees if exercise.toml sets no title. `about` describes the check for authors of
-    exercises (docs/kinds.md). A check whose kind has `advice` is worth no points, and never fails a submission.
+    exercises (docs/kinds.md). If `advice` is True, checks of this kind are worth no points, and never make a submission
+    fail.
     """
 
     name: str
@@ -54,7 +55,7 @@ class Kind(Generic[P]):
     drives: bool = False
     """Whether a node must send velocity commands to the turtle to pass a check of this kind."""
     requested: Callable[[Evidence, P], Requested | None] | None = None
-    """Return the requirements of the check as shapes and values, or None if the submission does not determine them."""
+    """Return the requirements of the check as shapes and values, or None if they cannot be determined."""
     radius_m: Callable[[P], float] | None = None
     """Return the radius (m) of a circle that must fit on either side of a randomly drawn start position."""
 
@@ -79,7 +80,7 @@ class Kind(Generic[P]):
         return None if self.early is None or isinstance(params, Finding) else self.early(evidence, params)
 
     def request(self, evidence: Evidence, values: Mapping[str, Param]) -> Requested | None:
-        """Return the requirements of a check with these parameter values in a form that can be drawn, or None."""
+        """Return what a check with these parameter values requires, in a form that can be drawn, or None."""
         params = self._params(evidence, values)
         return None if self.requested is None or isinstance(params, Finding) else self.requested(evidence, params)
 
@@ -148,7 +149,7 @@ def strings(*, about: str) -> Any:
 
 
 def table(*, about: str, optional: bool = False) -> Any:
-    """Create a field for a table that is not empty. The field's value is a tuple of pairs (name, value).
+    """Create a field for a table that is not empty. The field's value is a tuple of (name, value) pairs.
 
     If the field is optional, the default is an empty table.
     """

@@ -1,7 +1,7 @@
-"""All kinds of checks, by the names that are allowed as the value of the key `kind` in exercise.toml.
+"""All kinds of checks. A check in exercise.toml selects its kind by name, with the key `kind`.
 
-An exercise uses only a few kinds. The module of a kind is imported when the kind is first used: importing all of them
-takes 0.1 s.
+An exercise uses only a few kinds. The module of a kind is imported when the kind is first used, because importing all
+modules takes 0.1 s.
 """
 
 from __future__ import annotations
@@ -89,11 +89,11 @@ _KINDS = {
     "tests_catch": ("tests_run", "CATCHES"),
     "uses_timer": ("advice", "USES_TIMER"),
 }
-"""Maps the name of a kind to its module in grader.checks.subjects and to the constant in this module."""
+"""Maps the name of each kind to a module in grader.checks.subjects and to a constant in that module."""
 
 
 class _Kinds(Mapping[str, "Kind[Any]"]):
-    """The kinds by their names."""
+    """A mapping from the name of each kind to the kind."""
 
     def __getitem__(self, name: str) -> Kind[Any]:
         module, constant = _KINDS[name]

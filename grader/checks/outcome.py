@@ -31,9 +31,9 @@ class Finding:
 
     `observed`, `expected` and `cause` are texts for a beginner, and `diagnosis` is a stable id.
 
-    `near_edge` is True if the distance between the measured value and the edge of the tolerance is at most a fifth of
-    the tolerance, or if the node did not stop in simulated time. If `near_edge` is True, the check is judged again in
-    wall time.
+    If `near_edge` is True, the result may be different in wall time, so the check is judged again in wall time. For
+    example, a measured value is near the edge of its tolerance (see tolerance.py), or the node did not stop in
+    simulated time.
     """
 
     status: Status
@@ -46,13 +46,13 @@ class Finding:
     fix: tuple[Edit, ...] = field(default=(), compare=False)
     """The change that would fix the mistake. The grader tests this change in a copy of the submission."""
     tried: str = ""
-    """A sentence that says whether the check passed when the change was tested.
+    """A text for students that says whether the check passed when the change was tested.
 
-    If `exercise.toml` sets `show_fix`, `tried` also contains the change, and students see it.
+    If `exercise.toml` sets `show_fix`, the text also contains the change.
     """
     change: str = ""
-    """The change as a unified diff if its test confirmed the cause. Only instructors see this diff, because it is a
-    part of the solution."""
+    """The change as a unified diff, if testing the change did not refute the cause. Only instructors see this diff,
+    because it is a part of the solution."""
 
     def because(self, cause: Cause) -> Finding:
         """Return the finding with this cause instead of its own cause."""
@@ -74,7 +74,7 @@ def failed(observed: str, expected: str, cause: Cause, *, near_edge: bool = Fals
 class Outcome:
     """A finding with the id, kind and points of its check.
 
-    If `advice` is True, the finding is worth no points and never fails the submission, whatever its status.
+    If `advice` is True, the check is worth no points and never makes the submission fail, whatever its status.
     """
 
     id: str

@@ -28,7 +28,7 @@ class Interval:
 
 @dataclass(frozen=True)
 class Requested:
-    """The required path of the turtle as `circles` (centre, radius in m) and `lines` (m).
+    """The required path of the turtle: `circles` (centre and radius, m) and `lines` (points, m).
 
     `path` describes the path in words.
 

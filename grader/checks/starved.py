@@ -1,7 +1,7 @@
 """Decide whether a check of a trial in wall time may have failed because of the machine rather than the node.
 
 A node that rarely gets a processor does everything later, so it does less before the end of the trial. A lack of
-processor time can therefore explain each failed check that compares times, numbers of messages or trajectories. It
+processor time can therefore explain any failed check that compares times, numbers of messages or trajectories. It
 cannot explain a wrong name, a wrong type, a wrong value in a message, or an exception.
 """
 
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from grader.trial.recording import Recording
 
 STARVED_S = 0.5
-"""If the stalls of a trial are longer than this in total (s), the machine may explain a failed check. Shorter stalls
-matter only for the checks that measure times, and these checks take the stalls into account themselves."""
+"""If the stalls of a trial take at least this long in total (s), they may be the reason why a check failed. Shorter
+stalls matter only for the checks that measure times, and these checks take the stalls into account themselves."""
 TOO_BUSY = "The machine was too busy to judge the check in wall time. Try again when the machine is less busy."
 
 
@@ -29,8 +29,8 @@ def too_busy() -> Finding:
 def unless_starved(finding: Finding, recording: Recording, off: float, per_s: float) -> Finding:
     """Return the finding, or an error finding if stalls of the machine can explain the wrong value.
 
-    `off` is the distance of the value from its tolerance range, and `per_s` is the change of the value per second.
-    While the machine stalls, the turtle continues with its last command.
+    `off` is the distance of the value from its tolerance range, and `per_s` is how much the value can change per second
+    of a stall. While the machine stalls, the turtle continues with its last command.
     """
     if finding.status is Status.FAILED and recording.stalls and off <= per_s * recording.stalled_s:
         return too_busy()

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 LATE_S = 1.05
 """The maximum time (s) until a message shows a change: slightly more than two periods of the topic."""
 AT_ONCE_S = 0.1
-"""If a turtle appears or disappears within this time (s) after a message, its name may be in the message or not."""
+"""If a turtle appears or disappears within this time (s) after a message, the message may contain its name or not."""
 EMPTY = "At this time, no target was left. Even then, the node must publish a message with an empty string."
 NOT_IN_NAMES = re.compile(r"\W")
 OFTEN = 3
@@ -96,7 +96,10 @@ def _has_targets(evidence: Evidence, gap_s: float, begin_s: float, most: Band) -
 
 
 def _wrong_names(evidence: Evidence, message: Announcement, heard: list[Announcement], expected: str) -> Finding | None:
-    """Return a failed finding if a name in the message was wrong or missing for more than LATE_S, else None."""
+    """Return a failed finding if the message does not contain exactly the names of the existing turtles, else None.
+
+    The message may or may not contain the name of a turtle that appeared or disappeared at most LATE_S before it.
+    """
     tracks = evidence.recording.tracks
     from_s, to_s = message.t_s - LATE_S, message.t_s
     where = evidence.place("publish")

@@ -285,7 +285,7 @@ LIST = Kind(
 GRAPH = Kind(
     "answer_graph",
     "trial",
-    "The answer matches ROS 2",
+    "The answer matches the ROS graph",
     GraphQuestion,
     answer_graph,
     about="The answer matches the ROS graph during the trial.",

@@ -237,7 +237,7 @@ ARC = Kind(
     "The turtle drives an arc",
     Arc,
     arc,
-    about="Velocity commands drive the turtle on an arc, in a certain colour or in a certain part of the trial.",
+    about="Velocity commands drive the turtle along an arc, in a certain colour or in a certain part of the trial.",
     drives=True,
     # A second arc, to the other side, leaves the circle of the first one, but stays within twice its radius.
     radius_m=lambda params: max(params.radius_m, min(2.0 * params.radius_m, MOST_ROOM_M)),

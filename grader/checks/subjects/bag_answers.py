@@ -78,7 +78,7 @@ def bag_answer(evidence: Evidence, params: BagAnswer) -> Finding:
         return passed(f"{shorten(match[0])} is right.")
     total = sum(evidence.bag(params.bag).counts.values())
     if params.quantity == "messages" and value == total:
-        counts = Cause("all-messages", "Only the messages of the topic with the poses count.", where)
+        counts = Cause("all-messages", "Only the messages on the topic with the poses count.", where)
         return failed(observed, "The answer is the value in your bag.", counts)
     count = len(evidence.bag(params.bag).poses.get(params.topic, Poses()).t_s)
     why = _why(params.quantity, value, truth, count)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 INSTALLED_MODULE = re.compile(r"(?:local/)?lib/python[\d.]+/(?:site|dist)-packages/(?P<path>.+\.py)")
 LAST_WORDS = re.compile(r"^(?:error|[\w.]*Error|[\w.]*Exception)\b.*", re.MULTILINE)
 SETUP_PY_FRAME = re.compile(r"(?P<before>, in run_setup\n.*\n(?:[ ^~]+\n)?\s+File )\"<string>\"")
-"""The traceback entry for setup.py when colcon runs it to read the arguments of setup()."""
+"""Matches the traceback entry for setup.py if colcon ran setup.py to read the arguments of setup()."""
 UNREAD_SETUP = "return ast.literal_eval(output)"
 """The line in colcon's source that reads the arguments of setup()."""
 NO_FILE = re.compile(r"can't copy '?(?P<file>[^':]*)'?: doesn't exist")
@@ -39,7 +39,9 @@ IGNORED = (
     "Delete the file, so that colcon finds the package."
 )
 EXPECTED = "`colcon build` succeeds and installs the package."
-OTHER_TYPE = "colcon decides from the build type in package.xml how to build a package. This type is not ament_python."
+OTHER_TYPE = (
+    "The build type in package.xml determines how colcon builds the package. This build type is not ament_python."
+)
 
 
 def plain_files(evidence: Evidence, _: NoParams) -> Finding:

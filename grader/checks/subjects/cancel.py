@@ -1,4 +1,4 @@
-"""Checks that the node cancels its goal when the trial requests it, and sends no further goals."""
+"""Checks of a node that cancels its goal on request: the cancellation, the response, and that no goal follows."""
 
 from __future__ import annotations
 

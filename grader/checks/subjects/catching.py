@@ -186,7 +186,7 @@ def _other_order(
 
 
 def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
-    """The node called the service only when turtle1 was near enough to the target, and not again and again."""
+    """The node called the service only when turtle1 was near enough to the target, and not too often per target."""
     recording = evidence.recording
     expected = f"The node calls {params.service} when the target is at most {params.reach_m:g} m away."
     until = activity.end_s(recording)
@@ -214,7 +214,7 @@ def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
     unseen = _uncaught(recording, caught(recording), params.service)
     if unseen is not None:
         observed = f"{shorten(unseen.turtle)} was removed, but the recording has no call to {params.service} for it."
-        text = "The node made more calls than a recording keeps."
+        text = "The node made more calls than a recording can hold."
         return failed(observed, expected, Cause("catch-again", text, where))
     return passed(f"Each time the node called {params.service}, the target was near.")
 

@@ -118,7 +118,7 @@ def _why_wall(evidence: Evidence, params: Eight) -> str:
         float(speed[at]) for speed in (evidence.recording.frames.linear, evidence.recording.frames.angular)
     )
     if abs(angular) <= STRAIGHT_RAD:
-        return "The turtle drove straight to the wall. angular.z is the turning speed."
+        return "The turtle drove straight into the wall. angular.z is the turning speed."
     too_large = abs(linear / angular) > params.radius_m + params.radius_tolerance_m
     return "The lobes are too large." if too_large else ""
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
 
 OTHER_ENDINGS = ("", ".txt", ".py.txt", ".PY", ".python")
-"""The endings that a file name has if .py was forgotten, or if an editor or a browser has added an ending."""
+"""The endings that a file name may have if .py was forgotten, or if an editor or a browser has added an ending."""
 DATA = (ast.Constant, ast.List, ast.Tuple, ast.Dict, ast.Set, ast.JoinedStr)
 """Expressions whose value is not callable."""
 
@@ -106,7 +106,7 @@ def _no_module(evidence: Evidence, module_name: str) -> Finding:
 
 
 def _similar_module(name: str, files: Collection[str]) -> str | None:
-    """Return the module whose folder and file name are both the same or similar, or None."""
+    """Return the module whose folder and file name are each equal or similar to those in `name`, or None."""
     modules = [
         import_path(path).removesuffix(".py").removesuffix("/__init__").replace("/", ".")
         for path in files

@@ -39,7 +39,9 @@ class LogFeedback:
     The angle in the line is at most `lag_s` old.
     """
 
-    format: str = string("a log line with remaining in it", about="The format of a line with the number `remaining`.")
+    format: str = string(
+        "a log line that contains remaining", about="The format of a line with the number `remaining`."
+    )
     period_s: float = number(0.5, above=0, about="The time between two lines.")
     tolerance_rad: float = number(0.05, above=0, about="The maximum error of the angle.")
     lag_s: float = number(0.15, above=0, about="The maximum age of the angle in a line.")
@@ -115,7 +117,7 @@ def _ended_s(evidence: Evidence, goal: Goal) -> float:
 
 
 def _near(evidence: Evidence, params: LogFeedback, line: Line, matches: Callable[[float, float], bool]) -> bool:
-    """Return whether `matches` is true for the time and heading of one of the frames that the line can describe."""
+    """Return whether `matches` returns True for the time and heading of a frame that the log line can describe."""
     frames = evidence.recording.frames
     near = (frames.t_s >= line.t_s - params.lag_s) & (frames.t_s <= line.t_s + FRAME_S)
     pairs = zip(frames.t_s[near].tolist(), frames.theta[near].tolist(), strict=True)
@@ -155,7 +157,8 @@ def _wrong(
         text = "The number keeps its sign: it is negative while the turtle turns to the right. Do not use abs."
         return failed(observed, expected, Cause("wrong-sign", text, where))
     if all(_holds(evidence, params, *pair, factor=math.degrees(1.0)) for pair in told):
-        return failed(observed, expected, Cause("degrees", "The feedback and the line are both in radians.", where))
+        text = "The feedback is in radians, and the line must be in radians too."
+        return failed(observed, expected, Cause("degrees", text, where))
     if len(told) > 1 and len({line.numbers["remaining"] for line, _ in told}) == 1:
         text = "The number never changes. Store the number in self each time feedback arrives."
         return failed(observed, expected, Cause("stale-feedback", text, where))

@@ -72,7 +72,10 @@ def fits_circle(evidence: Evidence, params: FitCall) -> Finding:
     if not all(math.isfinite(value) for value in values):
         if fit.centre_right:
             return failed(observed, expected, Cause(*RADIUS_OF_C).at(where))
-        cause = "In numpy, the square root of a negative number and a division by zero give NaN, with only a warning."
+        cause = (
+            "In numpy, the square root of a negative number is NaN, and a division by zero gives NaN or infinity. "
+            "numpy only prints a warning."
+        )
         return failed(observed, expected, Cause("not-a-number", cause, where))
     return passed(observed) if fit.right else failed(observed, expected, why_fit(fit).at(where))
 
@@ -84,7 +87,7 @@ def tolerances(arc: Arc, rounding_m: float) -> tuple[float, float, float]:
 
 
 def stopped(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
-    """Return a finding about a call that raised an exception or ended the program, or None."""
+    """Return a finding about a call that did not end in time, raised an exception or ended the program, or None."""
     if called.ended == "exit 0":
         return None
     where = evidence.code.start

@@ -33,7 +33,8 @@ class Goal:
 
 
 NEARLY_M = 1.0
-"""If a turtle stops this near (m) to a goal that is a constant in the code, it may have stopped too early."""
+"""If the turtle stops within this distance (m) of the goal, and the goal's coordinates are constants in the code, the
+node may have stopped the turtle too early."""
 
 
 def goal(evidence: Evidence, params: Goal) -> Finding:
@@ -88,7 +89,7 @@ def _in_code(evidence: Evidence, *numbers: float) -> bool:
 
 
 def requested_goal(_: Evidence, params: Goal) -> Requested:
-    """Return a circle around all positions that count as reaching the goal, and four lines that point to it."""
+    """Return a circle of all positions at which the goal is reached, and four lines that point to this circle."""
     x, y = params.x_m, params.y_m
     near, far = params.tolerance_m, params.tolerance_m + STROKE_M
     rays = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))

@@ -162,7 +162,7 @@ def _other_turn(before: Goal, goal: Goal, turn_deg: float) -> str:
     more = math.degrees(normalize(theta - float(before.request["theta"])))
     return (
         f"This heading is {abs(more):.0f} degrees further to the {'left' if more >= 0 else 'right'} than the previous "
-        f"goal. The exercise asks for {turn_deg:g} degrees to the left."
+        f"one. The exercise asks for {turn_deg:g} degrees to the left."
     )
 
 

@@ -111,7 +111,7 @@ def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expe
     why = Cause("log-format", "Compare the line letter by letter: capital letters, spaces and dots matter.")
     pattern = student_log.Format(params.format).pattern()
     if re.search(r"\{[\w.:]+\}", line):
-        text = "The line contains the braces themselves. Only an f-string replaces braces with a value."
+        text = "The line contains the braces themselves. An f-string replaces the braces with a value."
         where = evidence.place(*LEVELS)
         why = Cause("log-numbers", text, where).fixed_by(at(where, '("', '(f"'))
     elif re.search(r"%[-+.\d]*[dfsi]|\{\}", line):
@@ -228,7 +228,7 @@ def _set_again(evidence: Evidence) -> Cause | None:
 
 
 def _starts(evidence: Evidence) -> Iterator[tuple[float, Where]]:
-    """Yield the first value of each counter, with its place: a number assigned to a name that is also increased."""
+    """Yield each number that is assigned to a name that is also increased, with the place of the assignment."""
     for module in evidence.code.modules:
         increased = {ast.unparse(node.target) for node in module.nodes if isinstance(node, ast.AugAssign)}
         for node in module.nodes:

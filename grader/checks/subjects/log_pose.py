@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Floats, Recording
 
 EARLY_S = 0.02
-"""A log line can describe a frame that is up to this much (s) later, since the timestamps are not exactly simultaneous.
+"""A log line can describe a frame that is up to this much (s) later, because the times of log lines are not exact.
 
 This time is slightly longer than one frame.
 """
@@ -38,19 +38,19 @@ LENGTHS = ("hypot", "sqrt", "dist")
 class LogPosition:
     """The logged x and y may be up to `lag_s` old and may differ from the turtle's position by up to the tolerance."""
 
-    format: str = string("a log line with x and y in it", about="The format of a line with the numbers `x` and `y`.")
+    format: str = string("a log line that contains x and y", about="The format of a line with the numbers `x` and `y`.")
     tolerance_m: float = number(0.02, above=0, about="The maximum error of x and y.")
     lag_s: float = number(0.15, above=0, about="The maximum age of the position in a line.")
 
 
 @dataclass(frozen=True, kw_only=True)
 class LogDistance:
-    """The logged distance driven since the start may be at most `lag_s` old.
+    """The logged distance is the distance driven since the start.
 
-    The logged distance may differ from the real distance by at most the tolerance.
+    It may be up to `lag_s` old and may differ from the real distance by up to the tolerance.
     """
 
-    format: str = string("a log line with distance in it", about="The format of a line with the number `distance`.")
+    format: str = string("a log line that contains distance", about="The format of a line with the number `distance`.")
     tolerance_m: float = number(0.05, above=0, about="The maximum error of the distance.")
     lag_s: float = number(0.15, above=0, about="The maximum age of the distance in a line.")
 
@@ -131,7 +131,8 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
         np.hypot(frames.x - recording.start.x, frames.y - recording.start.y), lambda line: line.numbers["distance"]
     ):
         cause = (
-            "This is the straight line back to the start. The distance is the sum of all small steps between two poses."
+            "This is the length of the straight line to the start. The distance is the sum of all small steps, from "
+            "each pose to the next."
         )
         return failed(observed, expected, Cause("distance-from-start", cause, where))
     if holds(np.hypot(frames.x, frames.y), lambda line: line.numbers["distance"]) or _one_step_too_many(

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 NOT_WRITTEN = "Write the number into the node. `colcon test` runs your tests on this node."
 
-NOT_USED = "Use the constant where the node needs this number. Otherwise, the constant changes nothing."
+NOT_USED = "Use the constant where the node needs this number. Otherwise, the constant has no effect."
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,7 +75,7 @@ def own_constants(evidence: Evidence, params: OwnConstants) -> Finding:
 
 
 def _last_assignment(modules: tuple[Module, ...], name: str) -> tuple[Module, ast.expr] | None:
-    """Return the first module that has a constant with this name, with the last value of the constant, or None."""
+    """Return the first module that has a constant with this name, and the last value of the constant, or None."""
     for module in modules:
         given = [value for target, value in _assignments(module) if (dotted(target) or "").split(".")[-1] == name]
         if given:
@@ -84,7 +84,7 @@ def _last_assignment(modules: tuple[Module, ...], name: str) -> tuple[Module, as
 
 
 def _assignments(module: Module) -> Iterator[tuple[ast.expr, ast.expr]]:
-    """Yield the targets of all assignments with their values, also those of `a, b = 1, 2`."""
+    """Yield the targets of all assignments with their values, including those of `a, b = 1, 2`."""
     for node in module.nodes:
         if isinstance(node, ast.AnnAssign) and node.value is not None:
             yield node.target, node.value

@@ -29,7 +29,7 @@ BUILD_TYPE = "ament_python"
 EXPECTED_BUILD_TYPE = f"A Python package has the build type {BUILD_TYPE}."
 CATKIN = "catkin"
 KNOWN = frozenset({module.partition(".")[0] for module in MODULE_OF.values()} | {"rclpy", "sensor_msgs", "nav_msgs"})
-"""Common ROS 2 packages. A name that is almost one of these names is a typo."""
+"""Common ROS 2 packages. A name that is slightly different from one of these names is a typo."""
 
 
 def _line(evidence: Evidence, *patterns: str) -> Where:
@@ -119,8 +119,8 @@ def _class_declared(evidence: Evidence, declared: Iterable[str], expected: str) 
 def _imported(evidence: Evidence) -> dict[str, Where]:
     """Return the ROS 2 packages that the nodes of the exercise import, with the line of the first import.
 
-    The result does not contain a name that is almost the name of a known package: such a name is a typo. A
-    package without the imported names is left out too, because the mistake is in the import, not in package.xml.
+    A name that is slightly different from the name of a known package is left out, because it is a typo. A
+    package that has none of the imported names is left out too: the mistake is in the import, not in package.xml.
     """
     found: dict[str, Where] = {}
     for trial in evidence.exercise.trials:

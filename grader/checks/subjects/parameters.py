@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 CLOSE = 1e-6
 SET = ("/set_parameters", "/set_parameters_atomically")
-"""The services of a node that set parameters one after the other, or all together."""
+"""The services that set the parameters of a node one after the other, or all at once."""
 INTEGER, DOUBLE = 2, 3
 """The numbers of the types integer and double in rcl_interfaces/msg/ParameterType."""
 
@@ -53,7 +53,7 @@ def declares(evidence: Evidence, params: Declares) -> Finding:
     service = f"/{evidence.trial.node}/describe_parameters"
     call = next((each for each in calls_of(evidence) if each.by_trial and each.service == service), None)
     if call is None or call.response is None:
-        return _unanswered(evidence, f"The node did not respond when the trial requested {name}.", expected, where)
+        return _unanswered(evidence, f"The node did not respond when the trial asked for {name}.", expected, where)
     found = _described(call, name)
     if found is None:
         return _undeclared(evidence, name, expected)

@@ -44,7 +44,7 @@ STRAIGHT_RADIUS_M = 50.0
 LIVES_S = 1.0
 """The time for which one command moves a turtle (s)."""
 LATE_S = 3.0
-"""If the first command arrives later than this (s), the delay explains a circle that is too short."""
+"""If the first command arrives later than this (s), the delay may be the reason why the turtle drives too little."""
 POLYGON_SHARE = 0.6
 """If more than this fraction of the trajectory is straight, the message describes sides and corners."""
 
@@ -239,7 +239,7 @@ def _too_short(evidence: Evidence, trajectory: Trajectory, turns: float, expecte
     else:
         speed = steady_command(evidence)
         turn_s = 2.0 * math.pi / abs(speed[1]) if speed and speed[1] else 0.0
-        cause = f"With angular.z {shown(speed[1])} rad/s, one turn takes {turn_s:.1f} s." if speed and turn_s else ""
+        cause = f"With angular.z = {shown(speed[1])} rad/s, one turn takes {turn_s:.1f} s." if speed and turn_s else ""
         return failed(observed, expected, Cause("too-short", cause, line_of_values(evidence)), near_edge=near_edge)
     return failed(observed, expected, why.at(evidence.place("publish")), near_edge=near_edge)
 
@@ -272,7 +272,7 @@ CIRCLE = Kind(
     "The turtle drives the circle",
     CircleParams,
     circle,
-    about="Velocity commands drive the turtle on a circle with the right shape, direction, size and place.",
+    about="Velocity commands drive the turtle along a circle with the right shape, direction, size and place.",
     drives=True,
     requested=requested_circle,
     radius_m=lambda params: params.radius_m,

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Command
 
 EARLY_S = 0.1
-"""Because of rounding, the trial may make a call earlier than planned by up to this time (s)."""
+"""Because of rounding, the trial may make a call up to this much (s) before the planned time."""
 BEFORE_S = 1.0
 """The turtle must move at least once within this time (s) before the pause."""
 
@@ -89,7 +89,7 @@ def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *,
     if driving:
         observed = f"The turtle was still moving {stop_s:.1f} s after the call."
         text = (
-            "The commands still move the turtle during the pause: while the node is paused, publish a command with "
+            "The commands still move the turtle during the pause. While the node is paused, publish a command with "
             "all values 0."
         )
         return failed(observed, expected, Cause("pause-ignored", text, where), near_edge=near_edge)
@@ -99,7 +99,7 @@ def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *,
 
 
 def _drives_again_s(evidence: Evidence, params: Pause) -> float | None:
-    """Return the time (s) of a second call with the same request if it made the paused node drive again, else None."""
+    """Return the time (s) of a second, equal call if this call made the paused node drive again, else None."""
     calls = [call for call in evidence.recording.calls if call.by_trial and call.t_s >= params.from_s - EARLY_S]
     for first, second in pairwise(calls):
         if (first.service, first.request) == (second.service, second.request):

@@ -79,7 +79,7 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
 
 
 def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
-    """If the bag contains no pose, the program exits with an exit code other than 0 and a message."""
+    """If the bag contains no pose, the program exits with a message and an exit code other than 0."""
     called = evidence.called(params.call)
     name = evidence.trial.executable
     expected = f"{name} prints one sentence about what is missing, and ends with an exit code other than 0."
@@ -92,8 +92,8 @@ def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
         return failed(observed, expected, Cause("program-traceback", cause, crash.where))
     if called.ended == "exit 0":
         cause = (
-            "A script that calls the program sees only the exit code. If you call sys.exit with a string, the exit "
-            "code is 1."
+            "The exit code tells other programs whether this program failed. If you call sys.exit with a string, the "
+            "exit code is 1."
         )
         observed = f"For a bag without poses, {name} ended with exit code 0."
         return failed(observed, expected, Cause("exit-code", cause, evidence.place("exit", "print")))
@@ -112,7 +112,7 @@ def _why(evidence: Evidence, key: str, given: dict[str, float], bag: BagInput) -
     count, rate = bag.arc.count, bag.rate_hz
     more = count + bag.commands
     if key == "messages" and given[key] == more:
-        return Cause("all-messages", "All messages of the bag were counted, not only the poses.")
+        return Cause("all-messages", "All messages in the bag were counted, not only the poses.")
     if key == "rate":
         value = given[key]
         if abs(value * 1e9 - rate) <= rate and not _has_a_billion(evidence):

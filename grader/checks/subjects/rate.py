@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 FEWEST = 3
 """With fewer commands there is at most one interval, which is not enough for a rate."""
 TRUSTED = 0.5
-"""If the machine stalled in a trial in wall time, only the intervals without a stall are judged, and only if they are
-at least this fraction of all intervals."""
+"""If the machine stalled during a trial in wall time, only the intervals without a stall are judged. These must be at
+least this fraction of all intervals."""
 POSES_HZ = 1.0 / FRAME_S
 """The rate at which turtlesim publishes poses: one pose per frame."""
 
@@ -61,7 +61,7 @@ class Rate:
 
 @dataclass(frozen=True)
 class Subject:
-    """The messages or lines that are counted: their name, and the method of the student's code that sends them."""
+    """The messages or lines that are counted: their name, and the method that the student's code calls to send them."""
 
     noun: str
     call: str

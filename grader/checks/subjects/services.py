@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from grader.trial.observed import Call
 
 AT_ONCE_S = 0.05
-"""A call counts as earlier than a response only if it is earlier by more than this time (s): times in a trial in wall
-time are not exact."""
+"""A call counts as earlier than a response only if it is earlier by more than this time (s), because times that are
+measured in wall time are not exact."""
 OF_TURTLES = "/turtle"
 """The beginning of the names of services that each turtle has, such as /turtle1/set_pen."""
 CLOSE = 1e-3
@@ -106,7 +106,7 @@ def _other_request(evidence: Evidence, params: CallsService, calls: list[Call], 
 
 @dataclass(frozen=True, kw_only=True)
 class AnswersCall:
-    """The node's response to the `nth` call of the trial to the service, counted from 1."""
+    """The node's response to the trial's `nth` call to the service, counted from 1."""
 
     service: str = string("the full name of a service", start="/", about="The name of the service.")
     type: str = string("a service type, such as std_srvs/srv/SetBool", about="The type of the service.")

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 SIDES = 4
 ORDINALS = ("first", "second", "third", "fourth")
 STRAIGHT_RAD_M = 0.2
-"""A part that bends by at most this many radians per metre (a radius of 5 m) counts as straight."""
+"""A part that bends by at most this many radians per metre (a radius of at least 5 m) counts as straight."""
 CURVED_SHARE = 0.1
 """If more than this fraction of the trajectory is curved, the trajectory is not a square."""
 SHORT_M = 0.05
@@ -166,7 +166,7 @@ def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -
 
 
 def _drives_on(evidence: Evidence, params: Square, sides: Sides, sign: float, expected: str) -> Finding | None:
-    """Return a failed finding unless the turtle stops after the fourth side, or after one more corner."""
+    """Return None if the turtle stops after the fourth side or after one more corner, else a failed finding."""
     where = evidence.place("publish")
     turned = math.degrees(sign * sides.more_rad)
     last = (Band.around(0.0, params.corner_tolerance_deg), Band.around(90.0, params.corner_tolerance_deg))

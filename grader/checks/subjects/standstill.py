@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 REST_S = 0.5
-"""The turtle must stand still for at least this time at the end (s)."""
+"""The turtle must stand still for at least this time (s) at the end."""
 STILL = 1e-3
 """A turtle with a lower speed (m/s or rad/s) is considered to stand still."""
 ZEROS = "Publish a command with all values 0, and keep publishing it or stop the timer."

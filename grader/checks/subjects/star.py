@@ -1,4 +1,4 @@
-"""Check of a star: straight sides, and turns on the spot by action goals between them."""
+"""Check of a star: straight sides, between which action goals turn the turtle on the spot."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ TOGETHER_S = 0.03
 
 @dataclass(frozen=True, kw_only=True)
 class Star:
-    """Requires a closed star with sides of this length, each `corner_deg` to the left of the previous side."""
+    """Requires a closed star with sides of this length. Between two sides, the turtle turns left by `corner_deg`."""
 
     side_m: float = number(above=0, at_most=5, about="The length of a side.")
     heading_deg: float = number(about="The heading of the first side, in degrees: 0 is to the right, 90 is up.")

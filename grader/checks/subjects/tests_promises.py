@@ -46,12 +46,12 @@ def promises(evidence: Evidence, _: NoParams) -> Finding:
                 other = next((each.name for each in use.names if each.name not in (spec.name, "main", "*")), None)
                 if other is not None and other in _constants(evidence, spec.module):
                     cause = Cause("uses-own-names", NUMBERS, Where(module.file, use.lineno))
-                    observed = f"The tests import {shorten(other)} from the node, but this name is not promised."
+                    observed = f"The tests import {shorten(other)} from the node, which does not promise this name."
                     return failed(observed, expected, cause)
             if isinstance(use, ast.Attribute) and use.attr in own and _last(use.value) in nodes:
                 written = shorten(ast.unparse(use), 60)
                 cause = Cause("uses-own-names", TEXT, Where(module.file, use.lineno))
-                return failed(f"The tests use {written}, which is not promised.", expected, cause)
+                return failed(f"The tests use {written}, which the node does not promise.", expected, cause)
     return passed(expected)
 
 

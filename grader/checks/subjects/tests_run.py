@@ -151,7 +151,9 @@ def _hung(expected: str, code: TestCode, run: NodeRun | None) -> Finding:
     text = "A test that waits for a message that never arrives must give up: it needs a deadline."
     where = code.tests[0].where if code.tests else None
     observed = (
-        "The tests did not finish in time." if run is not None else "The tests did not finish in time on other nodes."
+        "The tests did not finish in time."
+        if run is not None
+        else "The tests did not finish in time on other nodes, so some runs did not take place."
     )
     return failed(observed, expected, Cause("test-hangs", text, where))
 

@@ -132,7 +132,7 @@ def steady(evidence: Evidence, params: Steady) -> Finding:
         return failed(observed, expected, Cause("sleeps-by-luck", cause, use.where))
     loop = timed_loop(code)
     if loop is not None:
-        return failed("The tests repeat a loop for a fixed time.", expected, loop)
+        return failed("The tests contain a loop that runs for a fixed time.", expected, loop)
     use = _first_use(code, frozenset(params.random))
     if use is not None:
         cause = "A failure that occurs only sometimes is hard to reproduce. Choose the values yourself."

@@ -106,7 +106,7 @@ def _all_hold(bands: tuple[Band, ...], six: Six) -> bool:
 
 
 def _right_values(evidence: Evidence, wanted: Six, off: list[int]) -> tuple[Edit, ...]:
-    """Return the edits that correct the wrong fields: each changes an assignment on a separate line, or adds one."""
+    """Return the edits that correct the wrong fields. Each edit changes or inserts an assignment on a separate line."""
     edits: list[Edit] = []
     sets: list[tuple[Where, str]] = []
     for index, field in enumerate(FIELDS):
@@ -182,7 +182,7 @@ MEANING = "linear.x is the forward speed, and angular.z is how fast the turtle t
 def _meaning(field: str) -> str:
     if field in ("linear.y", "linear.z"):
         return "the turtle drives along linear.x only."
-    return "the turtle turns about the axis that points up, z."
+    return "the turtle turns about the z axis, which points up."
 
 
 SCALES: tuple[tuple[Diagnosis, str, Callable[[float], float]], ...] = (
@@ -190,7 +190,7 @@ SCALES: tuple[tuple[Diagnosis, str, Callable[[float], float]], ...] = (
     ("degrees", "Angles are in radians. This value looks like degrees.", math.degrees),
     (
         "degrees",
-        "This value looks like a conversion from degrees to radians, but the number was already in radians.",
+        "This value looks as if it had been converted from degrees to radians, but the number was already in radians.",
         math.radians,
     ),
 )

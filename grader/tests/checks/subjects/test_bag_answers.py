@@ -88,4 +88,4 @@ def test_a_count_of_all_messages_is_told(answer: int, tmp_path: Path, *, is_told
     files = {f"circle_bag/{file.name}": file.read_bytes() for file in (tmp_path / "circle_bag").iterdir()}
     files["answers.toml"] = f"[answers]\nmessages = {answer}\n".encode()
     given = told(judged("messages", files=files))
-    assert ("Only the messages of the topic with the poses count." in given) == is_told
+    assert ("Only the messages on the topic with the poses count." in given) == is_told

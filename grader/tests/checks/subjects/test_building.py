@@ -117,7 +117,9 @@ def test_the_package_is_looked_for_by_the_name_that_colcon_knows(files: Files, p
     assert of("installed", files, replace(BUILD, package=package, installed=both)).status is Status.PASSED
 
 
-OTHER_TYPE = "colcon decides from the build type in package.xml how to build a package. This type is not ament_python."
+OTHER_TYPE = (
+    "The build type in package.xml determines how colcon builds the package. This build type is not ament_python."
+)
 
 
 @pytest.mark.parametrize(

@@ -96,7 +96,7 @@ def test_degrees_are_told_if_all_lines_are_in_degrees(factor: float, *, is_told:
     log = tuple(LogLine(t_s, "INFO", "node", f"{factor * (3.0 - t_s):.2f} rad to go") for t_s in TIMES)
     trial = given(goal(0.0, math.degrees(3.0), 3.0), log=log, frames=turning(0.0, 3.0))
     reported = told(found(LOG_FEEDBACK, trial, format="{remaining:.2f} rad to go"))
-    assert ("The feedback and the line are both in radians." in reported) == is_told
+    assert ("The feedback is in radians, and the line must be in radians too." in reported) == is_told
 
 
 @pytest.mark.parametrize(

@@ -117,12 +117,12 @@ UNASKED = goal(1.0, 80.0, 2.4, result_asked_s=None)
         ),
         ("Angles increase to the left", [goal(1.0, -80.0, 2.4)], [goal(1.0, -70.0, 2.4)]),
         (
-            "This heading is 40 degrees further to the left than the previous goal. The exercise asks for 30 degrees",
+            "This heading is 40 degrees further to the left than the previous one. The exercise asks for 30 degrees",
             [FIRST, goal(3.0, 120.0, 3.6)],
             [FIRST, goal(3.0, 30.0, 3.6)],
         ),
         (
-            "This heading is 40 degrees further to the right than the previous goal. The exercise asks for 30 degrees",
+            "This heading is 40 degrees further to the right than the previous one. The exercise asks for 30 degrees",
             [FIRST, goal(3.0, 40.0, 3.6)],
             [FIRST, goal(3.0, 120.0, 3.6)],
         ),

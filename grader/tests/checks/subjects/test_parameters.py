@@ -105,8 +105,8 @@ BLOCKED = "Something blocks the node's callbacks, or the node's parameter servic
         ("The parameter radius is a float with a description and the range", described(description=""), described()),
         ("The node has no parameter radius.", described(type=0), SILENT),
         ("declare_parameter declares a parameter, with its default value", described(type=0), described(type=2)),
-        ("The node did not respond when the trial requested radius.", SILENT, described(type=0)),
-        ("The node did not respond when the trial requested radius.", None, described(type=0)),
+        ("The node did not respond when the trial asked for radius.", SILENT, described(type=0)),
+        ("The node did not respond when the trial asked for radius.", None, described(type=0)),
         ("The parameter radius is not a float.", described(type=2), described(description="")),
         (
             "A default value without a decimal point makes the parameter an integer",

@@ -172,7 +172,7 @@ def test_the_reason_for_the_size_is_what_was_commanded() -> None:
 
 
 def test_the_reason_for_the_length_is_what_was_commanded_or_when_it_ended() -> None:
-    assert circle("half speed").cause == "With angular.z 0.5 rad/s, one turn takes 12.6 s."
+    assert circle("half speed").cause == "With angular.z = 0.5 rad/s, one turn takes 12.6 s."
     slow = recording(every(0.5, 1.0, 0.5, until_s=8.7))
     assert finding("circle", evidence(slow)).diagnosis == "stopped-early"
 
@@ -269,7 +269,7 @@ UNSTEADY = [(t_s, 1.0, 0.5 + 0.0001 * t_s) for t_s, _, _ in SLOW]
     [
         ("A turtle that starts late has less time for the circle.", LATE, SLOW),
         ("of a turn; the first command arrived at 5.0 s.", LATE, SLOW),
-        ("With angular.z 0.5 rad/s, one turn takes 12.6 s.", SLOW, UNSTEADY),
+        ("With angular.z = 0.5 rad/s, one turn takes 12.6 s.", SLOW, UNSTEADY),
         ("linear.x is negative, so the turtle drives backwards.", every(0.5, -2.0, -1.0), every(0.5, 2.0, -1.0)),
     ],
 )

@@ -81,7 +81,7 @@ def test_a_sentence_about_a_printed_line_is_true(words: str, true: str, near: st
 @pytest.mark.parametrize(
     ("words", "true", "near"),
     [
-        ("All messages of the bag were counted, not only the poses.", BOTH, BOTH.replace("43", "42")),
+        ("All messages in the bag were counted, not only the poses.", BOTH, BOTH.replace("43", "42")),
         ("Each message on the topic counts once.", BOTH.replace("43", "42"), BOTH),
     ],
 )
@@ -131,7 +131,7 @@ CRASH = raised("no-poses", "IndexError: list index out of range")
         ),
         ("For a bag without poses, bag_report ended with exit code 0.", ended("exit 0"), ended("exit 1")),
         (
-            "sees only the exit code. If you call sys.exit with a string, the exit code is 1.",
+            "whether this program failed. If you call sys.exit with a string, the exit code is 1.",
             ended("exit 0"),
             ended("exit 1"),
         ),

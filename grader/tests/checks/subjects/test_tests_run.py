@@ -137,7 +137,7 @@ PARTLY = dataclasses.replace(GOOD, passed=0, skipped=1)
         ("Every test is skipped, and a skipped test tests nothing.", [SKIPPED] * 3, [PARTLY] * 3),
         ("Options in setup.cfg or pytest.ini can exclude tests, and a test can end", [PARTLY] * 3, [SKIPPED] * 3),
         ("The tests did not finish in time.", [GOOD, HUNG], [GOOD] * 3),
-        ("The tests did not finish in time on other nodes.", [GOOD], [GOOD, HUNG]),
+        ("The tests did not finish in time on other nodes, so some runs did not take place.", [GOOD], [GOOD, HUNG]),
         ("A test that waits for a message that never arrives must give up", [GOOD, HUNG], [BAD] * 3),
         (
             "The tests did not finish in time on the correct node.",

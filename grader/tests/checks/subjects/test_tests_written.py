@@ -90,7 +90,7 @@ def about_steadiness(source: str) -> str:
         ("The tests call randint.", CHANCE, NAP),
         ("A failure that occurs only sometimes is hard to reproduce. Choose the values yourself.", CHANCE, NAP),
         (
-            "The tests repeat a loop for a fixed time.",
+            "The tests contain a loop that runs for a fixed time.",
             f"def test_it():\n    {LOOP.replace(chr(10), chr(10) + '    ')}",
             NAP,
         ),

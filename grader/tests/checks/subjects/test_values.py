@@ -91,7 +91,7 @@ def test_a_turtle_that_should_stand_still_and_drives_is_wrong() -> None:
 
 def test_a_field_in_the_wrong_place_is_reported_with_what_it_does() -> None:
     assert values("linear.y").cause.endswith("the turtle drives along linear.x only.")
-    assert values("angular.x").cause.endswith("the turtle turns about the axis that points up, z.")
+    assert values("angular.x").cause.endswith("the turtle turns about the z axis, which points up.")
 
 
 def test_some_wrong_commands_of_a_known_kind_keep_their_name() -> None:
@@ -146,7 +146,7 @@ def test_an_empty_message_is_reported_where_it_is_published() -> None:
         ("degrees", "Angles are in radians. This value looks like degrees."),
         ("all zero", "All fields of a new Twist are 0. Set the fields before you publish the message."),
         ("linear.y", "linear.y has the value that belongs in linear.x: the turtle drives along linear.x only."),
-        ("angular.x", "angular.x has the value that belongs in angular.z: the turtle turns about the axis"),
+        ("angular.x", "angular.x has the value that belongs in angular.z: the turtle turns about the z axis"),
         ("swapped", "The forward speed and the turning speed are swapped."),
         ("one wrong", "The other commands were right. Something changes the values while the node runs."),
     ],
