@@ -85,7 +85,8 @@ def test_the_limits_of_the_processes_of_the_grader_are_those_of_the_code() -> No
     assert budget.values == 1_000_000
     assert f"{relay.MOST_MEMORY // MIB // 1024} GiB of address space; {budget.messages:,} messages" in text
     read_s, memory, answer = reader.TIMEOUT_S, reader.MEMORY // MIB // 1024, reader.MOST_ANSWER // MIB
-    assert f"{reader.CPU_S} s of CPU, {read_s:g} s, {memory} GiB of memory, {answer} MiB of output" in text
+    times, size = f"{reader.CPU_S} s of CPU time, {read_s:g} s of wall time", f"{memory} GiB of address space"
+    assert f"{times}, {size} in addition to the grader's, {answer} MiB of output" in text
     assert f"at most {MOST_SIGNALS} per cell" in text
     assert f"{REQUESTS_HZ} requests or {MESSAGES_HZ} messages per second" in text
 

@@ -256,6 +256,8 @@ FOR_PIP = {**MISSING, **setup_py("    packages=", "    install_requires=['geomet
     [
         ("package.xml is valid.", "package-xml", {}, xml("</package>")),
         ("The build type is ament_cmake.", "package-xml", xml("ament_python", "ament_cmake"), {}),
+        ("A Python package has the build type ament_python.", "package-xml", xml("ament_python", "ament_cmake"), {}),
+        ("description, maintainer, license and the build type", "package-xml", xml("</package>"), {}),
         (
             "The build type is missing.",
             "package-xml",
