@@ -43,7 +43,10 @@ def is_marked(file: Path) -> bool:
 
 
 def is_among(folder: Path, others: Iterable[Path]) -> bool:
-    """Return whether `folder` is in one of the other folders. `folder` itself may be a link."""
+    """Return whether `folder` is in one of the other folders.
+
+    If `folder` itself is a link, the location of the link counts, not the location of its target.
+    """
     place = Path(os.path.realpath(folder.parent))
     return any(place.is_relative_to(os.path.realpath(each)) for each in others)
 

@@ -1,1 +1,1 @@
-"""Exercises as data: the model, exercise.toml, private checks, students' numbers, and the markers in a solution."""
+"""Exercises as data: the model, exercise.toml, private checks, students' own numbers, and the markers in a solution."""

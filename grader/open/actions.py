@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Actions:
-    """The actions of a page. Each action returns data for JSON, or raises GraderError with a message for the page.
+    """The actions of a page.
+
+    Each action returns data that can be written as JSON, or raises GraderError with a message for the page.
 
     `tell` sends a command (see grading.py) to the grading process. `digest` returns the digest of the
     learner's code.

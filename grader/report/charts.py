@@ -161,8 +161,8 @@ def _s(seconds: float) -> str:
 def values(evidence: Evidence, name: str = "values", bins: int = BINS) -> Chart | None:
     """Draw the values of the commands over time. Return None if there are no commands.
 
-    The fields linear.x and angular.z always have a row. Another field has a row if the exercise requires a value other
-    than 0 or if the value was not always 0.
+    The fields linear.x and angular.z always have a row. Any other field has a row only if the exercise requires a value
+    other than 0, or if its value was not always 0.
     """
     commands = evidence.commands
     if not commands:

@@ -70,8 +70,8 @@ def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sour
 def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -> None:
     """Replace this process with the user's shell.
 
-    bash and zsh add ROS 2, with the domain id in `wanted`, after they have read their start-up files. Other shells only
-    get the environment `wanted`.
+    bash and zsh set up the ROS 2 environment, with the domain id in `wanted`, after they have read their start-up
+    files. Other shells only get the environment `wanted`.
     """
     shell = env.get("SHELL") or "/bin/bash"
     argv, variables = [shell, "-i"], {}

@@ -34,8 +34,9 @@ CONTAINER = """\
   - your own ROS 2 Jazzy, on any Linux: source /opt/ros/jazzy/setup.bash, then run make again."""
 
 LEFT_TO_ROS = {"numpy": "python3-numpy", "em": "python3-empy", "lark": "python3-lark"}
-"""The modules that the set-up does not install if a ROS 2 is sourced (lock.SOURCED_BRINGS and the part `ros`), and the
-Debian packages that contain these modules.
+"""The modules that the set-up does not install if a ROS 2 is sourced, and the Debian package of each module.
+
+In this case, the set-up leaves out lock.SOURCED_BRINGS and the part `ros` of the lock file.
 """
 _IMPORTS = """
 import importlib, json, sys

@@ -21,7 +21,7 @@ class CallLog:
     """Records the calls. Even after thousands of calls to one service, calls to other services are recorded."""
 
     def __init__(self, now: Callable[[], float]) -> None:
-        """Create an empty log. `now` returns the time of the trial (s)."""
+        """Create an empty log. `now` returns the current time on the trial's clock (s)."""
         self._now = now
         self._calls: list[Call] = []
         self._alike: Counter[str] = Counter()

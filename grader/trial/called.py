@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 MOST_TEXT = 20_000
-"""The maximum number of characters that are kept of each output."""
+"""The maximum number of characters that are kept from each output."""
 MOST_VALUES = 10
 TOO_LATE = "too late"
 """The value of `ended` for a call that took too long."""

@@ -18,7 +18,7 @@ class GoalLog:
     """Records the events of each goal."""
 
     def __init__(self, now: Callable[[], float]) -> None:
-        """Create an empty log. `now` returns the time of the trial (s)."""
+        """Create an empty log. `now` returns the current time on the trial's clock (s)."""
         self._now = now
         self._goals: dict[bytes, Goal] = {}
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from grader.trial.launchers import Launcher
 
 KEPT = 256 * 1024
-"""The maximum number of bytes that are kept of each output stream."""
+"""The maximum number of bytes that are kept from each output stream."""
 PIPE = 1024 * 1024
 """The size of the node's pipes (bytes). The size is large, so that the node need not wait until the grader has read its
 output."""

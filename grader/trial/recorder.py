@@ -54,7 +54,8 @@ class Recorder(Node):
     ) -> None:
         """Create the node.
 
-        `now` returns the time of the trial (s). `prefixes` are the folders in which the message types are installed.
+        `now` returns the current time on the trial's clock (s). `prefixes` are the folders in which the message types
+        are installed.
 
         The simulator itself reports its messages on the `simulated` topics (a mapping from names to types). The
         `judged` topics are always recorded, however many other topics there are.

@@ -51,6 +51,8 @@ WAITS_EVERY = 7
 ENDING_S = 0.5
 """The time limit for a sleeping node to exit (s of wall time). If the node has not exited by then, its sleep is taken
 as a sign that it follows wall time."""
+LEAVING_S = 3.0
+"""The same limit for a node that has left the graph. The clock stands still during this time."""
 _POLL_S = 0.00005
 
 
@@ -70,6 +72,7 @@ class SimulatedTrial(Simulation):
         stop_at_doubt: bool,
     ) -> None:
         self._now_s = 0.0
+        self._followers = 0
         self._stop_at_doubt = stop_at_doubt
         super().__init__(node, start, prefixes, inputs, judged)
         qos = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -92,6 +95,7 @@ class SimulatedTrial(Simulation):
             for frame in range(1, round(duration_s / FRAME_S) + 1):
                 self.tick(frame * FRAME_S)
                 self._settle()
+                self._await_leaver()
                 if frame % OWN_EVERY == 0:
                     self._take_in()
                 if frame % GRAPH_EVERY == 0:
@@ -127,8 +131,7 @@ class SimulatedTrial(Simulation):
         self._publish_clock(now_s)
 
     def _publish_clock(self, now_s: float) -> None:
-        nanoseconds = round(now_s * 1e9)
-        sec, nanosec = divmod(nanoseconds, 1_000_000_000)
+        sec, nanosec = divmod(round(now_s * 1e9), 1_000_000_000)
         self._clock.publish(Clock(clock=Time(sec=sec, nanosec=nanosec)))
 
     # --- rest -------------------------------------------------------------------------------------------------
@@ -273,12 +276,22 @@ class SimulatedTrial(Simulation):
         elif not sleeping and len(timed) > len(self.node.pids):
             self._doubt("the node waits for wall time")
 
-    def _is_ending(self) -> bool:
-        """Return whether the node exits within a short time.
+    def _await_leaver(self) -> None:
+        """If a node has just stopped following /clock, wait for its process to exit, which takes wall time.
+
+        Raises:
+            GoneError: the process has exited.
+        """
+        before, self._followers = self._followers, self._clock.get_subscription_count()
+        if self._followers < len(self.node.pids) <= before and self._is_ending(LEAVING_S):
+            raise GoneError
+
+    def _is_ending(self, limit_s: float = ENDING_S) -> bool:
+        """Return whether the node exits within the time limit.
 
         A sleeping thread may also belong to a node that is shutting down after an exception.
         """
-        deadline = time.monotonic() + ENDING_S
+        deadline = time.monotonic() + limit_s
         while time.monotonic() < deadline:
             self.node.read_output(self._now_s)
             if self.node.ended():

@@ -26,8 +26,8 @@ PACKAGES = ("site-packages", "dist-packages")
 FRAME = re.compile(r'\s*File "(?P<file>[^"]*)", line (?P<line>\d{1,7})(?:, in (?P<function>.*))?')
 ERROR = re.compile(r"(?P<type>[A-Za-z_][\w.]*)(?:: (?P<message>.*))?")
 GUESS = re.compile(r" \(/[^)]*\)$|\.? Did you mean: .*| The following argument types are supported:.*")
-"""Matches a path, a suggestion or a list of types at the end of a message. These texts are removed, because they may
-differ on another machine."""
+"""Matches a path, a suggestion or a list of types at the end of a message. These parts are removed, because they may
+differ between machines."""
 STOPS = frozenset({"KeyboardInterrupt", "ExternalShutdownException"})
 """The exceptions that Ctrl-C raises in a node that is written as in the tutorial."""
 

@@ -187,7 +187,7 @@ class AnswerRate:
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
     type_ends: str = string("the end of a type name", about="Only messages whose type ends with this string count.")
-    tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error of the answer.")
+    tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error in the answer.")
 
 
 def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:

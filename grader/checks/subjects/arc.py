@@ -42,13 +42,13 @@ class Arc:
     """An arc of a circle. If `red` is not negative, only the parts that were drawn in the given colour count."""
 
     radius_m: float = number(above=0, at_most=5.5, about="The radius of the arc.")
-    radius_tolerance_m: float = number(0.06, above=0, about="The maximum error of the radius.")
+    radius_tolerance_m: float = number(0.06, above=0, about="The maximum error in the radius.")
     residual_m: float = number(0.03, above=0, about="The maximum deviation of the arc from the fitted circle (RMS).")
     direction: str = choice("counter-clockwise", "clockwise", about="The direction of the turn.")
     angle_deg: float = number(0.0, at_least=0, about="The angle of the arc; 0 allows any angle.")
-    angle_tolerance_deg: float = number(12.0, above=0, about="The maximum error of the angle.")
+    angle_tolerance_deg: float = number(12.0, above=0, about="The maximum error in the angle.")
     speed_m_s: float = number(0.0, at_least=0, about="The speed of the turtle; 0 allows any speed.")
-    speed_tolerance_m_s: float = number(0.05, above=0, about="The maximum error of the speed.")
+    speed_tolerance_m_s: float = number(0.05, above=0, about="The maximum error in the speed.")
     from_s: float = number(0.0, at_least=0, about="Only the movement after this time counts.")
     until_s: float = number(600.0, above=0, about="Only the movement before this time counts.")
     red: float = number(

@@ -43,7 +43,7 @@ class LogFeedback:
         "a log line that contains remaining", about="The format of a line with the number `remaining`."
     )
     period_s: float = number(0.5, above=0, about="The time between two lines.")
-    tolerance_rad: float = number(0.05, above=0, about="The maximum error of the angle.")
+    tolerance_rad: float = number(0.05, above=0, about="The maximum error in the angle.")
     lag_s: float = number(0.15, above=0, about="The maximum age of the angle in a line.")
 
 
@@ -147,7 +147,7 @@ def _wrong(
     theta = float(frames.theta[max(int(np.searchsorted(frames.t_s, line.t_s)) - 1, 0)])
     remaining = normalize(normalize(goal.request["theta"]) - theta)
     observed = (
-        f"At {line.t_s:.1f} s the line shows {line.numbers['remaining']:.2f}, "
+        f"At {line.t_s:.1f} s, the line shows {line.numbers['remaining']:.2f}, "
         f"but the turtle still had to turn by {remaining:.2f} rad."
     )
     where = evidence.place("info")

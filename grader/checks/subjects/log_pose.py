@@ -51,7 +51,7 @@ class LogDistance:
     """
 
     format: str = string("a log line that contains distance", about="The format of a line with the number `distance`.")
-    tolerance_m: float = number(0.05, above=0, about="The maximum error of the distance.")
+    tolerance_m: float = number(0.05, above=0, about="The maximum error in the distance.")
     lag_s: float = number(0.15, above=0, about="The maximum age of the distance in a line.")
 
 
@@ -83,7 +83,7 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
     line = wrong[0]
     x, y = _at(recording, line.t_s, frames.x), _at(recording, line.t_s, frames.y)
     observed = (
-        f"At {line.t_s:.0f} s the line shows x={line.numbers['x']:.2f} y={line.numbers['y']:.2f}, "
+        f"At {line.t_s:.0f} s, the line shows x={line.numbers['x']:.2f} y={line.numbers['y']:.2f}, "
         f"but the turtle was at x={x:.2f} y={y:.2f}."
     )
     why = Cause("wrong-position", "x and y are fields of the message that your callback receives.")
@@ -115,7 +115,7 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
         return passed("Each line shows how far the turtle has driven.")
     worst = max(logged, key=lambda line: abs(line.numbers["distance"] - _at(recording, line.t_s, driven)))
     observed = (
-        f"At {worst.t_s:.0f} s the line shows distance={worst.numbers['distance']:.2f}, "
+        f"At {worst.t_s:.0f} s, the line shows distance={worst.numbers['distance']:.2f}, "
         f"but the turtle had driven {_at(recording, worst.t_s, driven):.2f} m."
     )
     computed = any(evidence.code.calls(name) for name in LENGTHS)

@@ -57,8 +57,8 @@ def _shown(numbers: OwnNumbers) -> str:
 class OwnCircle:
     """Like the kind `circle`, but the radius and the direction are the student's own."""
 
-    radius_tolerance_m: float = number(0.05, above=0, about="The maximum error of the radius.")
-    centre_tolerance_m: float = number(0.05, above=0, about="The maximum error of the centre.")
+    radius_tolerance_m: float = number(0.05, above=0, about="The maximum error in the radius.")
+    centre_tolerance_m: float = number(0.05, above=0, about="The maximum error in the centre.")
     residual_m: float = number(
         0.02, above=0, about="The maximum deviation of the trajectory from the fitted circle (root mean square)."
     )
@@ -90,7 +90,7 @@ def own_circle_params(evidence: Evidence, params: OwnCircle) -> CircleParams | F
 class OwnRate:
     """Like the kind `rate`, but the rate is the student's own."""
 
-    tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error of the mean rate.")
+    tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error in the mean rate.")
 
 
 def own_rate(evidence: Evidence, params: OwnRate) -> Finding:

@@ -67,8 +67,8 @@ class CircleParams:
             "start, or to the right if the direction is clockwise."
         ),
     )
-    radius_tolerance_m: float = number(0.05, above=0, about="The maximum error of the radius.")
-    centre_tolerance_m: float = number(0.05, above=0, about="The maximum error of the centre.")
+    radius_tolerance_m: float = number(0.05, above=0, about="The maximum error in the radius.")
+    centre_tolerance_m: float = number(0.05, above=0, about="The maximum error in the centre.")
     residual_m: float = number(
         0.02, above=0, about="The maximum deviation of the trajectory from the fitted circle (root mean square)."
     )

@@ -51,7 +51,7 @@ class Rate:
     """
 
     rate_hz: float = number(above=0, at_most=1000, about="The mean rate, from the first to the last arrival.")
-    tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error of the mean rate.")
+    tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error in the mean rate.")
     min_interval_s: float = number(at_least=0, about="The shortest allowed interval between two arrivals.")
     max_interval_s: float = number(
         above=0, about="The longest allowed interval between two arrivals, and from the last arrival to the end."

@@ -107,9 +107,9 @@ class CircleInBag(InBag):
 
     topic: str = string("a topic", start="/", default="/turtle1/pose", about="The topic with the poses.")
     radius_m: float = number(above=0, about="The radius of the circle.")
-    tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error of the radius.")
+    tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error in the radius.")
     speed_m_s: float = number(0.0, at_least=0, about="The speed of the turtle; 0 if any speed is right.")
-    speed_tolerance_percent: float = number(8.0, above=0, at_most=100, about="The maximum error of the speed.")
+    speed_tolerance_percent: float = number(8.0, above=0, at_most=100, about="The maximum error in the speed.")
     turns: float = number(1.0, above=0, about="The minimum number of turns in the bag.")
 
 

@@ -39,7 +39,7 @@ class Square:
     """Requires sides of this length, corners of 90 degrees, and a standstill at the start after the fourth side."""
 
     side_m: float = number(above=0, at_most=5, about="The length of a side.")
-    side_tolerance_m: float = number(0.15, above=0, about="The maximum error of the length of a side.")
+    side_tolerance_m: float = number(0.15, above=0, about="The maximum error in the length of a side.")
     corner_tolerance_deg: float = number(
         7.0, above=0, about="The maximum difference between the angle of a corner and 90 degrees."
     )

@@ -37,8 +37,8 @@ class Star:
     heading_deg: float = number(about="The heading of the first side, in degrees: 0 is to the right, 90 is up.")
     sides: float = number(5, at_least=3, about="The number of sides.")
     corner_deg: float = number(144.0, about="The turn to the left from one side to the next.")
-    side_tolerance_m: float = number(0.15, above=0, about="The maximum error of the length of a side.")
-    corner_tolerance_deg: float = number(6.0, above=0, about="The maximum error of the heading of a side.")
+    side_tolerance_m: float = number(0.15, above=0, about="The maximum error in the length of a side.")
+    corner_tolerance_deg: float = number(6.0, above=0, about="The maximum error in the heading of a side.")
     closing_m: float = number(0.4, above=0, about="The maximum distance from the start to the end of the last side.")
 
 

@@ -147,8 +147,8 @@ class Recorder:
     def _drain(self) -> None:
         """Write the messages that arrived before the recording ended but have not been written yet.
 
-        Messages that have already arrived are read directly from the subscriptions, since an executor handles callbacks
-        in any order. The depth of the queue limits the number of these messages.
+        Messages that have already arrived are read directly from the subscriptions, since an executor may run
+        callbacks in any order. The depth of the queue limits the number of these messages.
         """
         for subscription in self._node.subscriptions:
             for _ in range(bag_qos.DEPTH):

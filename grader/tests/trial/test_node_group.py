@@ -56,6 +56,7 @@ def drive():
     exit(0)
 node.create_timer(0.5, drive)
 """
+LEAVES_SLOWLY = LEAVES.replace("    exit", "    __import__('subprocess').run(['sleep', '2'])\n    exit")
 CATCHER = """
 client = node.create_client(Kill, "/catch")
 def hear(msg):
@@ -66,8 +67,8 @@ node.create_subscription(String, "/targets", hear, 10)
 """
 
 
-def trial_of(inputs: Inputs, **bodies: str) -> Recording:
-    """Return the recording of one trial of 4 s in which a node with each of these bodies runs."""
+def trial_of(inputs: Inputs, duration_s: float = 4.0, **bodies: str) -> Recording:
+    """Return the recording of one trial in which a node with each of these bodies runs."""
     stream = io.BytesIO()
     with tarfile.open(fileobj=stream, mode="w|") as tar:
         for name, body in bodies.items():
@@ -76,7 +77,7 @@ def trial_of(inputs: Inputs, **bodies: str) -> Recording:
             member.size, member.mode = len(source), 0o755
             tar.addfile(member, io.BytesIO(source))
     first, *others = bodies
-    plan = Plan("simulated", START, None, 4.0, inputs=inputs, beside=tuple(others))
+    plan = Plan("simulated", START, None, duration_s, inputs=inputs, beside=tuple(others))
     with Trial(plan, with_turtlesim(find_ros()), in_cell=True) as trial:
         return trial.run(PACKAGE, first, stream.getvalue())
 
@@ -119,6 +120,11 @@ def test_the_trial_plays_the_node_that_announces_and_removes_targets() -> None:
 
 
 def test_the_last_command_of_a_node_arrives_and_moves_the_turtle() -> None:
-    recording = trial_of(Inputs(), leaves=LEAVES)
+    recording = trial_of(Inputs(), 10.0, leaves=LEAVES)
     assert (recording.end.by, len(recording.commands)) == ("itself", 1)
     assert trajectory_of(recording).length_m > 0.3
+
+
+def test_the_clock_stands_still_while_a_node_that_has_left_exits() -> None:
+    recording = trial_of(Inputs(), 10.0, leaves=LEAVES_SLOWLY)
+    assert (recording.end.by, len(recording.commands)) == ("itself", 1)

@@ -79,7 +79,7 @@ RIGHT = "{:.2f} rad to go"
     [
         ("The lines show how far the turtle still has to turn.", RIGHT, "-" + RIGHT),
         ("Log the number from the feedback unchanged.", "-" + RIGHT, "1" + RIGHT),
-        ("At 0.5 s the line shows 12.50, but the turtle still had to turn by 2.5", "1" + RIGHT, RIGHT),
+        ("At 0.5 s, the line shows 12.50, but the turtle still had to turn by 2.5", "1" + RIGHT, RIGHT),
         ("The message has a field feedback, which has the field remaining.", "1" + RIGHT, "1.25 rad to go"),
         ("The number never changes. Store the number in self", "1.25 rad to go", "1" + RIGHT),
         ("While the turtle turns, a line such as", "-" + RIGHT, RIGHT),

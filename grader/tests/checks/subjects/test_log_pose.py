@@ -122,11 +122,11 @@ def test_says_what_the_line_said_and_what_was_so() -> None:
     x, y, driven_m = truth()
     finding = position((x + 1.0, y, driven_m))
     assert finding.observed == (
-        f"At 1 s the line shows x={x[0] + 1.0:.2f} y={y[0]:.2f}, but the turtle was at x={x[0]:.2f} y={y[0]:.2f}."
+        f"At 1 s, the line shows x={x[0] + 1.0:.2f} y={y[0]:.2f}, but the turtle was at x={x[0]:.2f} y={y[0]:.2f}."
     )
     finding = distance((x, y, driven_m + np.arange(9.0)))
     assert finding.observed == (
-        f"At 9 s the line shows distance={driven_m[-1] + 8.0:.2f}, but the turtle had driven {driven_m[-1]:.2f} m."
+        f"At 9 s, the line shows distance={driven_m[-1] + 8.0:.2f}, but the turtle had driven {driven_m[-1]:.2f} m."
     )
 
 
@@ -170,7 +170,7 @@ def test_the_worst_line_is_shown() -> None:
     off = driven_m.copy()
     off[3] -= 0.5
     off[6] += 0.4
-    assert distance((x, y, off)).observed.startswith("At 4 s the line shows")
+    assert distance((x, y, off)).observed.startswith("At 4 s, the line shows")
 
 
 def test_a_line_with_numbers_before_the_first_pose_is_named() -> None:
