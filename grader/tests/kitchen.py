@@ -1,7 +1,7 @@
 """A thermometer and a heater in one process: the example of step 05, which shows their graph.
 
 The program runs until it receives SIGINT or SIGTERM. It waits for these signals itself, because a signal that arrives
-while an rclpy executor is running is sometimes lost.
+while an rclpy executor is running may be lost.
 """
 
 from __future__ import annotations

@@ -74,6 +74,12 @@ class Term:
         change(folder)
         (folder / "timestamp.txt").write_text(at)
 
+    def submit(self, student: str, change: Callable[[Path], None]) -> None:
+        """Apply `change` to a copy of the released folder, in the folder of the collected submissions."""
+        folder = self.root / "class" / "submitted" / student / self.step
+        shutil.copytree(self.root / "exercises" / self.step, folder)
+        change(folder)
+
     def grade(self) -> str:
         """Collect, autograde and sync the submissions, and generate the feedback. Return the output of sync."""
         self.run("collect", self.step, "--update")

@@ -18,7 +18,6 @@ from grader.sandbox import bubblewrap
 from grader.tests.gradebook.term import STEP, Term, edit, too_slow, unchanged, with_cell
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
     from grader.classroom.find_submissions import Found
@@ -77,12 +76,6 @@ def with_another_assignment(term: Term) -> None:
     term.run("autograde", ANOTHERS)
 
 
-def submit(term: Term, student: str, change: Callable[[Path], None]) -> None:
-    folder = term.root / "class" / "submitted" / student / STEP
-    shutil.copytree(term.root / "exercises" / STEP, folder)
-    change(folder)
-
-
 def grades(term: Term, student: str) -> dict[str, tuple[float | None, float | None, bool]]:
     """Map each check to (automatic score, manual score, needs manual grade), as in nbgrader's database."""
     with term.gradebook() as gradebook:
@@ -136,9 +129,9 @@ def term(tmp_path_factory: pytest.TempPathFactory) -> Term:
 
 
 def test_a_forged_score_never_counts(term: Term, monkeypatch: pytest.MonkeyPatch) -> None:
-    submit(term, "honest", too_slow)
+    term.submit("honest", too_slow)
     for student, change in (("forger", forge), ("gone", forge), ("unreadable", unreadable)):
-        submit(term, student, change)
+        term.submit(student, change)
     with_another_assignment(term)
     term.run("autograde", STEP)
 
@@ -189,7 +182,7 @@ def test_a_forged_score_never_counts(term: Term, monkeypatch: pytest.MonkeyPatch
 
 
 def test_an_export_alone_corrects_an_older_gradebook(term: Term) -> None:
-    submit(term, "earlier", unchanged)
+    term.submit("earlier", unchanged)
     with term.gradebook() as gradebook:
         gradebook.add_student("earlier")
         for notebook in gradebook.add_submission(STEP, "earlier").notebooks:

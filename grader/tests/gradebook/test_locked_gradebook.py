@@ -1,15 +1,13 @@
-"""Another program locks nbgrader's database, or the grader is killed, while `grader gradebook sync` is running."""
+"""Another program locks nbgrader's database while `grader gradebook sync` is writing scores."""
 
 from __future__ import annotations
 
-import shutil
 import sqlite3
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from grader.classroom.grade_class import grade_found
 from grader.errors import MachineError
 from grader.gradebook import scores
 from grader.gradebook.class_folders import open_class
@@ -18,8 +16,6 @@ from grader.tests.gradebook.term import STEP, Term, too_slow
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-    from grader.classroom.results import Result
 
 STUDENTS = ("anna", "bert")
 
@@ -34,9 +30,7 @@ def test_sync_stops_while_the_gradebook_is_locked(tmp_path: Path, monkeypatch: p
     term = Term(tmp_path)
     term.run("generate_assignment", STEP)
     for student in STUDENTS:
-        folder = term.root / "class" / "submitted" / student / STEP
-        shutil.copytree(term.root / "exercises" / STEP, folder)
-        too_slow(folder)
+        term.submit(student, too_slow)
     term.run("autograde", STEP)
     database = str(term.root / "class" / "gradebook.db")
 
@@ -46,25 +40,21 @@ def test_sync_stops_while_the_gradebook_is_locked(tmp_path: Path, monkeypatch: p
         )
 
     with closing(sqlite3.connect(database, isolation_level=None)) as other:
-
-        def grade_and_lock(*arguments: Any) -> list[Result]:  # noqa: ANN401
-            graded = grade_found(*arguments)
-            other.execute("BEGIN EXCLUSIVE")
-            return graded
-
-        tries: list[str] = []
+        tries = 0
         write = scores._write
 
-        def count_and_write(*arguments: Any) -> Any:  # noqa: ANN401
-            tries.append(arguments[2].student)
+        def lock_and_write(*arguments: Any) -> Any:  # noqa: ANN401
+            nonlocal tries
+            tries += 1
+            if tries == 1:
+                other.execute("BEGIN EXCLUSIVE")
             return write(*arguments)
 
         with monkeypatch.context() as patch:
-            patch.setattr(scores, "grade_found", grade_and_lock)
-            patch.setattr(scores, "_write", count_and_write)
+            patch.setattr(scores, "_write", lock_and_write)
             with pytest.raises(MachineError, match="Another program is using this database"):
                 sync()
-        assert len(tries) <= 1, "each further submission would wait for the lock, too"
+        assert tries == 1, "each further submission would wait for the lock, too"
         other.execute("ROLLBACK")
     assert scores_of(term) == dict.fromkeys(STUDENTS, 0.0), "no score is confirmed yet"
     assert not sync().unconfirmed
