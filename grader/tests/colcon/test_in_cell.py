@@ -115,6 +115,8 @@ def build(ros: Ros, workspace: Path, files: dict[str, str], *, forks: bool) -> t
         check=False,
     )
     log = re.sub(r"\d+\.\d+s", "TIME", done.stdout.decode().removeprefix("colcon-is-ready\n"))
+    # colcon prints this line while an older setuptools prints its warnings in another process.
+    log = log.replace("Starting >>> fish\n", "")
     made = [*sorted((workspace / "install").rglob("*")), *sorted((workspace / "src").rglob("*.log"))]
     contents = {str(path): path.read_bytes() for path in made if path.is_file()}
     return done.returncode, log, {path: data for path, data in contents.items() if not path.endswith(".pyc")}
