@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import io
 import random
+import re
 import tarfile
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
@@ -37,6 +38,11 @@ RIGHT_S = 5.0
 
 On a broken node, a test may need more time, because it may wait for a message that never arrives.
 """
+_MORE_PARTICIPANTS = re.compile(
+    rb"Context\b|\b(?:concurrent|exec[lv]\w*|fork\w*|launch\w*|multiprocessing|popen|posix_spawnp?|pty)\b"
+    rb"|\b(?:spawn[lv]\w*|subprocess|system)\b"
+)
+"""Names that code needs to create a second ROS 2 context or a second process."""
 DOUBT_S = 1.0
 """The time limit for each test on a broken node (s) until a run on the correct node has ended."""
 
@@ -55,7 +61,7 @@ class Bench:
         in_cell: bool,
         lanes: int,
     ) -> None:
-        self._tests = Package(package, pack(spec, package, files), node)
+        self._tests = Package(package, pack(spec, package, files), node, alone=uses_one_participant(files))
         self._spec = spec
         self._ros = ros
         self._in_cell = in_cell
@@ -177,6 +183,18 @@ class _Queue:
         """After this call, `take` returns no more runs."""
         with self._lock:
             self._closed = True
+
+
+def uses_one_participant(files: Mapping[str, bytes]) -> bool:
+    """Return whether all nodes of a run are in one process and in one ROS 2 context, and therefore discover each other.
+
+    If the code might create more contexts or processes, the result is False.
+    """
+    return not any(_MORE_PARTICIPANTS.search(text) for path, text in files.items() if _is_module(path))
+
+
+def _is_module(path: str) -> bool:
+    return path.endswith(".py") and path != "setup.py"
 
 
 def pack(spec: TestsSpec, package: str, files: Mapping[str, bytes]) -> bytes:

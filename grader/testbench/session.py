@@ -37,12 +37,13 @@ from grader.sandbox import entering
 from grader.sandbox.holder import Holder
 
 _AHEAD = (
-    *("pytest", "_pytest.assertion.rewrite", "_pytest.unittest", "_pytest.python", "_pytest.fixtures", "unittest.mock"),
+    *("pytest", "_pytest.assertion.rewrite", "pdb", "unittest.mock"),
     *("rclpy.action", "rclpy.executors", "rclpy.callback_groups", "rclpy.qos", "rclpy.parameter", "rclpy.time"),
 )
 _TYPES_AHEAD = (
     *(("geometry_msgs.msg", "Twist"), ("geometry_msgs.msg", "TwistStamped"), ("turtlesim.msg", "Pose")),
     *(("rosgraph_msgs.msg", "Clock"), ("rcl_interfaces.msg", "ParameterEvent")),
+    ("type_description_interfaces.srv", "GetTypeDescription"),
 )
 _HEADER = struct.Struct("<idI")
 READY = b"ready\n"
@@ -96,6 +97,10 @@ def main() -> None:
     sys.path.pop(0)
     for name in _AHEAD:
         importlib.import_module(name)
+    from _pytest.config import default_plugins
+
+    for name in default_plugins:
+        importlib.import_module(f"_pytest.{name}")
     for name, message in _TYPES_AHEAD:
         type(getattr(importlib.import_module(name), message)).__import_type_support__()
     order = json.loads(sys.stdin.buffer.readline())

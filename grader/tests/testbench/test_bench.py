@@ -9,6 +9,7 @@ import pytest
 
 from grader.checks.exercises import find_exercise
 from grader.sandbox import bubblewrap
+from grader.testbench.bench import uses_one_participant
 from grader.tests.testbench.bench_runs import STEP, TESTS, run, spec
 
 if TYPE_CHECKING:
@@ -127,3 +128,44 @@ def test_it():
 def test_without_a_cell_no_other_program_takes_part(files: dict[str, bytes]) -> None:
     runs = run(spec(right_runs=4), {**files, TESTS: LISTENS.encode()}, lanes=2, in_cell=False)
     assert [(each.exit_code, each.message) for each in runs] == [(0, "")] * 4
+
+
+TWO_CONTEXTS = """
+import rclpy
+from rclpy.context import Context
+from rclpy.node import Node
+from turtlesim.msg import Pose
+from my_robot_controller.wall_guard import WallGuard
+
+def test_it():
+    rclpy.init()
+    other = Context()
+    rclpy.init(context=other)
+    guard, sender = WallGuard(), Node("sender", context=other)
+    poses = sender.create_publisher(Pose, "/turtle1/pose", 10)
+    while guard.pose is None:
+        poses.publish(Pose(x=5.0, y=5.0))
+        rclpy.spin_once(guard, timeout_sec=0.1)
+    rclpy.shutdown()
+"""
+
+
+@pytest.mark.parametrize("in_cell", [True, False])
+def test_nodes_in_two_contexts_discover_each_other(files: dict[str, bytes], in_cell: bool) -> None:
+    (ended,) = run(spec(right_runs=1), {**files, TESTS: TWO_CONTEXTS.encode()}, in_cell=in_cell)
+    assert (ended.exit_code, ended.message) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("code", "alone"),
+    [
+        ("import os\nfrom turtlesim.srv import Spawn\nself.spawn = rclpy.create_node('spawn')", True),
+        ("from rclpy.context import Context", False),
+        ("rclpy.Context()", False),
+        ("import subprocess", False),
+        ("os.posix_spawn('node', [], {})", False),
+        ("os.fork()", False),
+    ],
+)
+def test_more_contexts_and_processes_are_noticed(code: str, alone: bool) -> None:
+    assert uses_one_participant({"setup.py": b"os.system('make')", "test/test_it.py": code.encode()}) is alone
