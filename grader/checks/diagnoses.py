@@ -232,7 +232,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "no-answers": "answers.toml is missing",
         "answers-unreadable": "answers.toml cannot be read",
         "answers-empty": "answers.toml has no answers",
-        "unknown-answer": "answers.toml has an answer to a question that does not exist",
+        "unknown-answer": "answers.toml has no line for a question, but answers with other names",
         "no-answer": "a question is not answered",
         "answer-form": "the answer has the wrong type, such as a number in quotation marks",
         "wrong-answer": "the answer is wrong",

@@ -11,6 +11,7 @@ from grader.errors import MachineError, UsageError
 from grader.exercise.model import course_folder
 from grader.exercise.own_numbers import draw_numbers, to_toml
 from grader.submission import tree
+from grader.submission.answers_toml import FILE as ANSWERS
 from grader.submission.search import IGNORE_MARKER
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 APART = "apart"
 """The folder in the learner's workspace that contains separate workspaces. colcon must not build them together with the
 learner's packages."""
-_PACKAGE_FILES = ("package.xml", "setup.py", "setup.cfg")
+_PACKAGE_FILES = ("package.xml", "setup.py", "setup.cfg", ANSWERS)
 """Package files to which later steps add lines."""
 _ENTRY_POINT = re.compile(r"[\"'](?P<name>[\w.-]+) = [\w.]+:\w+[\"'],?")
 _TASK = re.compile(r"(?:#|<!--)\s*(TODO \d+: .+?)\s*(?:-->)?$", re.MULTILINE)
@@ -157,7 +158,8 @@ def lacking_lines(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, t
         return point is None or point["name"] in here
 
     source = _package_files(exercise, files)
-    found = {path: _lacking(file, files[path]) for path, file in source.items()}
+    lacking = {path: _questions if path == ANSWERS else _lacking for path in source}
+    found = {path: lacking[path](file, files[path]) for path, file in source.items()}
     return {path: kept for path, lines in found.items() if (kept := tuple(filter(needed, lines)))}
 
 
@@ -203,6 +205,20 @@ def _lacking(theirs: Path, mine: bytes) -> tuple[str, ...]:
     known = plain(mine.decode("utf-8", "replace"))
     lines = (line.strip() for line in theirs.read_text(encoding="utf-8").splitlines())
     return tuple(line for line in lines if not line.startswith(("#", "<!--")) and plain(line) not in known)
+
+
+def _questions(theirs: Path, mine: bytes) -> tuple[str, ...]:
+    """Return the questions in the step's answers.toml for which the learner's file has no line."""
+    known = {line.partition("=")[0].strip() for line in mine.decode("utf-8", "replace").splitlines()}
+    lines = theirs.read_text(encoding="utf-8").partition("[answers]\n")[2].splitlines()
+    kept: list[str] = []
+    question: list[str] = []
+    for line in filter(None, lines):
+        question.append(line)
+        if not line.startswith("#"):
+            kept += [] if line.partition("=")[0].strip() in known else question
+            question = []
+    return tuple(kept)
 
 
 def _tasks(theirs: Path, mine: bytes) -> tuple[str, ...]:

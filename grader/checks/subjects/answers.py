@@ -10,7 +10,7 @@ from grader.checks.cause import Cause
 from grader.checks.kind import Kind, NoParams, choice, number, string, strings
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.tolerance import Band
-from grader.common.words import a_list, shorten
+from grader.common.words import a_list, nearest, shorten
 from grader.errors import MachineError
 from grader.evidence import activity
 from grader.submission.answers_toml import FILE, Answer
@@ -33,7 +33,7 @@ KEEP_LOOKING = "Run the `ros2` command again and compare letter by letter."
 
 
 def answers(evidence: Evidence, _: NoParams) -> Finding:
-    """answers.toml exists, can be read, and answers only questions of the exercise."""
+    """answers.toml exists, can be read, and has a line for each question if it has answers with other names."""
     found = evidence.answers
     expected = f"{FILE} is a TOML file with a table [answers] and one line per question."
     if found is None:
@@ -44,14 +44,15 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
         return failed(f"{FILE} cannot be read: {found.problem}.", expected, why)
     questions = {str(check.params["answer"]) for check in evidence.exercise.checks if "answer" in check.params}
     named = set(found.given) | found.unusable
-    other = sorted(named - questions)
-    if other:
-        observed = f"{FILE} contains {a_list([shorten(name) for name in other])}, but no question has that name."
-        left = sorted(questions - named)
-        names = a_list(left or sorted(questions), most=len(questions))
-        intro = "These questions are not answered yet:" if left else "The names of the questions are"
-        where = Where(FILE, found.lines.get(other[0]))
-        return failed(observed, expected, Cause("unknown-answer", f"{intro} {names}.", where))
+    missing, other = sorted(questions - named - found.lines.keys()), sorted(named - questions)
+    if missing and other:  # in a workspace, the file may also contain the answers of other steps
+        names = a_list(missing, most=len(missing))
+        if misspelt := [name for name in other if nearest(name, missing)]:
+            observed = f"{FILE} contains {a_list([shorten(name) for name in misspelt])}, but no question has that name."
+            where = Where(FILE, found.lines.get(misspelt[0]))
+            return failed(observed, expected, Cause("unknown-answer", f"There is no line for {names}.", where))
+        reason = f"`grader start {evidence.exercise.id[:2]}` prints the lines that you need."
+        return failed(f"{FILE} has no line for {names}.", expected, Cause("unknown-answer", reason, Where(FILE)))
     if not named:
         return failed(f"{FILE} has no answers yet.", expected, Cause("answers-empty", where=Where(FILE)))
     return passed(f"{FILE} can be read.")

@@ -133,6 +133,24 @@ def test_start_lists_lines_that_a_later_step_needs_in_package_files(home: Path) 
     assert steps.start("03", None, fresh=True).started.lacking == {}
 
 
+@pytest.mark.usefixtures("home")
+def test_start_lists_the_questions_that_answers_toml_does_not_have() -> None:
+    steps.start("05", None)
+    begun = steps.start("11", None)
+    questions = begun.started.lacking["answers.toml"]
+    assert [line for line in questions if not line.startswith("#")] == [
+        "messages = 0",
+        'duration = ""',
+        'rate = ""',
+        'radius = ""',
+    ]
+    assert questions[0].startswith("# How many messages")
+    answers = begun.started.folder / "answers.toml"
+    answers.write_text(f"{answers.read_text()}{chr(10).join(questions)}\n".replace("messages = 0", "messages=9"))
+    assert "answers.toml" not in steps.start("11", None).started.lacking
+    assert "answers.toml" not in steps.start("05", None).started.lacking
+
+
 def test_fresh_moves_the_old_work_to_a_folder_that_colcon_ignores(home: Path) -> None:
     steps.start("01", None)
     package = home / "ros2_ws/src/my_robot_controller"
