@@ -71,7 +71,7 @@ def _known(message: str, where: Where | None) -> Cause | None:
     if fixture is not None:
         text = (
             f"No fixture is named {shorten(fixture['name'], 60)}. Does a function with this name have the "
-            "decorator @pytest.fixture?"
+            "decorator pytest.fixture?"
         )
         return Cause("fixture-missing", text, where)
     unnamed = UNNAMED.search(message)

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
 
 TEXT = (
-    "If somebody renames a method or an attribute of the node, the tests fail, although the node is correct. Send a "
-    "pose on its topic, advance the clock, and look at the messages that arrive."
+    "If somebody renames a method or an attribute of the node, the tests fail, although the node is correct. "
+    "Publish a pose, advance the clock, and look at the messages that arrive."
 )
 NUMBERS = (
     "A test that takes the expected number from the node accepts every number, even a wrong one. Write the numbers "

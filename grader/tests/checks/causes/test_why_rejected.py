@@ -43,7 +43,7 @@ def cause(message: str, *, over: bool = False) -> str:
         (
             "E   fixture 'bench' not found",
             "E   AssertionError: not found",
-            "No fixture is named bench. Does a function with this name have the decorator @pytest.fixture?",
+            "No fixture is named bench. Does a function with this name have the decorator pytest.fixture?",
         ),
         (
             "E   AssertionError: The 'x' field must be of type 'float'",
