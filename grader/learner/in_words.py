@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from difflib import SequenceMatcher
 
 from grader.common.words import a_list, count
 
@@ -13,8 +14,9 @@ def difference(theirs: str, ours: str, path: str) -> str:
         return "Your package does not contain this file."
     mine, solution = (_parts(text) if path.endswith(".py") else None for text in (theirs, ours))
     if mine is None or solution is None:
-        lines = set(theirs.splitlines()) ^ set(ours.splitlines())
-        return f"{count(len(lines), 'line')} differ{'s' if len(lines) == 1 else ''}."
+        changes = SequenceMatcher(None, theirs.splitlines(), ours.splitlines(), autojunk=False).get_opcodes()
+        lines = sum(max(a2 - a1, b2 - b1) for tag, a1, a2, b1, b2 in changes if tag != "equal")
+        return f"{count(lines, 'line')} differ{'s' if lines == 1 else ''}."
     same = [name for name in solution if mine.get(name) == solution[name]]
     other = [name for name in solution if name in mine and name not in same]
     sentences = [
@@ -24,7 +26,7 @@ def difference(theirs: str, ours: str, path: str) -> str:
         _sentence("Only the solution has", [name for name in solution if name not in mine]),
     ]
     if len(same) == len(solution) == len(mine):
-        return "The code is the same. Only comments, docstrings or spaces differ."
+        return "The code is the same. Only comments, docstrings or the layout differ."
     return " ".join(filter(None, sentences))
 
 

@@ -121,7 +121,8 @@ def note(exercise: Exercise, submission: Path, report: Report, folder: Path | No
     if report.exit_code != 0:
         return ""
     if all(known.step(name).passed for name in catalogue()):
-        return "That was the last step. You have passed all steps."
+        last = "" if all(begun.step(name).passed for name in catalogue()) else "That was the last step. "
+        return f"{last}You have passed all steps."
     waiting = _waiting(known)
     part = next((title for title, names in parts().items() if exercise.id == names[-1]), "")
     lines = [f"That was the last step of {part.lower()}."] if part else []

@@ -69,7 +69,11 @@ def executables(package: str, unknown: str) -> list[Path]:
     Raises:
         Ros2Error: the package is not installed. The message consists of `unknown` and the most similar package name.
     """
-    folder = prefix_of(package, unknown) / "lib" / package
+    return executables_in(prefix_of(package, unknown) / "lib" / package)
+
+
+def executables_in(folder: Path) -> list[Path]:
+    """Return the executable files in the folder and in its subfolders, sorted by path."""
     return sorted(path for path in _walk(folder) if path.is_file() and os.access(path, os.X_OK))
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from grader.common.noexec import noexec_folder, noexec_sentence
 from grader.ros import index
 from grader.ros.failure import Ros2Error, did_you_mean
+from grader.ros2 import unsourced
 from grader.ros2.completion import completes, packages
 
 if TYPE_CHECKING:
@@ -57,21 +58,14 @@ def run(args: argparse.Namespace) -> int:
 
 def _path(args: argparse.Namespace) -> Path:
     unknown = f"Package '{args.package_name}' not found"
-    installed = index.packages()
-    if args.package_name not in installed:
-        from grader.ros2.unsourced import meant, where_it_is
-
-        hint = where_it_is(args.package_name) or meant(args.package_name, installed)
-        if hint:
-            message = f"{unknown}\n{hint}"
-            raise Ros2Error(message)
+    unsourced.find(args.package_name, unknown)
     all_of_them = index.executables(args.package_name, unknown)
     found = [path for path in all_of_them if path.name == args.executable_name]
     if len(found) > 1:
         message = "\n".join(["Multiple executables found:", *(f"- {path}" for path in found)])
         raise Ros2Error(message)
     if not found:
-        folder = installed[args.package_name] / "lib" / args.package_name
+        folder = index.packages()[args.package_name] / "lib" / args.package_name
         mounted = noexec_folder(folder)
         if mounted and (folder / args.executable_name).is_file():
             instead = (
@@ -80,10 +74,21 @@ def _path(args: argparse.Namespace) -> Path:
             raise Ros2Error(noexec_sentence(mounted, instead))
         names = [path.name for path in all_of_them]
         hint = did_you_mean(args.executable_name, names, "No executable found")
-        have = ", ".join(names) if names else "none; entry_points in its setup.py defines them"
+        have = ", ".join(names) or _why_none(folder)
         message = f"{hint}\nExecutables of {args.package_name}: {have}"
         raise Ros2Error(message)
     return found[0]
+
+
+def _why_none(folder: Path) -> str:
+    """Return why there are no executables in `folder`, the folder lib/PACKAGE of a package."""
+    prefix = folder.parent.parent
+    if prefix.name == folder.name:  # a workspace of colcon, where no other package is installed in this prefix
+        others = (each for each in sorted(folder.parent.glob("*")) if not each.name.startswith("python"))
+        other = next((each.name for each in others if index.executables_in(each)), None)
+        if other:
+            return f"none; install_scripts in its setup.cfg names lib/{other} instead of lib/{folder.name}"
+    return "none; entry_points in its setup.py defines them"
 
 
 def _program(path: Path) -> list[str]:

@@ -9,6 +9,8 @@ from shlex import quote
 from typing import TYPE_CHECKING
 
 from grader.common.words import nearest, printable
+from grader.ros import index
+from grader.ros.failure import Ros2Error
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -17,6 +19,18 @@ _DEEPEST = 4
 """The number of folder levels below src/ that are searched for packages."""
 _MOST = 2000
 """The maximum number of folders that are searched."""
+
+
+def find(package: str, unknown: str) -> None:
+    """Raise Ros2Error if the package is in a workspace, but not installed in this terminal's ROS 2 environment.
+
+    The error begins with the text `unknown`, and says what to type.
+    """
+    installed = index.packages()
+    hint = "" if package in installed else where_it_is(package) or meant(package, installed)
+    if hint:
+        message = f"{unknown}\n{hint}"
+        raise Ros2Error(message)
 
 
 def where_it_is(package: str) -> str:

@@ -40,15 +40,16 @@ def entry_point(evidence: Evidence, _: NoParams) -> Finding:
         folder = f"lib/{build.package or evidence.exercise.package}"
         observed = f"{executable} was not installed in the folder of the package, {folder}."
         expected = "setup.cfg sets the folder for executables, so that `ros2 run` finds them."
-        cause = "Compare your setup.cfg with the one in the lesson, letter by letter."
-        if "setup.cfg" not in evidence.submission.files:
-            cause = "setup.cfg is missing."
-        elif build.package not in (None, evidence.exercise.package):
-            cause = "The folder name must be the package name in package.xml."
-        where = Where("setup.py")
-        if "setup.cfg" in evidence.submission.files:
-            setup_cfg = evidence.submission.files["setup.cfg"]
+        cause, where = "setup.cfg is missing.", Where("setup.py")
+        if (setup_cfg := evidence.submission.files.get("setup.cfg")) is not None:
             where = Where("setup.cfg", line_of(setup_cfg, "^install[_-]scripts"))
+            cause = "install_scripts must be $base/lib/ and the name of the package."
+            if build.package not in (None, evidence.exercise.package):
+                cause = "The folder name must be the package name in package.xml."
+            elif where.line is None:
+                cause = "setup.cfg has no line that begins with install_scripts."
+            elif line_of(setup_cfg, rf"^install[_-]scripts\s*[=:]\s*\$base/{folder}\s*$"):
+                cause = "install_scripts must be in the section [install]."
         return failed(observed, expected, Cause("setup-cfg", cause, where))
     module, _colon, attribute = target.partition(":")
     return _resolve(evidence, module.strip(), attribute.split("[")[0].strip())

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from grader.ros import index
+from grader.ros2 import unsourced
 from grader.ros2.completion import completes, packages
 
 if TYPE_CHECKING:
@@ -19,6 +20,8 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print the executables, sorted by package and path."""
+    if args.package_name:
+        unsourced.find(args.package_name, f"Package '{args.package_name}' not found")
     for package in [args.package_name] if args.package_name else index.packages():
         for path in index.executables(package, f"Package '{package}' not found"):
             print(path if args.full_path else f"{package} {path.name}")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.ros import index
 from grader.ros.failure import Ros2Error, did_you_mean
+from grader.ros2 import unsourced
 from grader.ros2.completion import completes, packages
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ def run(args: argparse.Namespace) -> int:
     """
     from xml.etree import ElementTree as ET
 
+    unsourced.find(args.package_name, "Package not found")
     file = index.prefix_of(args.package_name, "Package not found") / "share" / args.package_name / "package.xml"
     if not file.is_file():
         message = "Package XML manifest not found"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from grader.ros import index
+from grader.ros2 import unsourced
 from grader.ros2.completion import completes, packages
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print the prefix."""
+    unsourced.find(args.package_name, "Package not found")
     prefix = index.prefix_of(args.package_name, "Package not found")
     print(prefix / "share" / args.package_name if args.share else prefix)
     return 0

@@ -25,7 +25,7 @@ REST = "The code is the same in __init__ and the lines outside functions."
 @pytest.mark.parametrize(
     ("theirs", "said"),
     [
-        (OURS.replace("Ours", "Mine"), "The code is the same. Only comments, docstrings or spaces differ."),
+        (OURS.replace("Ours", "Mine"), "The code is the same. Only comments, docstrings or the layout differ."),
         (
             OURS.replace("return self.speed", "return 2 * self.speed"),
             f"{REST} The code is different in step.",
@@ -42,4 +42,6 @@ def test_it_is_said_in_words(theirs: str, said: str) -> None:
 
 
 def test_other_files_are_compared_by_their_lines() -> None:
-    assert difference("a\nb\n", "a\nc\n", "setup.cfg") == "2 lines differ."
+    assert difference("a\nb\n", "a\nc\n", "setup.cfg") == "1 line differs."
+    assert difference("a\nb\n", "a\nc\nd\n", "setup.cfg") == "2 lines differ."
+    assert difference("a\nb\na\n", "a\na\nb\n", "package.xml") == "2 lines differ."

@@ -183,6 +183,16 @@ def test_there_is_no_next_step_after_the_last_one() -> None:
         steps.start("next", None)
 
 
+def test_the_last_step_is_the_last_one_only_once() -> None:
+    *others, last = catalogue()
+    own = steps.start(last, None).started.folder
+    for name in others:
+        passed(name)
+    first, again = (steps.note(find_exercise(last), own, report("passed")) for _ in range(2))
+    assert first == "That was the last step. You have passed all steps."
+    assert again == "You have passed all steps."
+
+
 def test_start_names_the_tasks_in_package_files_that_stay_as_they_are() -> None:
     steps.start("07", None)
     begun = steps.start("08", None)

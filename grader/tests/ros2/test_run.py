@@ -28,3 +28,23 @@ def test_a_workspace_from_which_no_program_runs_is_named(tmp_path: Path, monkeyp
     mounted_noexec(monkeypatch, tmp_path)
     with pytest.raises(Ros2Error, match=r"is mounted with the option noexec.* move your workspace"):
         run.run(args)
+
+
+def test_executables_in_the_folder_of_another_name_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    prefix = tmp_path / "install/my_robot_controller"
+    index, installed = prefix / "share/ament_index/resource_index/packages", prefix / "lib/robot_controller"
+    for folder in (index, installed, prefix / "lib/python3.11/site-packages"):
+        folder.mkdir(parents=True)
+    (index / "my_robot_controller").touch()
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(prefix))
+    args = Namespace(package_name="my_robot_controller", executable_name="draw_circle", prefix=None, argv=[])
+    with pytest.raises(Ros2Error, match="none; entry_points"):
+        run.run(args)
+    (installed / "draw_circle").touch(mode=0o755)
+    named = "names lib/robot_controller instead of lib/my_robot_controller"
+    with pytest.raises(Ros2Error, match=named):
+        run.run(args)
+    prefix.rename(tmp_path / "merged")  # here, lib/robot_controller could belong to another package
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "merged"))
+    with pytest.raises(Ros2Error, match="none; entry_points"):
+        run.run(args)

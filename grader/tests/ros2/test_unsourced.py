@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from argparse import Namespace
 from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.ros.failure import Ros2Error
+from grader.ros2 import run
+from grader.ros2.pkg import executables, manifest, prefix
 from grader.ros2.unsourced import meant, where_it_is
 
 if TYPE_CHECKING:
     from pathlib import Path
+    from types import ModuleType
 
 BUILD = "not built. Type: cd ~/ros2_ws && colcon build && source install/setup.bash"
 
@@ -39,3 +44,17 @@ def test_the_package_that_was_meant_is_in_the_workspace() -> None:
 def test_an_installed_package_with_a_nearer_name_was_meant() -> None:
     assert meant("turtlesm", ["rqt_console", "turtlesim"]) == ""
     assert meant("camera", ["rqt_console", "turtlesim"]) == ""
+
+
+@pytest.mark.parametrize("verb", [run, executables, manifest, prefix])
+def test_each_verb_about_a_package_says_that_it_is_not_built(
+    verb: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    index = tmp_path / "ros/share/ament_index/resource_index/packages"
+    index.mkdir(parents=True)
+    (index / "rqt_console").touch()
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "ros"))
+    args = Namespace(package_name="my_robot_controller", executable_name="draw_circle", prefix=None, argv=[])
+    with pytest.raises(Ros2Error, match=r"not found\nThe package is in .*, but not built") as error:
+        verb.run(args)
+    assert "rqt_console" not in str(error.value)

@@ -146,17 +146,23 @@ def test_a_script_is_no_entry_point(files: Files, diagnosis: str, where: str, wo
     assert "is installed as a script" not in without.cause
 
 
+NO_LINE = "setup.cfg has no line that begins with install_scripts."
+OTHER_FOLDER = "install_scripts must be $base/lib/ and the name of the package."
+OTHER_SECTION = "install_scripts must be in the section [install]."
+
+
+def setup_cfg(section: str, folder: str) -> Files:
+    return {"setup.cfg": f"{section}\ninstall_scripts = $base/lib/{folder}\n"}
+
+
 @pytest.mark.parametrize(
     ("files", "package", "where", "cause"),
     [
         ({"setup.cfg": None}, "my_robot_controller", "setup.py", "setup.cfg is missing."),
-        (
-            {},
-            "my_robot_controller",
-            "setup.cfg",
-            "Compare your setup.cfg with the one in the lesson, letter by letter.",
-        ),
-        ({}, None, "setup.cfg", "Compare your setup.cfg with the one in the lesson, letter by letter."),
+        ({}, "my_robot_controller", "setup.cfg", NO_LINE),
+        ({}, None, "setup.cfg", NO_LINE),
+        (setup_cfg("[install]", "robot"), "my_robot_controller", "setup.cfg:2", OTHER_FOLDER),
+        (setup_cfg("[instal]", "my_robot_controller"), "my_robot_controller", "setup.cfg:2", OTHER_SECTION),
         ({}, "my_robot", "setup.cfg", "The folder name must be the package name in package.xml."),
     ],
 )
