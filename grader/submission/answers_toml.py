@@ -52,6 +52,8 @@ def read_answers(data: bytes) -> Answers:
     except (ValueError, RecursionError) as error:
         # TOMLDecodeError has the line only in its text.
         line = re.search(r"\(at line (\d+)", str(error))
+        if "array" in str(error) and (opened := _open_list(text)) is not None:
+            return Answers(problem=f"the list on line {opened} has no ] at its end", line=opened)
         return Answers(problem=shorten(str(error), 120), line=int(line[1]) if line else None)
     if not isinstance(table, dict):
         return Answers(problem="it has no table [answers]")
@@ -71,6 +73,20 @@ def _answer(value: object) -> Answer | None:
     if isinstance(value, list) and value and all(isinstance(item, str) for item in value):
         return tuple(item.strip() for item in value)
     return None
+
+
+def _open_list(text: str) -> int | None:
+    """Return the first line with a list that is not closed before the next answer begins, or None."""
+    opened = None
+    for number, line in enumerate(text.splitlines(), 1):
+        begins = re.match(r"\s*\w+\s*=", line) is not None
+        if begins and opened is not None:
+            return opened
+        if begins and "[" in line:
+            opened = number
+        if "]" in line:
+            opened = None
+    return opened
 
 
 def _is_empty(value: object) -> bool:

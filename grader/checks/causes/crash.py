@@ -42,6 +42,7 @@ MEANINGS = {
     "IndexError": "The list has no item with this index.",
     "InvalidNodeNameException": "A node name may contain only letters, digits and underscores.",
     "InvalidTopicNameException": "A topic name may contain only letters, digits, underscores and slashes.",
+    "InvalidParameterTypeException": "A parameter has the type of its default value: 2 is an integer, 2.0 is a float.",
     "KeyError": "The dictionary has no such key.",
     "ModuleNotFoundError": "No module with that name is installed. Check the name letter by letter.",
     "NameError": "This name was never defined. Check the spelling of the name, and the imports.",

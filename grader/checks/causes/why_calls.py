@@ -292,8 +292,9 @@ def _calls_of_init(scene: CrashScene) -> str:
 def _no_message(scene: CrashScene) -> Cause:
     for call in scene.calls_on_line("create_subscription"):
         name = (dotted(call.args[2]) or "").rpartition(".")[2] if len(call.args) > 2 else ""
-        for method in scene.functions(name):
-            if len(method.args.args) < 2:
-                text = f"{name} has no parameter for the message that a subscription passes."
-                return Cause("callback-parameters", text, scene.at(method))
+        for method in (each for each in scene.functions(name) if len(each.args.args) < 2):
+            text = f"{name} has no parameter for the message that a subscription passes."
+            if (only := [each.arg for each in method.args.args if each.arg != "self"]) and scene.class_around(method):
+                text = f"{name} is a method, so its first parameter is self. Write {name}(self, {only[0]})."
+            return Cause("callback-parameters", text, scene.at(method))
     return Cause("not-callable", "The callback of the subscription is not a function.")

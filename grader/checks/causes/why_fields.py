@@ -49,7 +49,8 @@ def why_field(scene: CrashScene) -> Cause | None:
         point = isinstance(resolved, ast.Constant) and isinstance(resolved.value, float)
         more = ": write it without a decimal point" if point else ""
         return Cause("field-type", f"The value of the field {field} must be {KINDS.get(wanted, wanted)}{more}.")
-    cause = why_no_float(field, resolved) or Cause(
+    cause = _whole_parameter(scene, field, resolved) or why_no_float(field, resolved)
+    cause = cause or Cause(
         "field-type", f"The field {field} is a float, but the value has another type. Convert it with float(...)."
     )
     if isinstance(resolved, ast.Constant) and resolved is value:
@@ -100,6 +101,29 @@ def why_no_float(field: str, value: ast.expr | None) -> Cause | None:
     if names and names[0] in ("int", "round", "len"):
         return Cause("int-for-float", f"The field {field} is a float, but {names[0]}(...) returns an integer.")
     return None
+
+
+def _whole_parameter(scene: CrashScene, field: str, value: ast.expr | None) -> Cause | None:
+    """Return the cause if the value comes from a parameter whose default value is an integer, else None."""
+    calls = [node for node in ast.walk(value) if isinstance(node, ast.Call)] if value is not None else []
+    read = {name for call in calls if (name := _parameter(call, "get_parameter")) is not None}
+    for node in scene.nodes:
+        if isinstance(node, ast.Call) and (name := _parameter(node, "declare_parameter")) in read:
+            default = node.args[1] if len(node.args) > 1 else None
+            if isinstance(default, ast.Constant) and type(default.value) is int:
+                text = (
+                    f"The field {field} is a float, but the default value of the parameter {shorten(name or '')} is "
+                    f"the integer {default.value}. Write {float(default.value)}."
+                )
+                fix = at(scene.at(default), str(default.value), str(float(default.value)))
+                return Cause("int-for-float", text, scene.at(default)).fixed_by(fix)
+    return None
+
+
+def _parameter(call: ast.Call, method: str) -> str | None:
+    """Return the name of the parameter if the call is a call of this method of a node, else None."""
+    name = call.args[0] if call.args and (dotted(call.func) or "").endswith(f".{method}") else None
+    return name.value if isinstance(name, ast.Constant) and isinstance(name.value, str) else None
 
 
 def _why_constant(field: str, value: ast.Constant | ast.JoinedStr, shown: str) -> Cause | None:

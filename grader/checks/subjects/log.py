@@ -114,6 +114,8 @@ def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expe
         text = "The line contains the braces themselves. An f-string replaces the braces with a value."
         where = evidence.place(*LEVELS)
         why = Cause("log-numbers", text, where).fixed_by(at(where, '("', '(f"'))
+    elif method := re.search(r"<bound method \w+\.(\w+) of ", line):
+        why = Cause("log-numbers", f"{method[1]} is a method, so the line shows the method itself instead of a value.")
     elif re.search(r"%[-+.\d]*[dfsi]|\{\}", line):
         text = "A placeholder such as {} or %d is still in the line, so it was not replaced with a value."
         why = Cause("log-numbers", text)

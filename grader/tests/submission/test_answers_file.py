@@ -51,6 +51,8 @@ def test_an_editor_of_windows_may_have_written_it() -> None:
         (b"[answers]\nname = \xff\n", "it is not UTF-8"),
         (b"[answers]\nname = word\n", "Invalid value (at line 2, column 8)"),
         (b"[answers]\nname = 1\nname = 2\n", "Cannot overwrite a value (at line 3, column 9)"),
+        (b"[answers]\na = 1\nb = [1,\n  2\nc = [3]\n", "the list on line 3 has no ] at its end"),
+        (b'[answers]\na = [1]\nb = ["c"\n', "the list on line 3 has no ] at its end"),
         (b"#" * (MAX_BYTES + 1), "it is larger than 100 kB"),
     ],
 )

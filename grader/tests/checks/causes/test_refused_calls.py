@@ -22,6 +22,9 @@ class Driver(Node):
     def send(self):
         pass
 
+    def take(pose):
+        pass
+
 def main():
     rclpy.init()
     rclpy.spin(Driver())
@@ -48,6 +51,12 @@ def cause(line: str, error: str, name: str = "__init__") -> str:
             "self.create_subscription(Pose, '/a', print, 10)",
             CALLBACK,
             "send has no parameter for the message that a subscription passes.",
+        ),
+        (
+            "self.create_subscription(Pose, '/a', self.take, 10)",
+            "self.create_subscription(Pose, '/a', self.send, 10)",
+            CALLBACK,
+            "take is a method, so its first parameter is self. Write take(self, pose).",
         ),
         (
             "self.create_subscription(Pose, '/a', 'send', 10)",

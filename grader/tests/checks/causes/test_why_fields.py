@@ -96,3 +96,27 @@ def test_an_assertion_is_explained_by_its_words(error: str, diagnosis: str, word
     found = reported("msg.linear.x = 2  # crashed\n", f"AssertionError: {error}")
     assert (found.diagnosis, found.line) == (diagnosis, 1)
     assert found.cause.startswith(words)
+
+
+@pytest.mark.parametrize(
+    ("default", "read", "words"),
+    [
+        ("1", "speed", "the default value of the parameter speed is the integer 1. Write 1.0."),
+        ("1", "radius", "the value has another type. Convert it with float(...)."),
+        ("1.0", "speed", "the value has another type. Convert it with float(...)."),
+        ("True", "speed", "the value has another type. Convert it with float(...)."),
+    ],
+)
+def test_a_parameter_with_an_integer_as_its_default_value_is_named(default: str, read: str, words: str) -> None:
+    source = f"""\
+class Driver(Node):
+    def __init__(self):
+        self.declare_parameter("speed", {default})
+
+    def send(self):
+        speed = self.get_parameter("{read}").value
+        msg.linear.x = speed  # crashed
+"""
+    found = reported(source, FLOAT)
+    assert found.cause.endswith(words)
+    assert found.line == (3 if "default value" in words else 7)

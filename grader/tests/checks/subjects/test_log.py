@@ -68,6 +68,12 @@ def test_lines_in_the_format_are_enough_whatever_else_is_logged() -> None:
             f"{OTHER_FORM} In an f-string, {{value:.2f}} writes two decimal places.",
         ),
         (
+            "Hello <bound method FirstNode.count of <first_node.FirstNode object at 0x7f>>",
+            HELLO,
+            'The last log line is "Hello <bound method FirstNode.count of <first_node.FirstNode object at 0x7f>>".',
+            "count is a method, so the line shows the method itself instead of a value.",
+        ),
+        (
             "Hello \u0663",  # a digit, but not an ASCII digit
             HELLO,
             'The last log line is "Hello \u0663".',
