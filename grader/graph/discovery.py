@@ -205,14 +205,20 @@ def published(node: Node, topic: str) -> bool:
     return any(publisher.node_name != own for publisher in node.get_publishers_info_by_topic(topic))
 
 
-def spin_until(node: Node, done: Callable[[], bool], timeout_s: float | None = None) -> bool:
-    """Spin the node until `done` returns true or the timeout expires. Return False after a timeout."""
+def spin_until(
+    node: Node, done: Callable[[], bool], timeout_s: float | None = None, *, defer_stops: bool = False
+) -> bool:
+    """Spin the node until `done` returns true or the timeout expires. Return False after a timeout.
+
+    With `defer_stops`, no signal interrupts a callback, so no response is lost. Use this only if no callback waits.
+    """
     end = None if timeout_s is None else time.monotonic() + timeout_s
     while not done():
         left = _WAKE_S if end is None else min(_WAKE_S, end - time.monotonic())
         if left <= 0:
             return False
-        rclpy.spin_once(node, timeout_sec=left)
+        with stops_deferred() if defer_stops else nullcontext():
+            rclpy.spin_once(node, timeout_sec=left)
     return True
 
 

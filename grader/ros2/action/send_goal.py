@@ -6,6 +6,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
+from grader.common.interrupts import stops_deferred
 from grader.graph.names import absolute
 from grader.ros import message_values
 from grader.ros.failure import Ros2Error, did_you_mean
@@ -79,23 +80,37 @@ def _follow(node: Any, client: Any, goal: Any, *, feedback: bool) -> None:  # no
     def print_feedback(message: Any) -> None:  # noqa: ANN401
         print(f"Feedback:\n    {to_yaml(message.feedback, _WHOLE)}", flush=True)
 
-    print(f"Sending goal:\n     {to_yaml(goal, _WHOLE)}", flush=True)
-    sent = client.send_goal_async(goal, feedback_callback=print_feedback if feedback else None)
-    spin_until(node, sent.done)
-    handle = sent.result()
-    if not handle.accepted:
-        print("Goal was rejected.", flush=True)
-        return
-    print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n", flush=True)
-    finished = handle.get_result_async()
+    sent: Any = None
     try:
+        with stops_deferred():
+            print(f"Sending goal:\n     {to_yaml(goal, _WHOLE)}", flush=True)
+            sent = client.send_goal_async(goal, feedback_callback=print_feedback if feedback else None)
+        spin_until(node, sent.done, defer_stops=True)
+        handle = sent.result()
+        if not handle.accepted:
+            print("Goal was rejected.", flush=True)
+            return
+        print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n", flush=True)
+        with stops_deferred():
+            finished = handle.get_result_async()
         spin_until(node, finished.done)
     except KeyboardInterrupt:
-        print("Canceling goal...", flush=True)
-        canceled = handle.cancel_goal_async()
-        if spin_until(node, canceled.done, _CANCEL_S) and canceled.result().goals_canceling:
-            print("Goal canceled.", flush=True)
+        if sent is not None:
+            _cancel(node, sent)
         raise
     answer = finished.result()
     print(f"Result:\n    {to_yaml(answer.result, _WHOLE)}", flush=True)
     print(f"Goal finished with status: {_STATUS[answer.status]}", flush=True)
+
+
+def _cancel(node: Any, sent: Any) -> None:  # noqa: ANN401
+    """Cancel the goal that was sent, unless the server rejects it or does not respond in time."""
+    from grader.graph.discovery import spin_until
+
+    if not spin_until(node, sent.done, _CANCEL_S, defer_stops=True) or not sent.result().accepted:
+        return
+    print("Canceling goal...", flush=True)
+    with stops_deferred():
+        canceled = sent.result().cancel_goal_async()
+    if spin_until(node, canceled.done, _CANCEL_S, defer_stops=True) and canceled.result().goals_canceling:
+        print("Goal canceled.", flush=True)

@@ -162,6 +162,14 @@ def test_ctrl_c_ends_a_verb_quietly(command: str, ready: str | None, still: Worl
     assert "Traceback" not in "\n".join(running.lines)
 
 
+@pytest.mark.parametrize("ready", ["Sending goal:", "Goal accepted"])
+def test_ctrl_c_cancels_a_goal_at_any_moment(ready: str, still: World) -> None:
+    for _ in range(3):
+        running = still.start(f"ros2 action send_goal {ROTATE} '{{theta: .nan}}'", ready)
+        assert running.stop() == 2, running.lines
+        assert [line for line in running.lines if "ancel" in line] == ["Canceling goal...", "Goal canceled."]
+
+
 def test_a_verb_hears_by_loopback_and_nothing_else(still: World) -> None:
     running = still.start("ros2 topic hz /turtle1/pose", "average rate")
     process = Path("/proc", str(running.process.pid))
