@@ -44,7 +44,7 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
     return failed(
         "The node does not use a timer.",
         EXPECTED,
-        Cause("no-timer", cause, evidence.place("publish", "sleep")),
+        Cause("no-timer", cause, evidence.place("sleep", "publish")),
     )
 
 
