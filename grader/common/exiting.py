@@ -1,4 +1,4 @@
-"""Run the command `grader`, and exit with its exit code. An error is printed as a sentence."""
+"""Run the command `grader`, and exit with its exit code. An error is printed as a sentence, not as a traceback."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def _run(command: Callable[[], object]) -> None:
 
 
 def _drop_unwritten() -> None:
-    """Discard unwritten output.
+    """Write the remaining output, or discard it if it cannot be written.
 
     If the output were kept, Python would try to write it at exit, fail, and exit with code 120.
     """

@@ -1,4 +1,4 @@
-"""Remove commands to a continuous integration (CI) system from the output, which can contain text from a submission.
+"""Disable commands to a continuous integration (CI) system in the output, which can contain text from a submission.
 
 CI systems execute commands that they find in the log of a job. GitHub Actions executes `::command::` at the beginning
 of a line, and the older `##[command]` anywhere (`ActionCommand.TryParseV2` and `TryParse` in actions/runner). Azure
@@ -19,7 +19,7 @@ LONGEST = len("##teamcity[")
 
 
 def without_commands(text: str, before: str = "") -> str:
-    """Return the text without commands. `before` is the end of the text that is already on the same line.
+    """Return the text with a space in the marker of each command. `before` is the end of the same line so far.
 
     Example:
         >>> without_commands("::error::x ##vso[task.x]")

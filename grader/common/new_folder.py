@@ -18,8 +18,10 @@ if TYPE_CHECKING:
 def new_folder(folder: Path, mode: int = 0o777) -> Iterator[None]:
     """Create a folder, or use an empty folder. If the `with` block fails, the folder is restored to its previous state.
 
+    Parent folders that were created remain.
+
     Raises:
-        UsageError: the folder is not empty.
+        UsageError: the folder is not empty, or is a file.
         MachineError: the folder could not be created or written.
     """
     was_there = folder.exists()
@@ -44,8 +46,9 @@ def _removed(folder: Path, *, was_there: bool) -> bool:
     try:
         for entry in folder.iterdir():
             shutil.rmtree(entry, ignore_errors=True) if entry.is_dir() else entry.unlink()
-        if not was_there:
-            folder.rmdir()
+        if was_there:
+            return not any(folder.iterdir())
+        folder.rmdir()
     except OSError:
         return not folder.exists()
     return True

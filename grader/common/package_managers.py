@@ -111,7 +111,7 @@ MANAGERS = (
 
 
 def find_manager(path: str) -> Optional[Manager]:
-    """Return the package manager of this system.
+    """Return the package manager of this system, or None if it is unknown.
 
     If several package managers are installed, prefer the usual one for this system.
     """

@@ -12,7 +12,7 @@ import sys
 from typing import TextIO
 
 _CONTROL = re.compile(r"(?!\x1b\[(?:0|1|31|33)m)[\x00-\x08\x0b-\x1f\x7f-\x9f]")
-"""The characters of Unicode's category Cc, except line breaks, tabs, and the colours of our own messages."""
+"""The characters of Unicode's category Cc, except line feeds, tabs, and the colours of our own messages."""
 
 
 def without_control(text: str) -> str:

@@ -20,7 +20,7 @@ class QuickExit:
     """
 
     code: object = None
-    """The exit code. If it is not a number, the process ends as usual."""
+    """The exit code. If it is not an integer of at most 31 bits, the process ends as usual."""
     kept: frozenset[str] | None = None
     """The names of the modules to keep. All other modules are cleared. If None, no module is cleared."""
 

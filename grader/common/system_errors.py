@@ -12,7 +12,7 @@ import sys
 from typing import Optional, Tuple
 
 OF_THE_DISK = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS})
-"""Errors that mean that the disk is full or broken. Any other error concerns a single file."""
+"""Errors that mean that the disk is full, broken or read-only."""
 ROOM = "free some space there, or set another folder with XDG_CACHE_HOME, XDG_STATE_HOME or TMPDIR"
 _WRITABLE = "use a folder on another disk, and also set XDG_CACHE_HOME, XDG_STATE_HOME and TMPDIR to such folders"
 _SCARCE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN, errno.EIO})
@@ -79,7 +79,10 @@ def path_and_reason(error: OSError) -> Tuple[str, str]:
 
 
 def of_the_machine(error: OSError) -> bool:
-    """Return whether the machine has run out of disk space or memory, or has too many open files or processes."""
+    """Return whether the machine has run out of disk space or memory, has too many open files, or has a broken disk.
+
+    EAGAIN counts, too: the machine has too many processes.
+    """
     return error.errno in _SCARCE
 
 

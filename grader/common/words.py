@@ -30,13 +30,16 @@ def shorten(text: str, limit: int = 60) -> str:
 
 
 def nearest(name: str, candidates: Iterable[str], alike: float = 0.6) -> str | None:
-    """Return the candidate most similar to `name`, or None if no candidate has a difflib ratio of `alike` or more."""
+    """Return the candidate most similar to `name`, or None if no candidate has a difflib ratio of `alike` or more.
+
+    Only the first 200 characters are compared and returned.
+    """
     found = difflib.get_close_matches(name[:200], [candidate[:200] for candidate in candidates], n=1, cutoff=alike)
     return found[0] if found else None
 
 
 def a_list(items: Sequence[str], last: str = "and", *, most: int = 12) -> str:
-    """Return 'a', 'a and b' or 'a, b and c', with at most `most` of the items."""
+    """Return 'a', 'a and b' or 'a, b and c'. If there are more than `most` items, the list ends with '2 more'."""
     shown = list(items[:most])
     if len(items) > len(shown):
         shown.append(f"{len(items) - len(shown)} more")

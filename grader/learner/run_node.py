@@ -216,7 +216,7 @@ def _until_it_ends(program: Program, script: Path, env: Mapping[str, str]) -> in
             node.kill()
     if interrupted:
         return 0
-    how = "without an error." if code == 0 else f"with exit code {code}. The lines above show where and why."
+    how = "without an error." if code == 0 else f"with exit code {code}. The lines above may show where and why."
     say(f"\n{program.executable} has ended {how}")
     return 0 if code == 0 else 1
 

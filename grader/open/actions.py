@@ -77,8 +77,8 @@ class Actions:
                 await self.programs.turtlesim.stop()
             elif await self.programs.beside_another():
                 message = (
-                    "A turtlesim is already running in a terminal. To see a turtlesim here, first end the other "
-                    "turtlesim with Ctrl-C."
+                    "Another turtlesim is already running, for example in a terminal. To see a turtlesim here, first "
+                    "end the other turtlesim with Ctrl-C."
                 )
                 raise UsageError(message)
             else:

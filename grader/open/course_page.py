@@ -122,7 +122,10 @@ def _pass_on(connection: socket.socket, events: Events) -> None:
 
 
 def elsewhere(port: int, env: Mapping[str, str]) -> list[str]:
-    """Return the command that makes the page available on another computer, for a Codespace or an ssh session."""
+    """Return a line with the command that makes the page available on another computer.
+
+    Outside a Codespace and an ssh session, return no line.
+    """
     if env.get("CODESPACES") == "true":
         name = env.get("CODESPACE_NAME", "NAME")
         return [f"On your own computer, first type: gh codespace ports forward {port}:{port} --codespace {name}"]

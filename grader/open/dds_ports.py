@@ -56,7 +56,7 @@ def reserve(domain: int) -> Ports:
     The port numbers are high, because nodes use the lowest free ports.
 
     Raises:
-        MachineError: all ports are in use.
+        MachineError: too few ports are free.
     """
     own: dict[int, tuple[socket.socket, ...]] = {}
     for number in reversed(range(PARTICIPANTS)):
@@ -74,7 +74,8 @@ def reserve(domain: int) -> Ports:
             return Ports((*sockets, *readers), others, discovery)
     for each in sockets:
         each.close()
-    message = f"The ports {FIRST_OWN} to {FIRST_OWN + OTHERS + _TRIED} of this machine are in use. Stop some nodes."
+    first, last = FIRST_OWN + OTHERS, FIRST_OWN + OTHERS + _TRIED + len(own) - 2
+    message = f"Too few of the ports {first} to {last} of this machine are free. Stop some nodes."
     raise MachineError(message)
 
 

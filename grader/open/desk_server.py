@@ -51,7 +51,7 @@ class DeskServer:
     """The request handlers.
 
     `content` returns the current data of the page. `actions` are the actions that a page can request. `turtle`
-    returns the address of turtlesim's view.
+    returns the address of turtlesim's view, or None.
     """
 
     content: Callable[[], Content]

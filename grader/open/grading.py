@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from grader.open.desk import Desk
 
 RERUN, STEP = "rerun", "step"
-"""The commands from a page: grade again, or check whether the current step has changed."""
+"""The commands from the process of the page: grade again, or check whether the current step has changed."""
 
 
 def run(desk: Desk, events: Events, workspace: Path | None) -> None:
-    """Grade after every save and command, until there are no more events."""
+    """Grade each new step, after each save that changes it, and on request, until there are no more events."""
     options = Options(in_cell=bubblewrap.usable())
     current = steps.current(workspace)
     while True:
@@ -78,7 +78,10 @@ def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
 
 
 def lacking(exercise: Exercise, files: Mapping[str, bytes]) -> list[dict[str, object]]:
-    """Return the lines and the tasks of the step that are missing from the learner's package files."""
+    """Return the lines and the tasks of the step that are missing from the learner's package files.
+
+    Return nothing if the files of the step cannot be read.
+    """
     try:
         lines, tasks = lacking_lines(exercise, files), open_tasks(exercise, files)
     except (OSError, MachineError):

@@ -108,7 +108,7 @@ def _until_it_ends(cell: LinkedCell, program: Program) -> int:
     if cell.out_of:
         print(f"\n{program.executable} was stopped, because it exceeded its limit on {cell.out_of}.")
         return 1
-    how = "without an error." if code == 0 else f"with exit code {code}. The lines above show where and why."
+    how = "without an error." if code == 0 else f"with exit code {code}. The lines above may show where and why."
     print(f"\n{program.executable} has ended {how}")
     return 0 if code == 0 else 1
 

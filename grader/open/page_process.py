@@ -124,7 +124,7 @@ def main() -> None:
 
     given = json.loads(sys.argv[1])
     listening = socket.socket(fileno=given["listening"])
-    # The settings come from the environment, because all users can see the arguments of a process.
+    # The token comes from the environment, because all users can see the arguments of a process.
     address = Address(listening.getsockname()[1], os.environ.pop("GRADER_VIEW_TOKEN"))
     workspace = Path(given["workspace"]) if given["workspace"] else None
     connection = socket.socket(fileno=given["connection"])

@@ -1,4 +1,4 @@
-"""The programs that a page can start: turtlesim as in a terminal, and a node of the current step in a cell."""
+"""The programs that a page can start: turtlesim as in a terminal, and a node of the step, in a cell if possible."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ ENDS_S = 8.0
 """The maximum time for a program to exit after Ctrl-C (s). After this time, the program is killed."""
 READY_S = 30.0
 """The maximum time for starting turtlesim (s)."""
-NO_CELL = "There is no sandbox here, so the program runs under your account, as in a terminal."
+NO_CELL = "The program cannot run in the sandbox here, so it runs under your account, as in a terminal."
 _LOOK_S = 0.05
 _NO_DAEMON = {"GRADER_ROS2_DAEMON": "0"}
 """Without this variable, a ros2 daemon would be started, and would continue to run after `grader open` has exited."""

@@ -39,15 +39,15 @@ _OPTIONS = frozenset(
 _WORD = re.compile(r"[A-Za-z0-9_/~.][A-Za-z0-9_/~.\-]*")
 _MOST_WORDS = 8
 LONGEST = 20_000
-"""The maximum length of the output of a command (characters)."""
+"""The maximum length of the output of a command (bytes)."""
 HZ_S = 5.0
-"""The duration of `ros2 topic hz` (s)."""
+"""The duration of `ros2 topic hz`, and the maximum time for a command to exit after Ctrl-C (s)."""
 PATIENCE_S = 15.0
 
 
 @dataclass(frozen=True)
 class Answer:
-    """The output of the command, and whether the command was stopped because it did not exit."""
+    """The output of the command, and whether the output is incomplete because the command was stopped."""
 
     output: str
     stopped: bool
@@ -64,7 +64,7 @@ def arguments(text: str) -> list[str]:
     try:
         words = shlex.split(text)
     except ValueError as error:
-        message = f"The command has a quote that is not closed: {text}."
+        message = f"The command has a quote that is not closed, or ends with a backslash: {text}."
         raise UsageError(message) from error
     words = words[1:] if words[:1] == ["$"] else words
     words = words[1:] if words[:1] == ["ros2"] else words
@@ -124,6 +124,6 @@ def answer(words: list[str], env: Mapping[str, str]) -> Answer:
         except subprocess.TimeoutExpired:
             process.kill()
             output, _ = process.communicate()
-    if stopped and not output and words[0] == "topic":
+    if stopped and not output and words[:2] in (["topic", "echo"], ["topic", "hz"]):
         return Answer(f"No message arrived within {patience_s:.0f} s.", stopped=False)
     return Answer(output[:LONGEST].decode("utf-8", "replace"), stopped and not endless)

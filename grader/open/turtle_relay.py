@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from grader.view.address import Address
 
 LARGEST = 1 << 24
-"""The maximum size of a message from the view (bytes). The first message is the largest, because it contains the whole
-trail of the turtle."""
+"""The maximum size of a message from the view (bytes). The messages with the whole state are the largest, because they
+contain the whole trails of the turtles."""
 
 
 async def relay(page: WebSocket, address: Address) -> None:

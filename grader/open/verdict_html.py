@@ -1,4 +1,4 @@
-"""The details of a verdict as HTML for the page: the checks that did not pass, and the trajectory with its player."""
+"""The details of a verdict as HTML for the page: failed checks, errors, advice, and the trajectory with its player."""
 
 from __future__ import annotations
 

@@ -26,16 +26,22 @@ class Ros2Error(GraderError):
 def did_you_mean(name: str, candidates: Iterable[str], text: str = "", nodes: Iterable[str] = (OTHER,)) -> str:
     """Return `text`, followed by a line that suggests the most similar candidate if one is similar enough.
 
-    `nodes` contains the names of the running nodes. If all of them are hidden, like the node of this command, the line
-    says that no node is running. In this case, the node that the user named has not been started, or is running in
+    `nodes` contains the names of the discovered nodes. If all of them are hidden, like the node of this command, the
+    line says that no node was found. In this case, the node that the user named has not been started, or is running in
     another domain.
     """
+    found = similar(name, candidates)
+    hint = f"Did you mean '{printable(found)}'?" if found else ""
+    if all(node.rpartition("/")[2].startswith("_") for node in nodes):
+        domain = os.environ.get("ROS_DOMAIN_ID") or "0"
+        hint = f"No node was found in ROS domain {domain}. Start one in another terminal, for example: grader sim"
+    return "\n".join(part for part in (text, hint) if part)
+
+
+def similar(name: str, candidates: Iterable[str]) -> str | None:
+    """Return the candidate that is most similar to `name` but not equal to it, or None if none is similar enough."""
     others = [candidate for candidate in candidates if candidate != name]
     found = others[0] if len(others) == 1 and others[0].endswith(f"/{name}") else nearest(name, others)
     if not found and len(name) > 2:
         found = next((other for other in sorted(others) if other.startswith(name)), None)
-    hint = f"Did you mean '{printable(found)}'?" if found else ""
-    if all(node.rpartition("/")[2].startswith("_") for node in nodes):
-        domain = os.environ.get("ROS_DOMAIN_ID", "0")
-        hint = f"No node is running in ROS domain {domain}. Start one in another terminal, for example: grader sim"
-    return "\n".join(part for part in (text, hint) if part)
+    return found

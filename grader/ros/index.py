@@ -9,7 +9,8 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.ros.failure import Ros2Error, did_you_mean
+from grader.common.words import printable
+from grader.ros.failure import Ros2Error, did_you_mean, similar
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -20,7 +21,8 @@ KINDS = ("msg", "srv", "action")
 
 def prefixes() -> list[Path]:
     """Return the folders on AMENT_PREFIX_PATH that exist, overlays first."""
-    return [path for path in map(Path, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)) if path.is_dir()]
+    entries = filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep))
+    return [path for path in map(Path, entries) if path.is_dir()]
 
 
 def _resources(kind: str) -> dict[str, Path]:
@@ -54,8 +56,8 @@ def prefix_of(package: str, unknown: str, likely: Iterable[str] = ()) -> Path:
     """Return the first prefix on AMENT_PREFIX_PATH that contains the package.
 
     Raises:
-        Ros2Error: the package is not installed. The message consists of `unknown` and the most similar name from
-        `likely`, or from all packages if `likely` is empty.
+        Ros2Error: the package is not installed. The message consists of `unknown` and, if one is similar enough, the
+        most similar name from `likely`, or from all packages if `likely` is empty.
     """
     found = packages()
     if package not in found:
@@ -67,7 +69,7 @@ def executables(package: str, unknown: str) -> list[Path]:
     """Return the executables in a package that `ros2 run` can start, sorted by path.
 
     Raises:
-        Ros2Error: the package is not installed. The message consists of `unknown` and the most similar package name.
+        Ros2Error: the package is not installed. The message is that of `prefix_of`.
     """
     return executables_in(prefix_of(package, unknown) / "lib" / package)
 
@@ -119,17 +121,20 @@ def interface_file(name: str) -> Path:
     prefix = prefix_of(parts[0], f"Unknown package '{parts[0]}'", interface_packages())
     found = prefix / "share" / parts[0] / parts[1] / f"{parts[2]}.{parts[1]}"
     if not found.is_file():
-        # Compare only the last part of the name, since the other parts are the same in all candidates.
+        # Compare only the last part of the name: the package is the same in all candidates, and the kind may be wrong.
         known = interfaces(parts[0]) if parts[0] in interface_packages() else []
         ends = {candidate.rsplit("/", 1)[1]: candidate for candidate in known}
-        hint = did_you_mean(parts[2], ends).replace("Did you mean '", f"Did you mean '{parts[0]}/{parts[1]}/")
+        last = parts[2] if parts[2] in ends else similar(parts[2], ends)
         message = f"Could not find the interface '{found.with_suffix('.idl')}'"
-        raise Ros2Error(f"{message}\n{hint}" if hint else message)
+        raise Ros2Error(f"{message}\nDid you mean '{printable(ends[last])}'?" if last else message)
     return found
 
 
 def _meant(name: str) -> list[str]:
-    """Return the full names (such as "geometry_msgs/msg/Twist") for a short name: "Twist" or "geometry_msgs/Twist"."""
+    """Return the full names (such as "geometry_msgs/msg/Twist") for a short name: "Twist" or "geometry_msgs/Twist".
+
+    If no interface has this name, return the names of all interfaces.
+    """
     package, _, last = name.rpartition("/")
     found = [full for full in all_interfaces() if full.endswith(f"/{last}") and full.startswith(package)]
     return found or all_interfaces()

@@ -45,7 +45,7 @@ _THEIRS = frozenset(
         *("FASTDDS_BUILTIN_TRANSPORTS", "FASTRTPS_DEFAULT_PROFILES_FILE"),
     }
 )
-"""Variables whose values are kept if the user has set them."""
+"""Variables whose values are kept if the user has set them. The wheels do not use the user's RMW_IMPLEMENTATION."""
 PYTHON_LIB = Path(f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages")
 """The folder of Python packages, relative to a prefix."""
 
@@ -64,7 +64,7 @@ class Ros:
     python_path: tuple[Path, ...]
     library_path: tuple[Path, ...]
     underlay: Path | None = None
-    """The prefix of the turtlesim interfaces that grader.ros.underlay built, or None if ROS 2 includes turtlesim."""
+    """The prefix of the turtlesim interfaces that grader.ros.underlay has added, or None if it has added none."""
 
     @property
     def name(self) -> str:
@@ -109,7 +109,7 @@ def _why_none(env: Mapping[str, str]) -> str:
 
 
 def made_for(prefix: Path) -> str | None:
-    """Return the prefix of the sourced ROS 2 that .venv was set up for, or None if .venv uses the wheels."""
+    """Return the prefix of the sourced ROS 2 that .venv was set up for, or None if there is none or it is unknown."""
     try:
         ros = json.loads((prefix / "course-setup.json").read_text(encoding="utf-8"))["ros"]
     except (OSError, ValueError, KeyError, TypeError):
@@ -121,7 +121,7 @@ def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: 
     """Return the complete environment of a child process. Nothing is inherited from the caller's environment.
 
     `overlays` are install folders of packages (install/<package>), and are searched first. `home` must be writable,
-    since HOME and ROS_LOG_DIR are inside it. `domain` is None in a sandbox room (grader.sandbox), because a room has
+    since it is HOME, and contains ROS_LOG_DIR. `domain` is None in a sandbox room (grader.sandbox), because a room has
     its own network.
     """
     local = [*overlays, *([ros.underlay] if ros.underlay else [])]
@@ -174,13 +174,13 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
     """Return the environment of a node that a user starts: the user's environment with the variables of ROS 2 added.
 
     The user's settings are kept, and workspaces that the user sourced are searched first. The ROS domain is `domain`,
-    or if `domain` is None, the domain that the user has set. If the user has set no domain, each user gets a separate
-    domain, so that classmates on one machine do not drive each other's turtles. If the ROS 2 installation was sourced,
-    however, the domain is 0, the default of ROS 2. Nodes in terminals where the user only sourced the installation are
-    also in this domain.
+    or if `domain` is None, the domain that the user has set. If the user has set none, `domain_of` the user id is used,
+    so that classmates on one machine do not drive each other's turtles. If the ROS 2 installation was sourced, however,
+    the domain is 0, as for nodes in terminals where the user only sourced the installation.
 
     Raises:
-        UsageError: ROS_DOMAIN_ID is not a valid domain id.
+        UsageError: `domain` is None, and ROS_DOMAIN_ID is not a valid domain id.
+        MachineError: the home folder is not writable, and no private folder for the logs could be created.
     """
     if domain is None and wrong_domain(env):
         raise UsageError(wrong_domain(env))
@@ -230,7 +230,7 @@ def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str
 
 
 def _users_path(ros: Ros, env: Mapping[str, str]) -> str:
-    """Return PATH with our folder of commands: last if a ROS 2 is sourced, else first, so that `python3` has rclpy."""
+    """Return PATH with our folder of commands: where it is, else last if a ROS 2 is sourced, else first."""
     path = env.get("PATH", "/usr/local/bin:/usr/bin:/bin")
     ours = str(Path(sys.prefix, "bin"))
     if ours in path.split(os.pathsep):
@@ -263,7 +263,7 @@ def _sourced(env: Mapping[str, str]) -> Ros | None:
 
 
 def _this_python(started: Path) -> Path:
-    """Return the path of this interpreter with the name `python3`, even if it was started as `python`.
+    """Return the path of this interpreter with the name `python3`, if it has that name, too, else the path `started`.
 
     The path is a part of the underlay's key, so without this function, the underlay would be built once for each name.
     """

@@ -37,7 +37,7 @@ def load_type(name: str, kind: str, what: str = "message type", text: str = "") 
 
 
 def parse(text: str, *, dictionary: bool = True) -> Any:  # noqa: ANN401
-    """Return the values that a user typed, such as "{linear: {x: 2.0}}". An empty string means an empty dictionary.
+    """Return the values that a user typed, such as "{linear: {x: 2.0}}". No value means an empty dictionary.
 
     Raises:
         Ros2Error: the string is not valid YAML, or `dictionary` is true and the value is not a dictionary.
@@ -66,7 +66,7 @@ def parse(text: str, *, dictionary: bool = True) -> Any:  # noqa: ANN401
 
 
 class MisfitError(Ros2Error):
-    """The values do not match the message. `cause` is the error that Python would raise, and `hint` helps the user."""
+    """The values do not match the message. `cause` is the error that Python would raise, and `help` helps the user."""
 
     def __init__(self, cause: Exception, hint: str = "") -> None:
         self.cause = cause
@@ -81,7 +81,9 @@ def fill(message: Any, values: Any, stamps: list[Stamper] | None = None) -> Any:
     appended to the list `stamps`.
 
     Raises:
-        MisfitError: the message has no such field, or the value does not match the type of the field.
+        MisfitError: the message has no such field, the value does not match the type of the field, or `values` is not
+        a dictionary.
+        Ros2Error: the type of an array's elements is not installed.
     """
     types = message.get_fields_and_field_types()
     if not isinstance(values, dict):

@@ -90,7 +90,10 @@ def _dumper() -> Any:  # noqa: ANN401
 
 
 def on_one_line(value: Any) -> str:  # noqa: ANN401
-    """Return a message on one line, in the format that `ros2 topic pub` accepts, as in "{linear: {x: 0.0}}"."""
+    """Return a message on one line, in the format that `ros2 topic pub` accepts, as in "{linear: {x: 0.0}}".
+
+    Long arrays and strings are truncated.
+    """
     import yaml
 
     text: str = yaml.safe_dump(

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 HIGHEST_DOMAIN = 101
 COMMANDS = ("ros2", "rqt", "rqt_console", "rqt_graph", "rqt_plot")
-"""The commands that the shell can complete."""
+"""The commands of ROS 2 that the shell can complete, in addition to `grader`."""
 
 
 def users_environment(
@@ -27,20 +27,20 @@ def users_environment(
     """Return the user's environment with ROS 2 added. Build the turtlesim interfaces first if necessary.
 
     Raises:
-        UsageError: the domain id is too large or negative.
+        UsageError: the domain id is too large or negative, or ROS_DOMAIN_ID is not a valid domain id.
         MachineError: ROS 2 was not found, or turtlesim could not be built.
     """
     if domain is not None and not 0 <= domain <= HIGHEST_DOMAIN:
-        message = f"A domain id is a whole number from 0 to {HIGHEST_DOMAIN}, but this one is {domain}."
+        message = f"--domain takes a whole number from 0 to {HIGHEST_DOMAIN}, but this one is {domain}."
         raise UsageError(message)
     ros = underlay.with_turtlesim(installation.find_ros(env), tell)
     return installation.users_environment(ros, env, domain)
 
 
 def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sourced: bool = False) -> str:
-    """Return shell code for bash, zsh and sh that changes the environment from `env` to `wanted`.
+    """Return shell code for bash, zsh and sh that sets the variables in `wanted` that have other values in `env`.
 
-    The code also sets up completion for our commands.
+    The code also unsets variables of another Python. In bash and zsh, it sets up completion for our commands.
 
     `sourced` is True if the ROS 2 installation is a sourced one, which can have its own rqt_graph.
     """
@@ -68,7 +68,7 @@ def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sour
 
 
 def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -> None:
-    """Replace this process with the user's shell.
+    """Replace this process with the user's shell, or with /bin/bash if SHELL is not set.
 
     bash and zsh set up the ROS 2 environment, with the domain id in `wanted`, after they have read their start-up
     files. Other shells only get the environment `wanted`.
@@ -86,7 +86,7 @@ def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -
     try:
         os.execvpe(shell, argv, {**wanted, **variables})
     except OSError as error:
-        message = f"Your shell, {shell}, could not be started: {error.strerror}. Its name is in the variable SHELL."
+        message = f"Your shell, {shell}, could not be started: {error.strerror}. The variable SHELL chooses the shell."
         raise MachineError(message) from error
 
 

@@ -31,8 +31,10 @@ def hand_over(command: str, package: str) -> None:
 def see_to_environment(needed: Collection[str]) -> None:
     """Restart this command with ROS 2 in the environment, unless all needed packages can already be found.
 
+    A command that was restarted is not restarted again.
+
     Raises:
-        MachineError: ROS 2 was not found.
+        MachineError: ROS 2 was not found, or turtlesim could not be built.
         UsageError: ROS_DOMAIN_ID is not a valid domain id.
     """
     if "RMW_IMPLEMENTATION" in os.environ and index.packages().get("rclpy") == Path(sys.prefix):

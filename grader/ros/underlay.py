@@ -54,7 +54,7 @@ def ensure(ros: installation.Ros, tell: Callable[[str], None] = _report_nothing)
 
     Build our turtlesim first if necessary.
 
-    A build takes about ten seconds and passes each line of its progress to `tell`. If a build exists already, this
+    A build takes about ten seconds and passes messages about its progress to `tell`. If a build exists already, this
     function takes about a millisecond.
 
     Raises:
@@ -87,7 +87,7 @@ def ensure(ros: installation.Ros, tell: Callable[[str], None] = _report_nothing)
 def _name(ros: installation.Ros, compiler: Path | None) -> str:
     """Return a name for the build.
 
-    The name depends on all inputs of the build. No process is started to find the name.
+    The name depends on the ROS 2, the Python, the sources and the C++ compiler. No process is started to find the name.
     """
     return f"turtlesim-{_key_of_sources(ros)}-{_key_of_compiler(compiler)}"
 
@@ -119,9 +119,9 @@ def _compiler(search: str) -> Path | None:
 
 
 def _built_by_another_compiler(ros: installation.Ros) -> Path | None:
-    """Return a finished build whose compiler has since been removed, or None.
+    """Return the newest finished build of these sources by any compiler, or None.
 
-    Such a build can still be used.
+    If the compiler has since been removed, such a build can still be used.
     """
     builds = xdg.cache().glob(f"turtlesim-{_key_of_sources(ros)}-*")
     return max(builds, key=lambda build: build.stat().st_mtime, default=None)
@@ -163,7 +163,7 @@ def _listed(needs: list[package_managers.Need]) -> str:
 
 @contextmanager
 def _one_at_a_time(tell: Callable[[str], None]) -> Iterator[None]:
-    """Wait until no other process is building turtlesim.
+    """Wait until no other process is building turtlesim, and keep other processes from building in this context.
 
     The kernel releases the lock when the process that holds it exits.
     """

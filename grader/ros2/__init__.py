@@ -1,1 +1,1 @@
-"""`ros2` and `rqt_graph` for machines without ros2cli."""
+"""`ros2` for machines without ros2cli."""

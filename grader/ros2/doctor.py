@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 _SKIPPED = ("/parameter_events", "/rosout")
-_NOT_HERE = "only the course's own packages are installed; their versions are in requirements.lock"
+_NOT_HERE = "not compared; the versions of the course's packages are in requirements.lock"
 
 
 @dataclass

@@ -45,7 +45,7 @@ def positive_float(text: str) -> float:
         message = "Expects a floating point number"
         raise argparse.ArgumentTypeError(message) from error
     if not 0 < value < float("inf"):
-        message = "Value must be positive"
+        message = "Value must be positive and finite" if value > 0 else "Value must be positive"
         raise argparse.ArgumentTypeError(message)
     return value
 

@@ -48,9 +48,10 @@ def run(args: argparse.Namespace) -> int:
     """
     from grader.ros2.child import run_child
 
-    command = [*_words(args.prefix), *_program(_path(args)), *args.argv]
-    if shutil.which(command[0]) is None:
-        message = f"The prefix cannot be started: the command '{command[0]}' does not exist"
+    prefix = _words(args.prefix)
+    command = [*prefix, *_program(_path(args)), *args.argv]
+    if prefix and shutil.which(prefix[0]) is None:
+        message = f"The prefix cannot be started: the command '{prefix[0]}' was not found"
         raise Ros2Error(message)
     sys.stdout.flush()
     return run_child(command)
@@ -88,7 +89,7 @@ def _why_none(folder: Path) -> str:
         other = next((each.name for each in others if index.executables_in(each)), None)
         if other:
             return f"none; install_scripts in its setup.cfg names lib/{other} instead of lib/{folder.name}"
-    return "none; entry_points in its setup.py defines them"
+    return "none; entry_points in setup.py defines those of a Python package"
 
 
 def _program(path: Path) -> list[str]:

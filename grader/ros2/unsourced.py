@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _DEEPEST = 4
 """The number of folder levels below src/ that are searched for packages."""
 _MOST = 2000
-"""The maximum number of folders that are searched."""
+"""The maximum number of folders of a workspace that are searched."""
 
 
 def find(package: str, unknown: str) -> None:
@@ -70,7 +70,9 @@ def _manifests(folder: Path) -> Iterator[Path]:
         depth = len(Path(place).relative_to(folder).parts)
         if "package.xml" in files:
             yield Path(place, "package.xml")
-        if depth >= _DEEPEST or looked >= _MOST or "package.xml" in files or "COLCON_IGNORE" in files:
+        if looked >= _MOST:
+            return
+        if depth >= _DEEPEST or "package.xml" in files or "COLCON_IGNORE" in files:
             folders.clear()
         folders[:] = sorted(name for name in folders if not name.startswith("."))
 

@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 class LateAnswers:
-    """Handles each call and responds to it `after_s` (s) after its request has arrived, on the caller's clock.
+    """Handles each call and responds to it in the first `tick` that is at least `after_s` (s) later than the request.
 
-    `tick` sets the time. The responses are sent in the order in which the calls arrived.
+    `tick` sets the time, on the caller's clock. The responses are sent in the order in which the calls arrived.
     """
 
     def __init__(self, after_s: float) -> None:

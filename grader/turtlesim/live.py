@@ -1,7 +1,8 @@
 """`python -m grader.turtlesim.live`: run turtlesim in wall time, and send pictures to another process.
 
 The program writes each new picture to standard output: four bytes with the length (big endian), followed by a PNG
-image. A slow reader misses some pictures, but never the last picture. The program exits when standard input is closed.
+image. A slow reader misses some pictures, but gets the last picture if it reads within 2 s of the end. The program
+exits when standard input is closed, when the reader has exited, or after SIGINT or SIGTERM.
 """
 
 from __future__ import annotations
@@ -65,7 +66,10 @@ class _ShownNode(TurtlesimNode):
 
 
 class _Screen:
-    """Writes pictures in a separate thread, so that a slow or missing reader never stops a turtle."""
+    """Writes pictures in a separate thread, so that a slow reader never delays a turtle.
+
+    If the reader has exited, `stop` is set.
+    """
 
     def __init__(self, world: World, stop: threading.Event) -> None:
         self._world = world
@@ -93,7 +97,8 @@ class _Screen:
 
     def _show(self) -> None:
         state = [(name, turtle.x, turtle.y, turtle.theta) for name, turtle in self._world.turtles.items()]
-        shown = (state, self._world.canvas.background)
+        # Clearing the canvas replaces its image, even if no turtle has moved.
+        shown = (state, self._world.canvas.background, self._world.canvas.trail())
         if shown == self._shown:
             return
         self._shown = shown

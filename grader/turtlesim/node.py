@@ -38,7 +38,8 @@ MOST_NAME = 300
 """The maximum length of a name in a message. Any node can send any name, even with terminal control sequences."""
 
 _FRAMES_TO_LEAVE = 4
-"""The number of frames for which the entities of a killed turtle are kept, so that earlier requests get responses."""
+"""The minimum number of frames for which the entities of a killed turtle are kept, so that earlier requests get
+responses."""
 
 
 def _nobody(*_: object) -> None:
@@ -160,7 +161,7 @@ class TurtlesimNode(Node):
         try:
             self._show(name)
         except Exception as error:
-            # The real turtlesim exits with this exception. The first line of the message lists the allowed characters.
+            # The real turtlesim exits with this exception. The first line of the message gives the reason.
             self.world.kill(name)
             why = str(error).partition("\n")[0]
             self.get_logger().error(f"A turtle cannot be named [{shorten(name, MOST_NAME)}]: {why}")

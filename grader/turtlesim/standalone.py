@@ -1,4 +1,4 @@
-"""Run turtlesim in wall time, until Ctrl-C. `grader sim` and turtlesim_node use this module."""
+"""Run turtlesim in wall time, until Ctrl-C. `grader sim`, turtlesim_node and live.py use this module."""
 
 from __future__ import annotations
 
@@ -78,7 +78,10 @@ class View(Protocol):
 
 
 def main(open_view: OpenView, args: Sequence[str] | None = None) -> int:
-    """Run turtlesim. Return the exit code, which is 0 after Ctrl-C, or 2 for invalid arguments.
+    """Run turtlesim until Ctrl-C, SIGTERM or the end of a view in the terminal.
+
+    Return the exit code: 0, or 2 if the node could not be created, the picture could not be written, or ROS_DOMAIN_ID
+    is invalid, or the exit code of a GraderError. Invalid arguments raise SystemExit.
 
     `open_view` starts the view for `--view` on the given port. If the port is None, the view chooses a port.
     """
@@ -124,6 +127,7 @@ def _node(view: View | None) -> TurtlesimNode:
 def spin(node: TurtlesimNode, stop: threading.Event, view: View | None = None) -> None:
     """Compute a frame every 16 ms of CLOCK_MONOTONIC until `stop` is set. Missed frames are computed late, not skipped.
 
+    The end of a view in the terminal also ends this function. After the end of a page, the simulator continues.
     While the simulator is paused in the view, the turtles' time does not advance.
     """
     executor = SingleThreadedExecutor(context=node.context)
@@ -176,7 +180,7 @@ def _options(arguments: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--port", type=int, help="port of the page (default: the same as last time, or a free one)")
     options = parser.parse_args(arguments)
     if options.port is not None and options.view != "page":
-        parser.error("--port needs --view, which serves a page on this port")
+        parser.error("--port needs --view or --view page, since only a page has a port")
     return options
 
 

@@ -27,20 +27,23 @@ def over_ssh() -> bool:
 
 
 def from_elsewhere(port: int) -> str:
-    """Return instructions for opening this machine's page on another machine."""
+    """Return instructions for opening this machine's page: over ssh, on the user's machine, and else on this one."""
     if over_ssh():
         user = os.environ.get("USER") or "USER"
         server = os.environ["SSH_CONNECTION"].split()[2:3] or ["THIS_MACHINE"]
         login = f"{user}@{server[0]}"
         return (
-            "This machine has no browser. On your own machine, type this in a new terminal, and then open the "
+            "This terminal cannot open a browser. On your own machine, type this in a new terminal, and then open the "
             f"address: ssh -N -L {port}:127.0.0.1:{port} {login}"
         )
     return "No browser was found. Open the address in a browser on this machine."
 
 
 def open_page(url: str) -> bool:
-    """Open a page. Return whether opening the page was successful. Text browsers are never used."""
+    """Open a page. Return whether the browser has started and has not failed within `_OPENED_S`.
+
+    The browser gets no terminal, so a text browser cannot be used.
+    """
     if not there_is_one():
         return False
     opener = shutil.which("xdg-open")

@@ -19,6 +19,10 @@ Image = Annotated[
     Optional[Path],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
     typer.Option(help="Write the canvas with the turtle's path to a PNG file on exit.", metavar="FILE.png"),
 ]
+Port = Annotated[
+    Optional[int],  # noqa: UP045 - as above
+    typer.Option(help="Port of the page. Default: the same port as last time, if it is free."),
+]
 
 
 def add_to(app: typer.Typer) -> None:
@@ -39,7 +43,7 @@ def sim(
             "--view", help="Show the turtles on a page on this machine, or in this terminal with `--view terminal`."
         ),
     ] = False,
-    port: Annotated[Optional[int], typer.Option(help="Port of the page. Default: the same port as last time.")] = None,  # noqa: UP045
+    port: Port = None,
 ) -> None:
     """Run turtlesim without a window, as a node in wall time, until Ctrl-C. Use --view to see the turtles."""
     from grader.common.interpreter import interpreter

@@ -33,8 +33,8 @@ MOST_LINES = 1500
 """The maximum number of lines in a message. A line takes about 90 bytes, so the message fits into a socket buffer."""
 MOST_RECEIVED, MOST_SENT = 64, 200
 """The maximum numbers of topics with commands, and of topics with published messages, in one message to the view. 64
-turtles have fewer topics, but a node can spawn and kill turtles without end while the view is busy, and each name can
-have 240 characters."""
+turtles do not have more topics, but a node can spawn and kill turtles without end while the view is busy, and each name
+can have 240 characters."""
 LARGEST = 1 << 20
 """The buffer size for receiving a message (bytes). No message is larger."""
 LARGEST_PICTURE = 100_000

@@ -40,7 +40,7 @@ class GraphNews:
             self._drawing = asyncio.create_task(self._draw(system))
 
     def whole(self) -> dict[str, object]:
-        """Return the whole state for a new page."""
+        """Return the domain for a new page, and the topics and the graph if they are known."""
         known = {"topics": self._topics(), "graph": self._graph} if self._drawn is not None else {}
         return {"domain": os.environ.get("ROS_DOMAIN_ID", "0"), **known}
 

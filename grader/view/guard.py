@@ -1,4 +1,4 @@
-"""Decide whether a request is allowed. Only requests from this machine's own page are allowed.
+"""Decide whether a request is allowed. Requests from pages of other sites are rejected.
 
 A page from another site in the same browser can also send requests to 127.0.0.1. The guard detects such requests,
 because the browser sends the site of the page (Origin) and the name that the page used for this machine (Host).
@@ -50,7 +50,7 @@ class Door:
     """Admits a page that has the token or a code that is valid only once.
 
     The browser that this process starts gets a code instead of the token, because every user of the machine can read
-    command lines. Another user could be faster than the browser, so a code admits only programs of this user.
+    command lines. Another user could be faster than the browser, so a code does not admit programs of other users.
     """
 
     def __init__(self, token: str) -> None:
@@ -82,7 +82,7 @@ POLICY = (
 
 
 def answer_headers(host: str) -> dict[str, str]:
-    """Return the headers of every response.
+    """Return the headers of every response of the application.
 
     With these headers, the page loads nothing from other sites, and other sites cannot embed the page.
     """

@@ -15,7 +15,10 @@ _TABLES = (Path("/proc/net/tcp"), Path("/proc/net/tcp6"))
 
 
 def is_of_another_user(client: tuple[str, int] | None) -> bool:
-    """Return whether a user other than this user and root opened the connection with this address and port."""
+    """Return whether a user other than this user and root opened the connection with this address and port.
+
+    Return False if the user is not known.
+    """
     return client is not None and any(user not in (0, os.getuid()) for user in _users(*client))
 
 

@@ -23,7 +23,7 @@ class Arrivals:
     def add(self, when_s: float, count: int = 1) -> None:
         """Record that `count` messages have arrived since the last call. The last arrival was at `when_s` (s)."""
         self._observed.append((when_s, count))
-        # After a pause, the arrivals before the pause do not count.
+        # Only the arrivals of the last WINDOW_S count, but at least two groups.
         while len(self._observed) > 2 and self._observed[0][0] < when_s - WINDOW_S:
             self._observed.popleft()
 

@@ -26,7 +26,7 @@ _FORMATS = (".svg", ".png", ".dot")
 _OURS = ("-o", "--output", "--text", "--port", "--active", "--debug", "--hidden", "--all")
 """The options that the rqt_graph of a sourced ROS 2 does not support."""
 _NOTHING = (
-    "No node is running (ROS_DOMAIN_ID is {domain}). Start a node in another terminal, with the same domain id: "
+    "No node was found (ROS_DOMAIN_ID is {domain}). Start a node in another terminal, with the same domain id: "
     "ros2 run turtlesim turtlesim_node"
 )
 
@@ -38,7 +38,7 @@ _MISSING = (
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command. Return 0 if the graph was drawn, or 1 if no node is running.
+    """Run the command. Return 0 if the graph was drawn, or 1 if no node was found.
 
     Decision 9 in docs/design.md explains the other exit codes.
     """
@@ -148,7 +148,8 @@ def _write(file: Path, drawn: Picture) -> None:
 def _shown_live(show: Show, port: int | None) -> bool:
     """Serve the graph on a page until Ctrl-C. Return False immediately if no browser can show the page.
 
-    With --port, or in a terminal over ssh, the user opens the page in a browser on another machine.
+    If no browser can be opened here, the user opens the page, but only with --port or in a terminal over ssh. Return
+    False, too, if a library for the page is not installed.
     """
     from grader.view import browser
 

@@ -1,7 +1,8 @@
 """The ROS system for a view: the graph, the rates of topics, and the node that drives for the user.
 
-The listening node is hidden and offers no topics or services, so that it does not change the visible graph. This node
-subscribes to a topic only while a page shows rates, and only if the simulator does not report the topic's rate.
+The listening node is hidden and offers no topics or services, so that it does not change the visible graph. To measure
+the rate of a topic, this node subscribes to the topic, but only while a page shows rates, and only if the simulator
+does not report the rate.
 """
 
 from __future__ import annotations

@@ -136,7 +136,7 @@ def _topics(system: System | None, state: State) -> list[Text]:
     lines = [Text("Topics", style="bold")]
     for row in rows(system, state, Show()):
         hertz = row["hertz"]
-        rate = f"{hertz:g} Hz" if isinstance(hertz, float) else "silent"
+        rate = f"{hertz:g} Hz" if isinstance(hertz, float) else "-"
         busy = "green" if isinstance(hertz, float) else "dim"
         lines.append(Text.assemble((printable(str(row["name"])), "bold"), "  ", (rate, busy), no_wrap=True))
         ends = f"  {_names(row['publishers'])} → {_names(row['subscribers'])}"

@@ -19,8 +19,8 @@ VIEWS = "/_view_"
 def rows(system: System, state: State, show: Show) -> list[dict[str, object]]:
     """Return one row per topic in the graph: its types, publishers, subscribers and rate (Hz).
 
-    The rate is None if no messages arrive. Tools with hidden names, such as `ros2 topic pub`, are also listed, since
-    they may be the source of the messages on a topic. Views are not listed.
+    The rate is None if no messages arrive, or if it is not measured. Tools with hidden names, such as `ros2 topic pub`,
+    are also listed, since they may be the source of the messages on a topic. Views are not listed.
     """
     types: dict[str, list[str]] = {}
     ends: dict[tuple[str, str], list[str]] = {}

@@ -1,4 +1,4 @@
-// The log messages of all nodes, from /rosout, in the format of ros2.
+// The log messages of all nodes, from /rosout, in the format of ros2, but without the time.
 
 import { Tail } from "./tail.js";
 
@@ -18,6 +18,6 @@ export class LogLines {
   add(lines) {
     this.lines = [...this.lines, ...lines].slice(-MOST);
     const text = this.lines.map((line) => `[${line.level.toUpperCase()}] [${line.node}]: ${line.text}`).join("\n");
-    this.tail.write(text || "No node has logged anything yet.");
+    this.tail.write(text || "No log message has arrived yet.");
   }
 }

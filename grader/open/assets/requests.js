@@ -18,7 +18,7 @@ export async function act(name, wanted = {}) {
   }
 }
 
-// Return a part of the page as a document, in which scripts do not run.
+// Return a part of the page as a document, in which scripts do not run, or null if it cannot be loaded.
 export function fragment(path) {
   return new Promise((resolve) => {
     const request = new XMLHttpRequest();

@@ -24,7 +24,7 @@ export function keep(token) {
   for (const each of waiting) each();
 }
 
-// Call `then` when another tab has sent the token.
+// Ask the other tabs for the token. Call `then` whenever this tab gets a token from another tab or from the server.
 export function ask(then) {
   waiting.add(then);
   channel.postMessage({ ask: true });

@@ -55,7 +55,7 @@ export class TurtlePane {
   // Show what the programs do, or why they do not run.
   tell() {
     const { programs } = this.state;
-    const now = this.link ? (this.drawn ? "turtlesim is running." : "turtlesim is starting.") : "No turtlesim was started here.";
+    const now = this.link ? (this.drawn ? "turtlesim is running." : "turtlesim is starting.") : "No turtlesim of this page is running.";
     const doing = programs.doing && `${programs.doing} …`;
     showText(this.status, doing || this.refused || programs.problem || now);
   }

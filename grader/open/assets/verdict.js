@@ -1,4 +1,4 @@
-// The verdict: its line, the checks that did not pass, and the trajectory with its player.
+// The verdict: its line, failed checks, errors and advice, and the trajectory with its player.
 
 import { showText } from "./code_text.js";
 import { update } from "./keyed.js";

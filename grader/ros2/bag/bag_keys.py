@@ -24,8 +24,8 @@ def available() -> bool:
 def pressed(*, enabled: bool) -> Iterator[Callable[[float], str]]:
     """Yield a function that waits up to the given number of seconds for a key and returns the name of the key.
 
-    If no key is pressed, the function returns an empty string. Without a terminal, or if the keys are not `enabled`,
-    the function only waits.
+    If no key or another key is pressed, the function returns an empty string. Without a terminal, or if the keys are
+    not `enabled`, the function only waits.
     """
     if not enabled or not available():
 

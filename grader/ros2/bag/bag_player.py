@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosbags.rosbag2 import Reader
 
 _ACKNOWLEDGED_S = 2.0
-"""The maximum time to wait at the end until the last messages have arrived (s)."""
+"""The maximum time to wait at the end until the last messages of a topic have arrived (s)."""
 _STEP_S = 0.1
 
 
@@ -53,7 +53,7 @@ class Player:
         self._clock = Clock(node, args.clock) if args.clock else None
 
     def run(self) -> None:
-        """Play the bag to its end, or forever with --loop.
+        """Play the bag to its end or to the end that the options set. With --loop, play the bag again and again.
 
         Raises:
             Ros2Error: the bag is damaged.
@@ -91,7 +91,7 @@ class Player:
             profiles = getattr(connection.ext, "offered_qos_profiles", [])
             made[connection.topic] = self._node.create_publisher(kind, topic, bag_qos.to_play(profiles))
         if chosen and not made:
-            message = "[ERROR] [ros2bag]: No topic of this bag can be published."
+            message = "[ERROR] [ros2bag]: None of the selected topics can be published."
             raise Ros2Error(message)
         return made
 

@@ -1,4 +1,4 @@
-"""Read bags that rosbag2 or the course's `ros2 bag` recorded, in any storage format."""
+"""Read bags that rosbag2 or the course's `ros2 bag` recorded, in MCAP or SQLite."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ def open_bag(path: Path) -> Iterator[Reader]:
         files = [file for ending in ("*.mcap", "*.db3") for file in path.glob(ending)]
         text = f"[ERROR] [ros2bag]: No metadata.yaml in '{path}'."
         if files:
-            text += f"\nThe recording was interrupted. Type: ros2 bag reindex {shlex.quote(str(path))}"
+            text += (
+                "\nThe recording is still running or was interrupted. If it was interrupted, type: "
+                f"ros2 bag reindex {shlex.quote(str(path))}"
+            )
         raise Ros2Error(text)
     try:
         reader = Reader(path)

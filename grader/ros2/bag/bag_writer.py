@@ -136,7 +136,7 @@ class BagWriter:
         except OSError as failure:
             text = f"[ERROR] [ros2bag]: {self.folder}: {failure.strerror}."
             text += (
-                f"\nThe bag contains the earlier messages. Free disk space, then type: "
+                f"\nThe bag contains the earlier messages. When the folder can be written again, type: "
                 f"ros2 bag reindex {shlex.quote(str(self.folder))}"
             )
             raise Ros2Error(text) from failure

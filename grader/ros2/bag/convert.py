@@ -92,7 +92,7 @@ def _options(file: Any) -> list[dict[str, Any]]:  # noqa: ANN401
 
 
 def _unreadable(file: Any) -> Ros2Error:  # noqa: ANN401
-    return Ros2Error(f"[ERROR] [ros2bag]: {file.name} does not contain the options of the new bags; {_EXAMPLE}")
+    return Ros2Error(f"[ERROR] [ros2bag]: {file.name} does not contain valid options for new bags; {_EXAMPLE}")
 
 
 def _typed(found: Iterator[tuple[str, int, bytes]], kinds: dict[str, str]) -> Iterator[tuple[int, str, str, bytes]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -45,18 +46,18 @@ def existing_path(text: str) -> Path:
 
 
 def above_zero(text: str) -> float:
-    """Convert an argument to a number above 0, for argparse."""
+    """Convert an argument to a finite number above 0, for argparse."""
     value = _number(text)
-    if not 0 < value < float("inf"):
+    if value <= 0:
         message = f"{text} is not in the valid range (> 0.0)"
         raise argparse.ArgumentTypeError(message)
     return value
 
 
 def not_negative(text: str) -> float:
-    """Convert an argument to a number that is not negative, for argparse."""
+    """Convert an argument to a finite number that is not negative, for argparse."""
     value = _number(text)
-    if not 0 <= value < float("inf"):
+    if value < 0:
         message = f"Value {text} is less than zero."
         raise argparse.ArgumentTypeError(message)
     return value
@@ -64,10 +65,14 @@ def not_negative(text: str) -> float:
 
 def _number(text: str) -> float:
     try:
-        return float(text)
+        value = float(text)
     except ValueError as error:
         message = f"{text} is not the valid type (float)"
         raise argparse.ArgumentTypeError(message) from error
+    if not math.isfinite(value):
+        message = f"{text} is not a finite number"
+        raise argparse.ArgumentTypeError(message)
+    return value
 
 
 def absolute(names: Iterable[str]) -> list[str]:

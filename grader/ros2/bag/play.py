@@ -1,4 +1,4 @@
-"""The verb `bag play`: publish the messages of a bag at the recorded times."""
+"""The verb `bag play`: publish the messages of a bag at the recorded intervals."""
 
 from __future__ import annotations
 

@@ -209,7 +209,7 @@ def wanted(args: argparse.Namespace) -> Callable[[str, str], bool]:
 
 
 def _validate(args: argparse.Namespace, folder: Path) -> None:
-    """Raise Ros2Error with the message of the real `ros2` if the options cannot be combined."""
+    """Raise Ros2Error if the options cannot be used. If the real `ros2` has a message for the reason, use it."""
     selects = any(getattr(args, name) for name in _SELECTS)
     unknown = " ".join(f"--{name.replace('_', '-')}" for name in NOT_HERE if getattr(args, name) is not None)
     rules: dict[str, object] = {

@@ -76,7 +76,11 @@ def recover(folder: Path) -> None:
 
 
 def saved_messages(file: Path) -> Iterator[Saved]:
-    """Yield all readable messages of a file in order, without using its index."""
+    """Yield all readable messages of a file in order, without using its index.
+
+    Raises:
+        Ros2Error: the file is an SQLite file that cannot be read.
+    """
     return iter(sorted(_mcap(file) if file.suffix == ".mcap" else _sqlite(file), key=lambda saved: saved.stamp_ns))
 
 
@@ -97,7 +101,7 @@ def _mcap(file: Path) -> Iterator[Saved]:
                         text = schema.data.decode("utf-8", "replace")
                         yield Saved(record.log_time, channel.topic, schema.name, record.data, text)
         except (McapError, EOFError, ValueError, KeyError):
-            # The file ends in the middle of a record.
+            # The file ends in the middle of a record, or is damaged.
             return
 
 

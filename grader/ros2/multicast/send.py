@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_address(parser)
-    parser.add_argument("--ttl", type=positive_int, help="maximum number of routers that the packet may pass")
+    parser.add_argument("--ttl", type=positive_int, help="time to live of the packet: each router subtracts 1")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -34,7 +34,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--license",
         default="TODO: License declaration",
-        help="any string; a LICENSE file is created for the licenses that '?' lists",
+        help="any string; '?' lists the known licenses; a LICENSE file is created if this machine has the text",
     )
     parser.add_argument("--destination-directory", default=".", help="create the package in this directory")
     parser.add_argument(
@@ -45,7 +45,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     needed = parser.add_argument("--dependencies", nargs="+", default=[], help="packages that the new package uses")
     completes(needed, packages)
-    parser.add_argument("--maintainer-email", help="default: the address in git's settings")
+    parser.add_argument("--maintainer-email", help="default: the address in git's settings, or NAME@todo.todo")
     parser.add_argument("--maintainer-name", default=xdg.user_name(), help="default: the user name")
     parser.add_argument("--node-name", help="also create an executable with this name")
     parser.add_argument("--library-name", help="also create a library with this name")
@@ -130,22 +130,21 @@ def _check(wanted: NewPackage) -> None:
 
 
 def _advice(wanted: NewPackage) -> list[str]:
-    """Return warnings about choices that will cause problems."""
+    """Return warnings about choices that can cause problems."""
     advice = []
     names = (("package", wanted.name), ("node", wanted.node), ("library", wanted.library))
     odd = [f"{what} name '{value}'" for what, value in names if value is not None and not _PYTHON_NAME.fullmatch(value)]
     if odd:
         advice.append(
-            f"The {' and the '.join(odd)} will cause problems. Begin with a letter, and use only lower-case letters, "
-            "digits and _. Python cannot import most other names, and colcon warns about them."
+            f"The {' and the '.join(odd)} can cause problems. Begin with a letter, and use only lower-case letters, "
+            "digits and _. Python cannot import a name with other characters such as -, and colcon warns about the "
+            "names of such packages."
         )
     if wanted.build_type != "ament_python":
         advice.append(
-            f"A package of build type {wanted.build_type} is written in C++. To build the package, you need CMake and "
-            "a "
+            f"The build type {wanted.build_type} is for packages in C++. To build the package, you need CMake and a "
             "C++ compiler. A node in C++ also needs rclcpp, which is part of a full ROS 2. For Python, use "
-            "--build-type "
-            "ament_python."
+            "--build-type ament_python."
         )
     return advice
 

@@ -16,7 +16,7 @@ _SYSTEMS_NAMES = {"Apache-2.0": "Apache-2.0", "GPL-3.0-only": "GPL-3", "LGPL-3.0
 
 
 def write(name: str, file: Path, holder: str) -> bool:
-    """Write the text of a license. Return whether this machine has the text of the license."""
+    """Write the text of a license if this machine has it. Return whether it has the text."""
     system = _SYSTEM / _SYSTEMS_NAMES.get(name, "")
     own = _TEMPLATES / f"{name}.in"
     if name in _SYSTEMS_NAMES and system.is_file():

@@ -1,4 +1,4 @@
-"""Create the files of a new package from templates/, and print the name of each file."""
+"""Create the folders and files of a new package from templates/, and print the name of each of them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _TEST_DEPENDS = {
 
 
 def write(wanted: NewPackage) -> None:
-    """Create the folder and all files.
+    """Create the folder and all files except LICENSE.
 
     Raises:
         OSError: a file could not be written.

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import errno
+import shutil
 from pathlib import Path
 
 import pytest
@@ -45,6 +46,15 @@ def test_the_message_has_the_path_and_the_reason(tmp_path: Path) -> None:
 
 def test_what_could_not_be_removed_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Path, "rmdir", lambda _: (_ for _ in ()).throw(OSError(errno.EPERM, "no")))
+    with pytest.raises(MachineError, match=r"Remove .*/new before you try again\.$"), new_folder(tmp_path / "new"):
+        write(tmp_path / "new", OSError(errno.ENOSPC, "full", "a/b/d"))
+
+
+def test_an_empty_folder_that_could_not_be_emptied_again_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(shutil, "rmtree", lambda *_, **__: None)
+    (tmp_path / "new").mkdir()
     with pytest.raises(MachineError, match=r"Remove .*/new before you try again\.$"), new_folder(tmp_path / "new"):
         write(tmp_path / "new", OSError(errno.ENOSPC, "full", "a/b/d"))
 

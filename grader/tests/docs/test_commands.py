@@ -28,9 +28,11 @@ ELSEWHERE = {
     *("--again", "--keep", "--table"),
     # Options of the real `ros2 bag`, which ours does not have according to docs/ros2-differences.md.
     *(f"--{name.replace('_', '-')}" for name in NOT_HERE),
-    *("--clock-topics", "--publish-service-requests"),
+    *("--clock-topics", "--clock-topics-all", "--publish-service-requests", "--service-requests-source"),
+    *("--playback-until-nsec", "--disable-loan-message", "--max-cache-size"),
+    *("--compression-queue-size", "--compression-threads", "--compression-threads-priority"),
     # Options of our `ros2 bag`.
-    *("--max-bag-duration", "--max-bag-size", "--storage-preset-profile"),
+    *("--max-bag-duration", "--max-bag-size", "--playback-until-sec", "--storage-preset-profile"),
 }
 """Options of programs other than `grader`."""
 

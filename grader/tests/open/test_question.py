@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 
+from grader.common.interpreter import Start
 from grader.errors import UsageError
+from grader.open import question
 from grader.open.question import arguments
 
 
@@ -82,3 +86,20 @@ def test_anything_else_is_refused_with_a_sentence(text: str) -> None:
     with pytest.raises(UsageError) as refused:
         arguments(text)
     assert str(refused.value).endswith((".", "?"))
+
+
+@pytest.mark.parametrize("text", ["topic info 'a", "topic list \\"])
+def test_a_command_that_the_shell_would_not_complete(text: str) -> None:
+    with pytest.raises(UsageError, match="a quote that is not closed, or ends with a backslash"):
+        arguments(text)
+
+
+def test_only_a_command_that_waits_for_messages_reports_that_none_arrived(monkeypatch: pytest.MonkeyPatch) -> None:
+    endless = Start(["sleep", "60"], dict(os.environ))
+    monkeypatch.setattr(question, "interpreter", lambda *_, **__: endless)
+    monkeypatch.setattr(question, "PATIENCE_S", 0.2)
+    none = question.Answer("No message arrived within 0 s.", stopped=False)
+    assert question.answer(["topic", "echo", "/a", "--once"], {}) == none
+    stopped = question.answer(["topic", "list"], {})
+    assert stopped.stopped
+    assert "No message" not in stopped.output

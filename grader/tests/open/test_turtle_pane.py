@@ -95,7 +95,7 @@ def test_a_second_turtlesim_is_not_started_beside_one_in_a_terminal(
             page = learner.opened(browser, f"{CIRCLE}/index.html")
             page.get_by_role("button", name="Turtle", exact=True).click()
             page.get_by_role("button", name="Start turtlesim").click()
-            page.get_by_text("A turtlesim is already running in a terminal.").wait_for()
+            page.get_by_text("Another turtlesim is already running, for example in a terminal.").wait_for()
             page.get_by_role("button", name="Run it").click()
             page.locator("#node-lines").get_by_text("[draw_circle]").wait_for()
             assert page.get_by_role("button", name="Start turtlesim").is_visible()
@@ -161,7 +161,7 @@ def drive(learner: Course, browser: Browser) -> None:
         assert '"kind":"all"' in str(link.recv())
     page.get_by_role("button", name="Stop turtlesim").click()
     page.get_by_role("button", name="Start turtlesim").wait_for()
-    page.get_by_text("No turtlesim was started here.").wait_for()
+    page.get_by_text("No turtlesim of this page is running.").wait_for()
     assert "See the turtle move" not in page.content()
     # The text may be shown for less time than the browser takes to look for it, so the page collects the texts.
     page.evaluate(

@@ -212,10 +212,12 @@ def test_the_nearest_name() -> None:
 
 def test_without_a_running_node_no_name_is_suggested(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_DOMAIN_ID", "7")
-    nobody = "No node is running in ROS domain 7. Start one in another terminal, for example: grader sim"
+    nobody = "No node was found in ROS domain 7. Start one in another terminal, for example: grader sim"
     assert did_you_mean("/turtle1/pose", ["/rosout"], "Unknown", []) == f"Unknown\n{nobody}"
     assert did_you_mean("/a", [], nodes=["_ros2cli_1", "/_ros2cli_daemon_7"]) == nobody
     assert did_you_mean("/turtl", ["/turtle"], nodes=["/_hidden", "/turtle"]) == "Did you mean '/turtle'?"
+    monkeypatch.setenv("ROS_DOMAIN_ID", "")
+    assert did_you_mean("/a", [], nodes=[]) == nobody.replace("7", "0")
 
 
 @pytest.fixture

@@ -191,7 +191,7 @@ def test_an_error_reaches_whoever_sources_it() -> None:
         check=False,
     )
     assert done.stdout == "not sourced\n"
-    assert done.stderr.startswith("grader: A domain id is a whole number")
+    assert done.stderr.startswith("grader: --domain takes a whole number")
 
 
 @pytest.mark.parametrize("name", ["bash", "zsh"])

@@ -192,6 +192,8 @@ def test_a_loop_over_nothing_ends_and_a_wrong_regular_expression_is_reported(qui
         ("ros2 bag record -a -o /proc/bag", "Could not create bag folder '/proc/bag'.", 1),
         ("ros2 bag play nowhere", "Bag path 'nowhere' does not exist!", 2),
         ("ros2 bag play there --rate 0", "0 is not in the valid range (> 0.0)", 2),
+        ("ros2 bag play there --rate inf", "inf is not a finite number", 2),
+        ("ros2 bag play there --start-offset inf", "inf is not a finite number", 2),
         ("ros2 bag play there --remap x", "'x' is not a remapping", 1),
         ("ros2 bag info there", "No metadata.yaml in 'there'.", 1),
         ("ros2 bag info broken", "The bag 'broken' cannot be read", 1),

@@ -48,3 +48,19 @@ def test_executables_in_the_folder_of_another_name_are_found(tmp_path: Path, mon
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "merged"))
     with pytest.raises(Ros2Error, match="none; entry_points"):
         run.run(args)
+
+
+def test_a_missing_interpreter_is_not_reported_as_the_prefix(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    index, installed = tmp_path / "share/ament_index/resource_index/packages", tmp_path / "lib/my_robot_controller"
+    for folder in (index, installed):
+        folder.mkdir(parents=True)
+    (index / "my_robot_controller").touch()
+    (installed / "draw_circle").write_text(f'#!"{tmp_path}/no such/python3"\n')
+    (installed / "draw_circle").chmod(0o755)
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    args = Namespace(package_name="my_robot_controller", executable_name="draw_circle", prefix=None, argv=[])
+    with pytest.raises(Ros2Error, match=r"could not be started: .* Is the interpreter"):
+        run.run(args)
+    args.prefix = "no-such-command"
+    with pytest.raises(Ros2Error, match="the command 'no-such-command' was not found"):
+        run.run(args)

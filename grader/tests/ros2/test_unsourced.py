@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.ros.failure import Ros2Error
-from grader.ros2 import run
+from grader.ros2 import run, unsourced
 from grader.ros2.pkg import executables, manifest, prefix
 from grader.ros2.unsourced import meant, where_it_is
 
@@ -58,3 +58,13 @@ def test_each_verb_about_a_package_says_that_it_is_not_built(
     with pytest.raises(Ros2Error, match=r"not found\nThe package is in .*, but not built") as error:
         verb.run(args)
     assert "rqt_console" not in str(error.value)
+
+
+def test_no_more_folders_are_searched_than_the_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for number in range(9):
+        (tmp_path / f"ros2_ws/src/{number}").mkdir()
+    (tmp_path / "ros2_ws/src/z").mkdir()
+    (tmp_path / "ros2_ws/src/z/package.xml").write_text("<package><name>last</name></package>")
+    assert where_it_is("last") != ""
+    monkeypatch.setattr(unsourced, "_MOST", 9)
+    assert where_it_is("last") == ""

@@ -32,7 +32,7 @@ FILES_ONLY = {
     "ros2 run turtlesm turtlesim_node": (1, ["Package 'turtlesm' not found", "Did you mean 'turtlesim'?"]),
     "ros2 run turtlesim turtlesim": (1, ["No executable found", "Did you mean 'turtlesim_node'?"]),
     "ros2 run rclpy node": (1, ["No executable found", "Executables of rclpy: none"]),
-    "ros2 run --prefix nope turtlesim turtlesim_node": (1, ["the command 'nope' does not exist"]),
+    "ros2 run --prefix nope turtlesim turtlesim_node": (1, ["the command 'nope' was not found"]),
     'ros2 run --prefix "\'" turtlesim turtlesim_node': (1, ["The prefix cannot be read"]),
     "ros2 pkg prefix turtlesm": (1, ["Package not found", "Did you mean 'turtlesim'?"]),
     "ros2 pkg executables turtlesm": (1, ["Package 'turtlesm' not found", "Did you mean 'turtlesim'?"]),
@@ -167,7 +167,7 @@ def test_a_package_with_an_odd_name_is_made_and_warned_of(name: str, still: Worl
     create = f'ros2 pkg create --build-type ament_python --destination-directory {tmp_path} "{name}" --node-name a-b'
     done = still.run(create)
     assert done.code == 0
-    assert "a-b' will cause problems" in done.stderr
+    assert "a-b' can cause problems" in done.stderr
     compile((tmp_path / name / "setup.py").read_text(), "setup.py", "exec")
 
 

@@ -199,7 +199,7 @@ def test_a_sourced_rqt_graph_does_not_get_options_that_it_does_not_know(
     real_one(tmp_path)
     done = alone.run(f"rqt_graph {option}", AMENT_PREFIX_PATH=f"{tmp_path}:{alone.env['AMENT_PREFIX_PATH']}")
     assert (done.code, done.stdout) == (1, "")
-    assert "No node is running" in done.stderr
+    assert "No node was found" in done.stderr
 
 
 def test_what_may_be_missing_is_reported(tutorial: World) -> None:

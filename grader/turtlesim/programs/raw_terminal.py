@@ -1,4 +1,4 @@
-"""Read keys from the terminal as they are pressed. The settings of the terminal are always restored."""
+"""Read keys from the terminal as they are pressed. The settings of the terminal are restored, except after SIGKILL."""
 
 from __future__ import annotations
 

@@ -69,7 +69,7 @@ class Teleop(Node):
         self._publisher.publish(twist)
 
     async def turn(self, key: Turn) -> None:
-        """Send a goal. When a new goal arrives, turtlesim aborts the previous goal."""
+        """Send a goal if the action has a server. When a new goal arrives, turtlesim aborts the previous goal."""
         if not self._see_that(self._rotate.server_is_ready, self._action):
             return
         goal = await self._rotate.send_goal_async(RotateAbsolute.Goal(theta=key.theta))
@@ -77,7 +77,7 @@ class Teleop(Node):
             self._goal = goal
 
     async def cancel(self) -> None:
-        """Cancel the last goal if it is still active."""
+        """Send a request to cancel the last goal, if any. A goal that has ended is not affected."""
         if self._goal is not None:
             await self._goal.cancel_goal_async()
 
@@ -87,7 +87,7 @@ class Teleop(Node):
         super().destroy_node()
 
     def _see_that(self, somebody: Callable[[], bool], name: str) -> bool:
-        """Return whether `somebody` returns true within two seconds of the start. If not, print a message."""
+        """Return whether `somebody` returns true now, or within two seconds of the start. If not, print a message."""
         while not somebody() and time.monotonic() < self._begun + _DISCOVERY_S:
             time.sleep(0.01)
         there = somebody()
@@ -101,7 +101,7 @@ class Teleop(Node):
 
 
 def main() -> int:
-    """Run the node until Q or Ctrl-C. Return the exit code, which is 0, or 1 if there is no terminal."""
+    """Run the node until Q or Ctrl-C, or until the terminal is closed. Return 0, or 1 if there is no terminal."""
     if not is_terminal():
         print(_NO_TERMINAL, file=sys.stderr)
         return 1

@@ -45,7 +45,7 @@ export class Graph {
       this.layouts = null;
       const none = document.createElement("p");
       none.className = "note";
-      none.textContent = problem ?? "No node is running.";
+      none.textContent = problem ?? "No node was found.";
       this.place.replaceChildren(none);
     }
     this.draw();

@@ -31,7 +31,8 @@ function lost(refused) {
     simulator.tell("This is not the address of the running simulator. Open the address that the simulator has printed.");
   } else {
     say("Not running", "ends");
-    simulator.tell("The simulator has stopped. This page continues when you start the simulator again with --view.");
+    simulator.tell("This page has no connection to the simulator. If the simulator has stopped, start it again with "
+      + "--view. This page then continues.");
   }
 }
 

@@ -9,12 +9,12 @@ import { Twist } from "./twist.js";
 const find = (id) => document.getElementById(id);
 
 function number(value) {
-  return value === null ? "not a number" : value.toFixed(2);
+  return value === null ? "NaN or infinite" : value.toFixed(2);
 }
 
 export class Simulator {
   // `send` sends a request to the server. Only keys that are pressed inside the element `within` count. `live` is called
-  // with each frame and whether the simulator is paused.
+  // for each frame, with whether the simulator is paused.
   constructor({ send, within = document, live = () => {} }) {
     this.send = send;
     this.live = live;
@@ -43,7 +43,7 @@ export class Simulator {
     }
   }
 
-  // Show a text above the canvas.
+  // Show a text in front of the canvas.
   tell(text) {
     const notice = find("notice");
     notice.hidden = !text;

@@ -36,7 +36,7 @@ function angular(z) {
 }
 
 function said(value, unit) {
-  return value === null ? "not a number" : `${value.toFixed(2)} ${unit}`;
+  return value === null ? "NaN or infinite" : `${value.toFixed(2)} ${unit}`;
 }
 
 function part(title, arrow, rows) {

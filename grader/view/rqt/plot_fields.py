@@ -37,7 +37,8 @@ def numeric(message: Any, path: str) -> list[str]:  # noqa: ANN401 - a message o
     """
     found = _numeric(message_values.field(message, path, complete=False) if path else message, path)
     if not found:
-        message = f"'{path}' is not a number. For an array, name an element, as in data[0]"
+        what = f"'{path}' is not a number" if path else "The messages have no numbers"
+        message = f"{what}. For an array, name an element, as in data[0]"
         raise Ros2Error(message)
     return found
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from grader.graph.endpoints import Observed
 
 MOST_FIELDS = 20
-"""The maximum number of plotted fields."""
+"""The maximum number of fields that the user adds, and of numbers that are plotted for one of them."""
 _QOS = QoSProfile(depth=100, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 
 Sample = tuple[float, float | None]
@@ -54,7 +54,7 @@ class Plotted:
         self._told: dict[str, str] = {}
 
     def add(self, typed: str) -> None:
-        """Plot another field, or all numbers of a message."""
+        """Plot another field, or the numbers of a message. Do nothing if there are MOST_FIELDS fields already."""
         for name in expand(typed):
             if len(self._wanted) < MOST_FIELDS:
                 self._wanted.setdefault(name, "Waiting for this topic.")

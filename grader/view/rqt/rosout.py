@@ -61,7 +61,7 @@ class Rosout:
         node.create_subscription(Log, "/rosout", self._arrived, _QOS)
 
     def flush(self) -> None:
-        """Pass all messages since the last flush to `tell`."""
+        """Pass the messages since the last flush to `tell`, limited as in `Lines`."""
         new, self._new = self._new.all(), Lines()
         if new:
             self._tell(new)

@@ -33,7 +33,7 @@ PARTS: tuple[Part, ...] = ("graph", "console", "plot", "services")
 FLUSH_S = 0.1
 """The interval at which new values and log messages are sent to the pages (s)."""
 KEPT_S = 60.0
-"""For pages that are opened later, this many seconds of each plot are kept."""
+"""For pages that are opened later, this many seconds of each plot are kept, but at most _MOST_SAMPLES values."""
 _TITLES: dict[Part, str] = {
     "graph": "rqt_graph",
     "console": "rqt_console",

@@ -27,12 +27,16 @@ _EVERY_NODES = "rcl_interfaces/srv/"
 Answer = dict[str, object]
 """The `id` of a call, whether there was a response (`ok`), and a `text`: the response as YAML, or the error message."""
 Service = dict[str, str]
-"""A service: its name, its type, and a request as YAML with all values zero ("" if the type is not installed)."""
+"""A service: its name, its type, and a request as YAML with the default values ("" if it has no fields, or if the type
+is not installed)."""
 
 
 @cache
 def blank_request(type_name: str) -> str:
-    """Return a request of this type as YAML with all values zero, or "" if the type is not installed."""
+    """Return a request of this type as YAML with the default values.
+
+    Return "" if the request has no fields, or if the type is not installed.
+    """
     try:
         request = message_values.load_type(type_name, "srv", "service type").Request()
     except Ros2Error:
