@@ -175,3 +175,26 @@ def test_the_whole_lesson_is_printed_whatever_pane_is_shown(begun: Course, brows
     # The page ends after the lesson, not at the bottom of the window.
     assert page.evaluate("document.documentElement.scrollHeight") > 4000
     page.close()
+
+
+def test_two_browsers_show_the_same_verdict_and_hints(begun: Course, browser: Browser) -> None:
+    problems: list[str] = []
+    first, second = (begun.opened(browser) for _ in range(2))
+    for page in (first, second):
+        page.on("console", lambda message: problems.append(message.text))
+        page.on("pageerror", lambda error: problems.append(str(error)))
+    begun.save("2.0", "3.0")
+    for page in (first, second):
+        verdict(page, "Not passed yet")
+    shown = second.locator("#hints li").count()
+    first.get_by_role("button", name="Hint").click()
+    until(lambda: second.locator("#hints li").count() == shown + 1)
+    until(lambda: first.locator("#hints li").count() == shown + 1)
+    first.close()
+    begun.save()
+    verdict(second, "Passed: 100 of 100 points.")
+    again = begun.opened(browser)
+    verdict(again, "Passed: 100 of 100 points.")
+    assert problems == []
+    again.close()
+    second.close()
