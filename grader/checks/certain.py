@@ -41,7 +41,7 @@ FROM_GRAPH: frozenset[Diagnosis] = frozenset(
         "action-type",
     }
 )
-"""Mistakes in the names, types and QoS settings of nodes, topics, services and actions."""
+"""Mistakes in the names, types and QoS settings of nodes, topics and actions."""
 FROM_CONTENT: frozenset[Diagnosis] = frozenset(
     {
         "wrong-value",
@@ -71,7 +71,7 @@ FROM_ORDER: frozenset[Diagnosis] = frozenset(
         "exit-code",
     }
 )
-"""Facts that the recording or a program's output shows, but that a busy machine can also cause."""
+"""Facts that the recording, a result or a program's output shows. A busy machine can cause some of them."""
 CONCLUSIONS: frozenset[Diagnosis] = frozenset(
     {
         "no-init",

@@ -27,7 +27,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "depend-in-setup-py": "a dependency is in install_requires in setup.py instead of package.xml",
         "package-name": "the package name in package.xml or setup.py is not the name that the exercise requires",
         "package-folder": "no folder with Python files has the name of the package",
-        "rejected-file": "the submission contains something other than normal files and folders",
+        "rejected-file": "the submission contains something that is not accepted, such as a device or a huge file",
         "unreadable": "the grader cannot read the submission, or the data that the submission sends",
     },
     "setup.py and the build": {

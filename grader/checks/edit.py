@@ -32,7 +32,7 @@ def at(where: Where | None, old: str, new: str) -> tuple[Edit, ...]:
 
 
 def applied(files: Mapping[str, bytes], edits: Sequence[Edit]) -> dict[str, bytes] | None:
-    """Return the files after all edits, or None if a file does not contain the text that an edit replaces."""
+    """Return the files after all edits, or None if a file does not have the line or the text that an edit replaces."""
     changed = dict(files)
     # Edit from the last line to the first, so that an inserted line does not move the lines of later edits.
     for edit in sorted(edits, key=lambda each: -each.line):

@@ -63,7 +63,8 @@ def exercise_of_folder(path: Path, course: Path | None = None) -> Exercise | Non
 def load_exercise(path: Path) -> Exercise:
     """Return the exercise that the file `path` defines. If `path` is a folder, its file exercise.toml is read.
 
-    Raises UsageError, which lists every problem in the file: the key, its value, and the allowed values.
+    Raises UsageError, which says why the file cannot be read, or lists every problem in it: the key, its value, and the
+    allowed values.
     """
     from grader.checks.kinds import KINDS  # imported here because few commands need it
 

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 class Judgement:
     """The findings of all checks, based on the evidence that exists so far.
 
-    `findings` contains a finding for every check. The findings in `settled` are final, because the evidence of their
-    stage was complete. Any other finding may change when more evidence exists.
+    `findings` contains a finding for every check. The findings in `settled` are final: further evidence cannot change
+    them. Any other finding may change when more evidence exists.
     """
 
     exercise: Exercise
@@ -61,9 +61,10 @@ class Judgement:
 def judge(evidence: Evidence) -> tuple[Outcome, ...]:
     """Return the outcome of every check, in the order of the exercise.
 
-    A check is skipped if a check that it needs did not pass. The message of the skipped check contains the title of the
-    first check that did not pass, unless that check is hidden. If the machine could not produce the evidence for a
-    check (`evidence.fault`), the status of that check and of every check that needs it is `error`.
+    A check is skipped if a check that it needs did not pass, except advice. The message of the skipped check contains
+    the title of the first check that did not pass, unless that check is hidden. If the machine could not produce the
+    evidence for a check (`evidence.fault`), the status of that check and of every check that needs it is `error`. If
+    the evidence cannot be read because of the submission, the check fails.
     """
     return judge_so_far(evidence, {}).outcomes
 
@@ -171,7 +172,8 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
     if kind.stage == "trial" and evidence.run.overwhelmed is not None:
         return _overwhelmed(evidence, evidence.run.overwhelmed)
     if not made:
-        return Finding(Status.SKIPPED, "Not judged, because the node was not run.")
+        missing = "the package was not built" if kind.stage == "build" else "its trial was not run"
+        return Finding(Status.SKIPPED, f"Not judged, because {missing}.")
     try:
         finding = kind.judge(evidence, spec.params)
         if finding.status is not Status.FAILED or kind.stage != "trial" or evidence.run.recording is None:
@@ -200,7 +202,7 @@ def unreadable(how: str) -> Finding:
 
 
 def in_words(error: Exception) -> str:
-    """Return the type and text of the exception on one line, or only the text of an UnreadableError."""
+    """Return the type and text of the exception, or only the text of an UnreadableError, without a full stop."""
     if isinstance(error, UnreadableError):
         return str(error).rstrip(".")
     return f"{type(error).__name__}: {error}".rstrip(" :.")

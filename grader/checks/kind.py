@@ -124,7 +124,7 @@ def number(
 
 
 def string(words: str = "a string", *, about: str, start: str = "", default: str | None = None) -> Any:
-    """Create a field for a string that starts with `start` and is not empty.
+    """Create a field for a string that starts with `start` and is not blank.
 
     If the field has no default, exercise.toml must set it.
     """
@@ -139,19 +139,19 @@ def string(words: str = "a string", *, about: str, start: str = "", default: str
 
 
 def strings(*, about: str) -> Any:
-    """Create a field for a list of at least one string."""
+    """Create a field for a list of at least one string. No string may be empty."""
 
     def accept(value: object) -> tuple[str, ...] | None:
         good = isinstance(value, list) and value and all(isinstance(item, str) and item for item in value)
         return tuple(value) if good else None  # type: ignore[arg-type]
 
-    return _field(Allowed("a list of at least one string", accept, about))
+    return _field(Allowed("a list of at least one string, and no empty strings", accept, about))
 
 
 def table(*, about: str, optional: bool = False) -> Any:
     """Create a field for a table that is not empty. The field's value is a tuple of (name, value) pairs.
 
-    If the field is optional, the default is an empty table.
+    If the field is optional, the default is an empty tuple.
     """
 
     def accept(value: object) -> tuple[tuple[str, Any], ...] | None:

@@ -38,7 +38,7 @@ def read_numbers(evidence: Evidence) -> OwnNumbers | Finding:
 
 
 def drawn_numbers(evidence: Evidence) -> OwnNumbers | Finding:
-    """Return the numbers of the student whose id is in the file.
+    """Return the numbers of the student whose id is in the file, or a failed finding if the file cannot be read.
 
     The numbers are calculated again from the student's id rather than read from the file.
     """

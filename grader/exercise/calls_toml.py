@@ -35,7 +35,7 @@ def read_calls(table: Table) -> CallsSpec:
         )
     ids = calls.ids
     for id_ in sorted({each for each in ids if ids.count(each) > 1}):
-        table.problem(f'the id "{id_}" is used twice; each call needs its own id.')
+        table.problem(f'the id "{id_}" is used more than once; each call needs its own id.')
     return calls
 
 
@@ -72,13 +72,14 @@ def _bag(table: Table) -> BagInput:
 
 def _arc(table: Table) -> Arc:
     within = f"from {-MOST_M:g} to {MOST_M:g} (m)"
-    degrees = "an angle in degrees"
+    most_deg = 3600.0
+    degrees = f"from {-most_deg:g} to {most_deg:g} (degrees)"
     return Arc(
         x_m=table.number("x_m", -MOST_M, MOST_M, within),
         y_m=table.number("y_m", -MOST_M, MOST_M, within),
-        radius_m=table.number("radius_m", 1e-3, MOST_M, "above 0 (m)"),
-        from_deg=table.number("from_deg", -3600.0, 3600.0, degrees, 0.0),
-        to_deg=table.number("to_deg", -3600.0, 3600.0, degrees, 360.0),
+        radius_m=table.number("radius_m", 1e-3, MOST_M, f"from 0.001 to {MOST_M:g} (m)"),
+        from_deg=table.number("from_deg", -most_deg, most_deg, degrees, 0.0),
+        to_deg=table.number("to_deg", -most_deg, most_deg, degrees, 360.0),
         count=int(table.number("count", 0, MOST_POINTS, f"a number from 0 to {MOST_POINTS}")),
-        noise_m=table.number("noise_m", 0.0, MOST_M, "at least 0 (m)", 0.0),
+        noise_m=table.number("noise_m", 0.0, MOST_M, f"from 0 to {MOST_M:g} (m)", 0.0),
     )

@@ -52,7 +52,7 @@ OLDER = {
 """Instructions for updating a file in an older version of the format."""
 PART = re.compile(r"[a-z]")
 OF_NUMBERS = "own_"
-"""The names of all kinds that read the table [numbers] begin with this string."""
+"""The names of all kinds that need the table [numbers] begin with this string."""
 FIELD = Allowed(
     "a number, a string, true or false", lambda value: value if isinstance(value, str | int | float) else None, ""
 )

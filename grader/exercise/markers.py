@@ -7,9 +7,9 @@
     # # TODO: create a timer.
     # END STARTER
 
-The released file contains the text of the STARTER block, without the comment signs, instead of the two blocks. In XML
-and Markdown, the blocks are comments. Since comments cannot be nested, `<! text !>` in a STARTER block becomes a
-comment:
+The released file contains the text of the STARTER block, without the comment signs, instead of the two blocks. In XML,
+Markdown and HTML, the markers of a SOLUTION block are comments, and a STARTER block is one comment. Since comments
+cannot be nested, `<! text !>` in a STARTER block becomes a comment:
 
     <!-- BEGIN SOLUTION -->
     <depend>geometry_msgs</depend>

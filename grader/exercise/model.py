@@ -139,7 +139,7 @@ class Exercise:
     hints: tuple[Hint, ...]
     folder: Path
     digest: str = ""
-    """The SHA-256 hash of exercise.toml, which defines the whole exercise."""
+    """The SHA-256 hash of exercise.toml, which defines the whole exercise. Private checks are included in the hash."""
     numbers: NumbersSpec | None = None
     """The values that differ from student to student."""
     show_fix: bool = False
@@ -162,7 +162,7 @@ class Exercise:
 def course_folder() -> Path:
     """Return the folder course/: next to the package in a checkout, or inside the package in an installed wheel.
 
-    Raises MachineError if the folder course/ does not exist.
+    Raises MachineError if neither folder contains a lesson.
     """
     package = Path(__file__).resolve().parents[1]
     for folder in (package.parent / "course", package / "course"):

@@ -1,8 +1,8 @@
 """Students' own numbers: the values of an exercise that differ between students, derived from the student's id.
 
 The table `[numbers]` in exercise.toml lists the possible values. `grader start` writes the student's own values to a
-TOML file in the package. The values depend only on the student's id, so a check can detect values that were changed. If
-a parameter of a check is `{ own = "radius_m" }`, the parameter gets the student's own value.
+TOML file in the package. The values depend only on the exercise and the student's id, so a check can detect values that
+were changed. If a parameter of a check is `{ own = "radius_m" }`, the parameter gets the student's own value.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ Such a file modifies the exercise.toml of the course:
     schema = 2
     [[check]]       If the id is in the course, these keys override those of the course's check (all of its keys if the
                     kind differs). A new id adds a check. The check is hidden unless it has `hidden = false`.
-    [[trial]]       A trial is replaced or added in the same way, by its id.
+    [[trial]]       A trial is changed or added in the same way, by its id.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def _private_files(checks: Path, known: Mapping[str, Path]) -> dict[str, Path]:
 def merge(public: Mapping[str, Any], private: Mapping[str, Any], name: str) -> dict[str, Any]:
     """Return the tables of the two files as one table.
 
-    Raises UsageError if the private file has keys that are not allowed.
+    Raises UsageError if the private file has another schema, or keys or values that are not allowed at its top level.
     """
     older = of_older_schema(private)
     if older:

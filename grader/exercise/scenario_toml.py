@@ -28,7 +28,7 @@ PARAMETER_TYPES = (
 )
 """Tuples (Python type of a parameter, its number in rcl_interfaces/msg/ParameterType, the field for its value)."""
 CALLS = ("function", "points", "bag")
-"""The keys of a `[[trial]]` that runs without a simulator."""
+"""If a `[[trial]]` has one of these keys, it calls a function or a program, without a simulator."""
 MAX_DURATION_S = 600.0
 MOST_TARGETS = 5
 """The maximum number of targets. For more targets, target_places.py may find no places for which the nearest-first
@@ -46,7 +46,7 @@ def read_trials(top: Table, package: str) -> tuple[TrialSpec, ...]:
     trials = tuple(_with_scenario(table, trial, trials) for table, trial in zip(tables, trials, strict=True))
     for table, trial in zip(tables, trials, strict=True):
         if [each.id for each in trials].count(trial.id) > 1:
-            table.problem(f'the id "{trial.id}" is used twice; each trial needs its own id.')
+            table.problem(f'the id "{trial.id}" is used more than once; each trial needs its own id.')
     return trials
 
 

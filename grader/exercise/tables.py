@@ -61,9 +61,13 @@ class Table:
         return default
 
     def string(
-        self, key: str, pattern: re.Pattern[str] | None = None, allowed: str = "a string", default: str | None = None
+        self,
+        key: str,
+        pattern: re.Pattern[str] | None = None,
+        allowed: str = "a string that is not blank",
+        default: str | None = None,
     ) -> str:
-        """Return a string that matches `pattern` completely and does not consist only of spaces."""
+        """Return a string that matches `pattern` completely and is not blank."""
 
         def good(value: object) -> bool:
             return (
@@ -117,7 +121,8 @@ class Table:
                 isinstance(each, int | float) and not isinstance(each, bool) and abs(each) <= most for each in value
             )
 
-        return tuple(float(each) for each in self._get(key, "a list of numbers", good, default=None) or ())
+        allowed = f"a list of numbers from {-most:g} to {most:g}"
+        return tuple(float(each) for each in self._get(key, allowed, good, default=None) or ())
 
     def options(self, key: str) -> tuple[Any, ...]:
         """Return a list of at least two different values, either all strings or all numbers."""
@@ -133,7 +138,8 @@ class Table:
     def setting(self, key: str) -> Any:  # noqa: ANN401 - one of four types
         """Return the value of a node's parameter: true or false, a number, or a string."""
         allowed = "true or false, a number, or a string"
-        return self._get(key, allowed, lambda value: isinstance(value, SETTING), default=None) or 0
+        value = self._get(key, allowed, lambda value: isinstance(value, SETTING), default=None)
+        return 0 if value is None else value
 
     def settings(self, key: str) -> dict[str, Any]:
         """Return a table with parameters of a node. The default is an empty table."""

@@ -39,7 +39,7 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
             "additional thread."
         )
     if evidence.code.calls("create_timer"):
-        observed = "The node has a timer, but it sends its messages in a loop that sleeps."
+        observed = "The node has a timer, but it publishes or logs in a loop that sleeps."
         return failed(observed, EXPECTED, Cause("no-timer", cause, loop))
     return failed(
         "The node does not use a timer.",
@@ -70,6 +70,6 @@ USES_TIMER = Kind(
     NoParams,
     uses_timer,
     advice=True,
-    about="Advises the student to use a timer if the submission never calls `create_timer`, or sends its messages in a "
-    "loop that sleeps.",
+    about="Advises the student to use a timer if the submission never calls `create_timer`, or publishes or logs in "
+    "a loop that sleeps.",
 )

@@ -33,7 +33,7 @@ KEEP_LOOKING = "Run the `ros2` command again and compare letter by letter."
 
 
 def answers(evidence: Evidence, _: NoParams) -> Finding:
-    """answers.toml exists, can be read, and has a line for each question if it has answers with other names."""
+    """answers.toml can be read, has an answer, and has a line for each question if it has answers with other names."""
     found = evidence.answers
     expected = f"{FILE} is a TOML file with a table [answers] and one line per question."
     if found is None:
@@ -48,7 +48,8 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
     if missing and other:  # in a workspace, the file may also contain the answers of other steps
         names = a_list(missing, most=len(missing))
         if misspelt := [name for name in other if nearest(name, missing)]:
-            observed = f"{FILE} contains {a_list([shorten(name) for name in misspelt])}, but no question has that name."
+            observed = f"{FILE} contains {a_list([shorten(name) for name in misspelt])}, "
+            observed += f"but no question of this step has {'that name' if len(misspelt) == 1 else 'these names'}."
             where = Where(FILE, found.lines.get(misspelt[0]))
             return failed(observed, expected, Cause("unknown-answer", f"There is no line for {names}.", where))
         reason = f"`grader start {evidence.exercise.id[:2]}` prints the lines that you need."
@@ -192,14 +193,12 @@ class AnswerRate:
 
 
 def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
-    """The answer is the rate (Hz) measured in the trial."""
+    """The answer is the rate (Hz) measured in the trial. Raises MachineError if no rate was measured."""
     arrivals = [each.t_s for each in evidence.recording.messages if each.type.endswith(params.type_ends)]
     steps = [later - earlier for earlier, later in pairwise(arrivals)]
     if not any(steps):
-        # This trial runs none of the student's code, so the machine is at fault.
-        message = (
-            "No message of that type was recorded, so the answer cannot be compared with a measured rate. Try again."
-        )
+        # The course uses this check only in trials without a student's node, so the machine is at fault.
+        message = "Too few messages were recorded to measure the rate with which the answer is compared. Try again."
         raise MachineError(message)
     truth = len(steps) / sum(steps)
     given = _given(evidence, params.answer, NUMBER, float)
@@ -244,9 +243,8 @@ def _compare(evidence: Evidence, name: str, given: Answer, truth: Collection[str
     where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
     observed = f"{name} is {_shown(given)}: {difference}."
     diagnosis: Diagnosis = "wrong-list" if surplus and missing else "list-too-long" if surplus else "list-incomplete"
-    return failed(
-        observed, ("The list contains all correct items, and no other items."), Cause(diagnosis, cause.strip(), where)
-    )
+    expected = "The list contains all correct items, and no other items."
+    return failed(observed, expected, Cause(diagnosis, cause.strip(), where))
 
 
 def _wrong(evidence: Evidence, name: str, given: Answer, expected: str, why: Cause) -> Finding:
@@ -270,7 +268,8 @@ ANSWERS = Kind(
     "answers.toml can be read",
     NoParams,
     answers,
-    about="`answers.toml` exists, is valid TOML, and contains answers only to questions of the exercise.",
+    about="`answers.toml` exists, is valid TOML, and contains an answer. If it contains answers with other names, such "
+    "as those of an earlier step, it also has a line for each question of the exercise.",
 )
 TEXT = Kind(
     "answer_text", "source", "The answer is right", OneOf, answer_text, about="The answer is one of the given strings."

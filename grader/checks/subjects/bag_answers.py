@@ -110,8 +110,14 @@ def _why(quantity: str, value: float, truth: float, count: int) -> Cause:
         return Cause("rate-off-by-one", cause)
     if quantity == "radius" and band.holds(value / 2.0):
         return Cause("diameter", "This is the diameter, twice the radius.")
-    source = "`ros2 bag info`" if quantity == "duration" else "Your own program"
-    return Cause("wrong-answer", f"{source} shows the right value. Does the answer come from an earlier bag?")
+    if quantity == "duration":
+        cause = "`ros2 bag info` shows the duration of a bag. Does the answer come from an earlier bag?"
+        return Cause("wrong-answer", cause)
+    cause = (
+        "If your own program prints this value for this bag, the program is wrong. "
+        "Otherwise, the answer may come from an earlier bag."
+    )
+    return Cause("wrong-answer", cause)
 
 
 ANSWER = Kind(

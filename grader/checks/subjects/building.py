@@ -50,9 +50,8 @@ def plain_files(evidence: Evidence, _: NoParams) -> Finding:
     if rejected:
         observed = f"Left out: {shorten(rejected[0], 150)}"
         more = f" (and {len(rejected) - 1} more)." if len(rejected) > 1 else "."
-        return failed(
-            observed.rstrip(".") + more, "A package contains only normal files and folders.", Cause("rejected-file")
-        )
+        expected = "A package contains only normal files and folders of a limited size."
+        return failed(observed.rstrip(".") + more, expected, Cause("rejected-file"))
     return passed("The package contains only normal files and folders.")
 
 
@@ -115,6 +114,9 @@ def _broken(evidence: Evidence) -> Finding:
         cause = "setup.py should only call setup(). setup.py must not print anything or exit."
         printed = _line_of(evidence, r"^\s*(?:print|exit|quit|sys\.exit)\(")
         return failed(observed, EXPECTED, Cause("setup-py-output", cause, printed or where))
+    if build.exit_code == 0:
+        observed = "`colcon build` finished but installed nothing."
+        return failed(observed, EXPECTED, Cause("nothing-installed", where=where))
     words = [line for line in LAST_WORDS.findall(build.log) if "CalledProcessError" not in line]
     message = f": {shorten(words[-1], 150)}" if words else f" (exit code {build.exit_code})"
     missing = NO_FILE.search(words[-1]) if words else None

@@ -61,7 +61,7 @@ def cancels_goal(evidence: Evidence, params: CancelsGoal) -> Finding:
         if not goals:
             return no_goal(evidence, expected)
         observed = f"The turtle was not following a goal when {params.service} was called."
-        text = "Until the service is called, the node sends the next goal as soon as the previous goal has ended."
+        text = "Until the service is called, the node must send the next goal as soon as the previous goal has ended."
         return failed(observed, expected, Cause("goal-not-sent", text, evidence.place("send_goal_async")))
     call, goal = found
     took = Band.at_most(params.within_s)
@@ -102,7 +102,7 @@ def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
     if found is None:
         return Finding(Status.SKIPPED, "Not judged, because no goal was active when the service was called.")
     if len(evidence.recording.goals) >= MOST_GOALS:
-        observed = f"The node sent {MOST_GOALS} goals or more, and the recording does not contain all of them."
+        observed = f"The node sent {MOST_GOALS} goals or more, and the recording may not contain all of them."
         return failed(observed, expected, Cause("goal-after-cancel", "", evidence.place("send_goal_async")))
     after = [goal for goal in goals if goal.t_s > found[0].t_s]
     if after:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Recording
 
 NEARER_M = 0.5
-"""A target counts as nearer than another one if the distances differ by at least this much (m).
+"""A target counts as nearer than another one if the distances differ by more than this (m).
 
 A smaller difference does not count, because the turtle moves while the node decides.
 """
@@ -214,7 +214,7 @@ def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
     unseen = _uncaught(recording, caught(recording), params.service)
     if unseen is not None:
         observed = f"{shorten(unseen.turtle)} was removed, but the recording has no call to {params.service} for it."
-        text = "The node made more calls than a recording can hold."
+        text = "Did the node remove it without this call, or make more calls than a recording can hold?"
         return failed(observed, expected, Cause("catch-again", text, where))
     return passed(f"Each time the node called {params.service}, the target was near.")
 

@@ -86,7 +86,7 @@ def _no_module(evidence: Evidence, module_name: str) -> Finding:
     outer, _dot, last = module_name.rpartition(".")
     file = module_file(outer, files) if outer else None
     if file is not None and any(_bindings(read_module(file, files[file]), last)):
-        cause = f"{shorten(last)} is a function in {file}. Write a colon between module and function, not a dot."
+        cause = f"{shorten(last)} is a name in {file}. Write a colon between the module and the function, not a dot."
         why = Cause("entry-point-no-function", cause, line(evidence))
         return failed(observed, f"{FORM}.", why.fixed_by(at(why.where, module_name, f"{outer}:{last}")))
     right = _similar_module(module_name, files)

@@ -82,7 +82,7 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
 
 
 def _in_code(evidence: Evidence, *numbers: float) -> bool:
-    """Return whether all these numbers are constants in the code of the node."""
+    """Return whether all these numbers are constants of the type float in the code of the node."""
     nodes = [node for module in evidence.code.modules for node in module.nodes]
     found = {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, float)}
     return found.issuperset(numbers)

@@ -87,7 +87,7 @@ def goals_of(evidence: Evidence) -> list[Goal]:
 
 
 def first_call_s(evidence: Evidence) -> float:
-    """Return the time (s) of the trial's first call to a service of the node."""
+    """Return the time (s) of the trial's first call to a service of the node, or infinity if there is no call."""
     return min((call.t_s for call in evidence.recording.calls if call.by_trial), default=math.inf)
 
 

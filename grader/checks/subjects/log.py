@@ -215,7 +215,7 @@ def _sign_for_sum(evidence: Evidence, diagnosis: Diagnosis) -> Cause | None:
 
 
 def _set_again(evidence: Evidence) -> Cause | None:
-    """Return the cause if the method that logs sets a name to a constant and increases it later, else None."""
+    """Return the cause if the method that logs sets a name to a constant and also increases it, else None."""
     for module in evidence.code.modules:
         for method in (node for node in module.nodes if isinstance(node, ast.FunctionDef) and node.name != "__init__"):
             inside = list(ast.walk(method))

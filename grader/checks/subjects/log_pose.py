@@ -153,7 +153,7 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
         "The distance is the sum of these steps."
     )
     if holds(np.cumsum(np.abs(np.diff(x)) + np.abs(np.diff(y))), lambda line: line.numbers["distance"]):
-        cause = "This is the sum of all dx and dy, without signs. A step is the square root of dx * dx + dy * dy."
+        cause = "This is the sum of abs(dx) + abs(dy). A step is the square root of dx * dx + dy * dy."
     return failed(observed, expected, Cause("wrong-distance", cause, where))
 
 
@@ -220,7 +220,7 @@ def _window(recording: Recording, t_s: float, lag_s: float) -> slice:
 
 
 def _at(recording: Recording, t_s: float, values: Floats) -> float:
-    """Return the value at the last frame before this time."""
+    """Return the value at the last frame before this time, or at the first frame if none is earlier."""
     return float(values[max(int(np.searchsorted(recording.frames.t_s, t_s)) - 1, 0)])
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class NoCalls:
-    """The names of functions (without module or object) that the node's file must not call, and the reason."""
+    """The names of functions (without module or object) that the node's file must not use, and the reason."""
 
     names: tuple[str, ...] = strings(
         about="The names of the functions without module or object, such as `sleep` for `time.sleep`."
@@ -31,10 +31,10 @@ def no_calls(evidence: Evidence, params: NoCalls) -> Finding:
     if uses:
         first = uses[0]
         alias = f", which is {first.name}" if first.written != first.name else ""
-        observed = f"The node calls {shorten(first.written)}{alias}."
-        expected = f"The node does not call {a_list(params.names, 'or')}."
+        observed = f"The node uses {shorten(first.written)}{alias}."
+        expected = f"The node does not use {a_list(params.names, 'or')}."
         return failed(observed, expected, Cause("forbidden-call", params.cause, first.where))
-    return passed(f"The node does not call {a_list(params.names, 'or')}.")
+    return passed(f"The node does not use {a_list(params.names, 'or')}.")
 
 
 NO_CALLS = Kind(
@@ -43,5 +43,5 @@ NO_CALLS = Kind(
     "The node does not call certain functions",
     NoCalls,
     no_calls,
-    about="The node's file calls none of the given functions, even through an alias.",
+    about="The node's file uses none of the given functions, not even under another name.",
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -37,9 +38,8 @@ def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
         )
         expected = "Every student has their own numbers."
         step = spec.step[:2]
-        cause = (
-            f"`grader start {step} --student {shorten(by)} --fresh` draws your numbers and keeps a copy of your work."
-        )
+        student = shlex.quote(shorten(by))
+        cause = f"`grader start {step} --student {student} --fresh` draws your numbers and keeps a copy of your work."
         return failed(observed, expected, Cause("numbers-of-another", cause, Where(spec.file)))
     wanted = draw_numbers(spec, found.student)
     if found != wanted:

@@ -112,7 +112,10 @@ def moved_otherwise(evidence: Evidence, expected: str, *, from_start: bool = Fal
 
 
 def not_driven(evidence: Evidence, expected: str, where: Where | None) -> Finding | None:
-    """Return a failed finding if the turtle did not drive, or if something other than commands moved it, else None."""
+    """Return a failed finding if velocity commands did not drive the turtle, else None.
+
+    This is the case if something else moved the turtle, if its position became NaN, or if it did not drive.
+    """
     moved = moved_otherwise(evidence, expected, from_start=True) or not_finite(evidence, expected)
     if moved is not None or evidence.trajectory.length_m > MOVED_M:
         return moved
@@ -245,7 +248,10 @@ def _too_short(evidence: Evidence, trajectory: Trajectory, turns: float, expecte
 
 
 def no_wall(evidence: Evidence, _: NoParams) -> Finding:
-    """The turtle touched no wall in any frame. The check is skipped for a turtle that never moved."""
+    """The turtle touched no wall in any frame.
+
+    The check is skipped if the turtle never drove, or if its position became NaN.
+    """
     trajectory = evidence.trajectory
     # A turtle that is always teleported away before it reaches a wall would never touch one.
     moved = moved_otherwise(evidence, "The turtle never touches a wall.")
@@ -255,7 +261,9 @@ def no_wall(evidence: Evidence, _: NoParams) -> Finding:
         observed = f"The turtle ran into a wall after {trajectory.wall_s:.1f} s."
         expected = "The turtle never touches a wall."
         return failed(observed, expected, Cause("wall", radius_of_commands(evidence), line_of_values(evidence)))
-    if not (trajectory.finite and trajectory.length_m > MOVED_M):
+    if not trajectory.finite:
+        return Finding(Status.SKIPPED, "Not judged, because the turtle's position became NaN (not a number).")
+    if not trajectory.length_m > MOVED_M:
         return Finding(Status.SKIPPED, "Not judged, because the turtle did not drive.")
     return passed("The turtle did not touch a wall.")
 

@@ -100,8 +100,9 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
     near |= mean_hz > FASTEST_HZ and evidence.recording.clock == "simulated" and not _follows_poses(evidence, mean_hz)
     if not mean.holds(mean_hz):
         return _wrong_mean(evidence, what, measured, params, expected, near_edge=near)
-    worst = max(measured.intervals, key=lambda interval: abs(interval - period))
-    if not all(each.holds(interval) for interval in measured.intervals):
+    outside = [interval for interval in measured.intervals if not each.holds(interval)]
+    if outside:
+        worst = max(outside, key=lambda interval: abs(interval - period))
         at = measured.begins[measured.intervals.index(worst)]
         observed = (
             f"{what.plural} arrived at uneven intervals: {worst:.2f} s passed between two of them, "
@@ -131,7 +132,7 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
 
 
 def _follows_poses(evidence: Evidence, mean_hz: float) -> bool:
-    """Return whether the node sends one message per pose. Then the rate is the same in simulated time and wall time."""
+    """Return whether the node seems to send one message per pose, at the same rate in simulated time and wall time."""
     return abs(mean_hz - POSES_HZ) <= 0.5 and not evidence.code.calls("create_timer")
 
 
@@ -191,7 +192,7 @@ def _uneven_cause(evidence: Evidence, what: Subject) -> str:
     code = evidence.code
     if len(code.calls(what.call)) > 1 or len(code.calls("create_timer")) > 1:
         return f"More than one line calls {what.call}, or more than one timer runs."
-    return f"The method that calls {what.call} sometimes takes longer than the period." if code.calls("sleep") else ""
+    return f"Does the method that calls {what.call} sleep for longer than the period?" if code.calls("sleep") else ""
 
 
 def _stopped(evidence: Evidence, what: Subject, measured: Measured, expected: str, *, near_edge: bool) -> Finding:

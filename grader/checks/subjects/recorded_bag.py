@@ -195,5 +195,6 @@ CIRCLE = Kind(
     "The bag shows a circle",
     CircleInBag,
     circle_in_bag,
-    about="The poses in the bag lie on a circle with the given radius, and make at least the given number of turns.",
+    about="The poses in the bag lie on a circle with the given radius, make at least the given number of turns, and "
+    "have the given speed.",
 )

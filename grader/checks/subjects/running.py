@@ -73,7 +73,10 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
     where = evidence.place("create_node", "__init__")
     if guess.endswith(wanted):
         return failed(observed, expected, Cause("node-namespace", "The node is in a namespace.", where))
-    cause = "The node name is the string that the class passes to super().__init__."
+    calls = evidence.code.calls
+    by_class = calls("__init__") or not calls("create_node")
+    giver = "super().__init__" if by_class else "create_node"
+    cause = f"The node name is the first argument of {giver}."
     return failed(observed, expected, Cause("node-name", cause, where))
 
 

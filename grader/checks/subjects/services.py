@@ -30,7 +30,7 @@ measured in wall time are not exact."""
 OF_TURTLES = "/turtle"
 """The beginning of the names of services that each turtle has, such as /turtle1/set_pen."""
 CLOSE = 1e-3
-"""The maximum error of a number in a request. Many fields are float32."""
+"""The maximum error of a number in a request or a response. Many fields are float32."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -156,9 +156,9 @@ def no_response(evidence: Evidence, service: str, type_: str, call: Call | None,
         return failed(observed, expected, why_ended(evidence))
     if not call.missing:
         cause = waits_in_callback(evidence) or Cause(
-            "no-response", "Something in the node blocks its callbacks.", where
+            "no-response", "Does something in the node block its callbacks?", where
         )
-        return failed(f"The node received the call to {service} and never responded.", expected, cause)
+        return failed(f"The node offers {service}, but it did not respond to the call.", expected, cause)
     return _missing(evidence, service, type_, expected)
 
 

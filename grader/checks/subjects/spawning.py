@@ -66,7 +66,7 @@ class Removes:
 
 
 def spawns(evidence: Evidence, params: Spawns) -> Finding:
-    """The node spawned the required number of turtles with the right names, in different places on the field."""
+    """The node spawned the required number of turtles with the right names on the field, and not all in one place."""
     wanted = [f"{params.name}{index + 1}" for index in range(int(params.turtles))]
     expected = (
         f"The node spawns {count(len(wanted), 'turtle')}, {wanted[0]} to {wanted[-1]}, in random places. "
@@ -227,7 +227,7 @@ SPAWNS = Kind(
     "The node spawns turtles",
     Spawns,
     spawns,
-    about="The node spawns the given number of turtles with the right names, on the field and in different places.",
+    about="The node spawns the given number of turtles with the right names, on the field and not all in one place.",
 )
 PLACES_DIFFER = Kind(
     "places_differ",

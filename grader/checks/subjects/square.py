@@ -102,7 +102,7 @@ def square(evidence: Evidence, params: Square) -> Finding:
     if still is not None:
         return still
     if trajectory.wall.any():
-        text = "A side is too long, or a corner has the wrong angle."
+        text = "A side is too long, a corner has the wrong angle, or the turtle does not stop after the fourth side."
         return failed("The turtle ran into a wall.", expected, Cause("wall", text, where))
     sides = sides_of(trajectory)
     if sides.curved_share > CURVED_SHARE:

@@ -62,9 +62,8 @@ def star(evidence: Evidence, params: Star) -> Finding:
         cause = waits_in_callback(evidence) or Cause("not-moving", where=where)
         return failed("The turtle did not drive.", expected, cause)
     if trajectory.wall.any():
-        return failed(
-            "The turtle ran into a wall.", expected, Cause("wall", "A side is too long, or a heading is wrong.", where)
-        )
+        text = "A side is too long, a heading is wrong, or the turtle does not stop after the last side."
+        return failed("The turtle ran into a wall.", expected, Cause("wall", text, where))
     sides = sides_of(trajectory, amount)
     if sides.curved_share > CURVED_SHARE:
         observed = f"{100.0 * sides.curved_share:.0f} % of the trajectory is curved."

@@ -43,8 +43,9 @@ def promises(evidence: Evidence, _: NoParams) -> Finding:
     for module in modules:
         for use in module.nodes:
             if isinstance(use, ast.ImportFrom) and use.module == spec.module:
-                other = next((each.name for each in use.names if each.name not in (spec.name, "main", "*")), None)
-                if other is not None and other in _constants(evidence, spec.module):
+                constants = _constants(evidence, spec.module) - {spec.name}
+                other = next((each.name for each in use.names if each.name in constants), None)
+                if other is not None:
                     cause = Cause("uses-own-names", NUMBERS, Where(module.file, use.lineno))
                     observed = f"The tests import {shorten(other)} from the node, which does not promise this name."
                     return failed(observed, expected, cause)
@@ -75,8 +76,9 @@ def _constants(evidence: Evidence, module: str) -> set[str]:
     file = module_file(module, files)
     if file is None:
         return set()
-    assigned = (each for each in read_module(file, files[file]).body if isinstance(each, ast.Assign))
-    return {target.id for each in assigned for target in each.targets if isinstance(target, ast.Name)}
+    assigned = (each for each in read_module(file, files[file]).body if isinstance(each, ast.Assign | ast.AnnAssign))
+    parts = (part for each in assigned for part in ast.walk(each) if isinstance(part, ast.Name))
+    return {part.id for part in parts if isinstance(part.ctx, ast.Store)}
 
 
 def _sets_own(node: ast.Attribute) -> bool:

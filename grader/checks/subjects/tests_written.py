@@ -128,7 +128,7 @@ def steady(evidence: Evidence, params: Steady) -> Finding:
     use = _first_use(code, frozenset(params.names))
     if use is not None:
         cause = "On a slow computer, the sleep may be too short. Spin until the message arrives, or set the clock."
-        observed = f"The tests call {shorten(use.written, 60)}."
+        observed = f"The tests use {shorten(use.written, 60)}."
         return failed(observed, expected, Cause("sleeps-by-luck", cause, use.where))
     loop = timed_loop(code)
     if loop is not None:
@@ -136,7 +136,7 @@ def steady(evidence: Evidence, params: Steady) -> Finding:
     use = _first_use(code, frozenset(params.random))
     if use is not None:
         cause = "A failure that occurs only sometimes is hard to reproduce. Choose the values yourself."
-        observed = f"The tests call {shorten(use.written, 60)}."
+        observed = f"The tests use {shorten(use.written, 60)}."
         return failed(observed, expected, Cause("by-chance", cause, use.where))
     return passed(expected)
 
@@ -182,7 +182,7 @@ STEADY = Kind(
     "The tests do not depend on chance",
     Steady,
     steady,
-    about="The test files call none of the given functions, not even under another name, and contain no loop that runs "
+    about="The test files use none of the given functions, not even under another name, and contain no loop that runs "
     "for a fixed time.",
 )
 ASSERTS = Kind(

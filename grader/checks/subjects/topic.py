@@ -73,7 +73,7 @@ def _expected(params: Topic) -> str:
 def _wrong_type(evidence: Evidence, params: Topic, publishers: list[Endpoint]) -> Finding:
     types = a_list(sorted({shorten(publisher.type) for publisher in publishers}))
     whose = "which the turtle does not understand" if params == COMMANDS else f"and not {params.type}"
-    observed = f"{params.topic} receives messages of type {types}, {whose}."
+    observed = f"The node publishes on {params.topic} with the type {types}, {whose}."
     cause = "The message type is the first argument of create_publisher."
     return failed(observed, _expected(params), Cause("wrong-type", cause, _publisher_line(evidence, params.topic)))
 
@@ -83,7 +83,8 @@ def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, 
     topics = sorted({publisher.topic for publisher in same_type or publishers})
     guess = nearest(params.topic, topics)
     shown = [guess] if guess is not None else topics
-    nobody = "no turtle subscribes to it" if params == COMMANDS else f"not on {params.topic}"
+    them = "it" if len(shown) == 1 else "them"
+    nobody = f"turtle1 does not subscribe to {them}" if params == COMMANDS else f"not on {params.topic}"
     observed = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, but {nobody}."
     why = why_topic(params.topic, shown[0], evidence)
     return failed(observed, _expected(params), why.at(_publisher_line(evidence, shown[0])))
@@ -161,7 +162,7 @@ def only_type(evidence: Evidence, params: Topic) -> Finding:
     where = _publisher_line(evidence, params.topic)
     listed = a_list([shorten(other) for other in others])
     if others and params.type in types:
-        observed = f"{params.topic} also receives messages of type {listed}."
+        observed = f"{params.topic} also has the type {listed}."
         cause = "A topic has one type. Two publishers with different types cannot use the same topic name."
         return failed(observed, expected, Cause("second-type", cause, where))
     if others:

@@ -56,7 +56,7 @@ def _certain(evidence: Evidence, waits: list[Wait]) -> Finding | None:
 
 
 def _hangs(evidence: Evidence) -> bool:
-    """Return whether the node sent nothing more after the last response, for at least SILENT_S."""
+    """Return whether the node sent no log line, command or request for at least SILENT_S after the last response."""
     recording = evidence.recording
     made = [call for call in recording.calls if not call.by_trial]
     answered = [call.answered_s for call in made if call.answered_s is not None]

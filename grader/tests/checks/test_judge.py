@@ -101,6 +101,12 @@ def test_a_fault_of_the_machine_takes_nothing_out_of_the_maximum(given: Evidence
     assert made.with_status(Status.SKIPPED) == ()
 
 
+def test_what_is_missing_is_the_build_or_the_trial() -> None:
+    outcomes = by_id(evidence(None, build=None))
+    assert outcomes["build"].finding.observed == "Not judged, because the package was not built."
+    assert by_id(evidence(None))["start"].finding.observed == "Not judged, because its trial was not run."
+
+
 def test_a_students_fault_before_the_machines_is_reported_as_the_students() -> None:
     no_module = replace(BUILD, entry_points={"draw_circle": "my_robot_controller.other:main"})
     outcomes = by_id(evidence(None, build=no_module, fault=Fault("trial", FULL_DISK)))

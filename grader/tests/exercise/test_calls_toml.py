@@ -54,7 +54,7 @@ def test_a_program_is_started_with_a_bag() -> None:
     [
         ({**FIT, "function": "f"}, "function"),
         ({**FIT, "points": []}, "needs [[trial.points]]"),
-        ({**FIT, "points": [FIT["points"][0]] * 2}, 'the id "arc" is used twice'),
+        ({**FIT, "points": [FIT["points"][0]] * 2}, 'the id "arc" is used more than once'),
         ({**FIT, "points": [{"id": "x", "x": [1], "y": ["a"]}]}, '"y" is'),
         ({**FIT, "points": [{**FIT["points"][0], "radius_m": -1}]}, "radius_m"),
         ({**FIT, "duration_s": 5.0}, "duration_s"),

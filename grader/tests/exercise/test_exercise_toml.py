@@ -126,7 +126,7 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
                 "03-circle-publisher."
             ),
         ),
-        ('title = "A test"\n', "", '[exercise]: the key "title" is missing; it must be a string.'),
+        ('title = "A test"\n', "", '[exercise]: the key "title" is missing; it must be a string that is not blank.'),
         (
             'title = "A test"',
             'titel = "A test"',
@@ -156,7 +156,7 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
         (
             'id = "stand"',
             'id = "drive"',
-            '[[trial]] 1 (drive): the id "drive" is used twice; each trial needs its own id.',
+            '[[trial]] 1 (drive): the id "drive" is used more than once; each trial needs its own id.',
         ),
         ('node = "other"', "", '[[trial]] 2 (stand): the key "node" is missing; it must be letters, digits and _'),
         (
@@ -209,7 +209,7 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
             '[[check]] 1 (rate): the id "rate" is used 2 times; each check needs its own id.',
         ),
         ("hidden = true", 'hidden = "yes"', '[[check]] 2 (values): "hidden" is "yes"; it must be true or false.'),
-        ('text = "Think."', 'text = " "', '[[hint]] 1: "text" is " "; it must be a string.'),
+        ('text = "Think."', 'text = " "', '[[hint]] 1: "text" is " "; it must be a string that is not blank.'),
         (
             'text = "Think."',
             'text = "Think."\nfor = "rate"',

@@ -43,11 +43,21 @@ def test_a_trial_may_set_several_parameters_at_once() -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "number", "field"), [(True, 1, "bool_value"), (2, 2, "integer_value"), ("a", 4, "string_value")]
+    ("value", "number", "field"),
+    [
+        (True, 1, "bool_value"),
+        (False, 1, "bool_value"),
+        (2, 2, "integer_value"),
+        (0, 2, "integer_value"),
+        (0.0, 3, "double_value"),
+        ("a", 4, "string_value"),
+        ("", 4, "string_value"),
+    ],
 )
 def test_a_parameter_has_the_type_of_its_value(value: object, number: int, field: str) -> None:
     scenario, _ = read(set=[{"at_s": 2.0, "parameter": "radius", "value": value}])
-    assert scenario.calls[0].request["parameters"][0]["value"] == {"type": number, field: value}
+    given = scenario.calls[0].request["parameters"][0]["value"]
+    assert (given, type(given[field])) == ({"type": number, field: value}, type(value))
 
 
 def test_the_parameters_at_the_start_are_ros_arguments_and_a_file() -> None:

@@ -61,7 +61,7 @@ def test_the_file_is_looked_at_before_its_answers(answers: str | None, diagnosis
     if diagnosis is None:
         return
     if diagnosis == "unknown-answer":
-        assert finding.observed == "answers.toml contains nade, but no question has that name."
+        assert finding.observed == "answers.toml contains nade, but no question of this step has that name."
     line = {"unknown-answer": "answers.toml:3", "answers-unreadable": "answers.toml:2", "no-answers": "None"}.get(
         str(diagnosis), "answers.toml"
     )
@@ -78,7 +78,7 @@ def test_answers_to_the_questions_of_another_step_do_not_matter() -> None:
     assert finding.observed == "answers.toml has no line for node and rate."
     assert finding.cause == "`grader start 11` prints the lines that you need."
     finding = judge('overlay = "install"\nnode = "a"\nrates = 3')
-    assert finding.observed == "answers.toml contains rates, but no question has that name."
+    assert finding.observed == "answers.toml contains rates, but no question of this step has that name."
     assert (finding.cause, str(finding.where)) == ("There is no line for rate.", "answers.toml:4")
 
 
@@ -202,7 +202,7 @@ def test_a_rate_is_compared_with_the_one_that_was_measured(answer: str, diagnosi
 
 
 def test_without_messages_there_is_no_rate_to_compare_with() -> None:
-    words = "No message of that type was recorded, so the answer cannot be compared with a measured rate."
+    words = "Too few messages were recorded to measure the rate with which the answer is compared."
     with pytest.raises(MachineError, match=words):
         judged(RATE, "4", type_ends="/Float64")
     assert words not in judged(RATE, "4", type_ends="/String").observed

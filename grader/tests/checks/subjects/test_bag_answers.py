@@ -63,7 +63,7 @@ def about(check: str, answer: str) -> str:
         ("n messages have only n - 1 intervals.", "rate", '"62.57 Hz"', '"62.39 Hz"'),
         ("This is the diameter, twice the radius.", "radius", '"2.2 m"', '"3.3 m"'),
         (
-            "`ros2 bag info` shows the right value. Does the answer come from an earlier bag?",
+            "`ros2 bag info` shows the duration of a bag. Does the answer come from an earlier bag?",
             "duration",
             '"13 s"',
             '"11.1 s"',
@@ -78,8 +78,8 @@ def test_a_sentence_about_an_answer_is_true(words: str, check: str, true: str, n
 @pytest.mark.parametrize(("check", "of_bag"), [("duration", True), ("radius", False)])
 def test_a_bag_has_a_duration_but_no_radius(check: str, *, of_bag: bool) -> None:
     given = about(check, '"77 s"' if of_bag else '"77 m"')
-    assert ("`ros2 bag info` shows the right value." in given) == of_bag
-    assert ("Your own program shows the right value." in given) != of_bag
+    assert ("`ros2 bag info` shows the duration of a bag." in given) == of_bag
+    assert ("If your own program prints this value for this bag, the program is wrong." in given) != of_bag
 
 
 @pytest.mark.parametrize(("answer", "is_told"), [(2, True), (3, False)])

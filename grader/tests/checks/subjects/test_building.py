@@ -138,6 +138,11 @@ def test_colcon_may_take_the_package_for_one_of_another_kind(files: Files, cause
         cause,
         "`colcon build` failed (exit code 1).",
     )
+    finished = of("build", files, replace(NOTHING, package=None))
+    assert (finished.diagnosis, finished.observed) == (
+        "nothing-installed",
+        "`colcon build` finished but installed nothing.",
+    )
     nothing = of("build", files, replace(NOTHING, installed=()))
     assert nothing.cause == (cause or "The packages argument of setup() lists the folders to install.")
     for found in (failed, nothing):
@@ -266,4 +271,4 @@ def test_a_slow_build_of_a_usual_setup_py_is_not_the_students_fault(files: Files
 def test_files_that_are_not_normal_are_told(rejected: tuple[str, ...], *, found: bool) -> None:
     reported = finding("files", evidence(package=submission(rejected=rejected)))
     assert (reported.observed == "The package contains only normal files and folders.") == found
-    assert (reported.expected == "A package contains only normal files and folders.") != found
+    assert (reported.expected == "A package contains only normal files and folders of a limited size.") != found

@@ -53,7 +53,7 @@ def test_no_goal_follows_a_cancelled_one() -> None:
     crowd = (goal(0.5, 0.0, 0.6, "aborted"),) * (MOST_GOALS - 1)
     flood = found(NO_GOAL_AFTER, given(*crowd, cancelled, calls=calls), service="/stop")
     assert flood.diagnosis == "goal-after-cancel"
-    assert flood.observed.endswith("goals or more, and the recording does not contain all of them.")
+    assert flood.observed.endswith("goals or more, and the recording may not contain all of them.")
     assert "or more" not in found(NO_GOAL_AFTER, again, service="/stop").observed
 
 
@@ -99,7 +99,7 @@ def about(*goals: Goal) -> str:
         ),
         ("After the call to /stop, the turtle continued to turn towards its goal.", goal(1.0, 80.0, 3.9), ACTIVE),
         ("The turtle was not following a goal when /stop was called.", goal(1.0, 80.0, 2.9), goal(1.0, 80.0, 3.9)),
-        ("Until the service is called, the node sends the next goal", goal(1.0, 80.0, 2.9), goal(1.0, 80.0, 3.9)),
+        ("Until the service is called, the node must send the next goal", goal(1.0, 80.0, 2.9), goal(1.0, 80.0, 3.9)),
         ("The goal sent at 1.0 s was aborted. The node did not cancel the goal.", ABORTED, goal(1.0, 80.0, 3.1)),
         ("The node did not cancel the goal.", ABORTED, replace(ABORTED, cancel_asked_s=3.05)),
         ("The goal is cancelled within 0.5 s after a call to /stop.", goal(1.0, 80.0, 3.9), ACTIVE),
@@ -156,7 +156,7 @@ def test_a_sentence_about_success_is_true(goals: tuple[Goal, ...]) -> None:
 
 
 def test_a_response_that_never_came_says_nothing_about_a_goal() -> None:
-    assert "The node received the call to /stop and never responded." in about_success(None, ACTIVE)
+    assert "The node offers /stop, but it did not respond to the call." in about_success(None, ACTIVE)
     assert found(SAYS_WHETHER_ACTIVE, given(ACTIVE), service="/stop").diagnosis == "no-response"
 
 

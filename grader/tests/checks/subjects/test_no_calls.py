@@ -16,9 +16,9 @@ NAMES = ("teleport", "create_client")
 @pytest.mark.parametrize(
     ("last", "observed"),
     [
-        ("node.create_client(x)", "The node calls create_client."),
-        ("create_client(x)", "The node calls create_client."),
-        ("turtles.teleport(1)\nnode.create_client(x)", "The node calls teleport."),
+        ("node.create_client(x)", "The node uses create_client."),
+        ("create_client(x)", "The node uses create_client."),
+        ("turtles.teleport(1)\nnode.create_client(x)", "The node uses teleport."),
     ],
 )
 def test_a_forbidden_call_is_shown_where_it_stands(last: str, observed: str) -> None:

@@ -114,6 +114,10 @@ def test_without_numbers_there_is_nothing_to_judge_the_trajectory_by() -> None:
     assert [found(kind, given(None)).diagnosis for kind in (CIRCLE, RATE)] == ["no-numbers"] * 2
 
 
+def test_an_id_with_a_space_is_quoted_in_the_command() -> None:
+    assert "--student 'Bob B' --fresh`" in found(NUMBERS, given(ALICE, "Bob B")).cause
+
+
 @pytest.mark.parametrize(
     ("words", "true", "near"),
     [

@@ -243,6 +243,11 @@ def test_the_walls(shape: str, status: str) -> None:
     assert finding("wall", evidence(SHAPES[shape]())).status.value == status
 
 
+@pytest.mark.parametrize(("shape", "why"), [("all zero", "the turtle did not drive"), ("nan", "position became NaN")])
+def test_a_turtle_whose_position_became_nan_is_not_said_to_stand_still(shape: str, why: str) -> None:
+    assert why in finding("wall", evidence(SHAPES[shape]())).observed
+
+
 @pytest.mark.parametrize(
     ("shape", "words"),
     [

@@ -94,6 +94,13 @@ def test_each_interval_has_limits_of_its_own(moved_s: float, diagnosis: str | No
         )
 
 
+def test_an_interval_within_the_limits_is_never_shown_as_uneven() -> None:
+    times = [0.5, 1.0, 1.38, 2.02, 2.5, *(3.0 + 0.5 * index for index in range(14))]
+    limits = {"rate_hz": 2.0, "min_interval_s": 0.4, "max_interval_s": 0.65}
+    found = found_by(RATE, evidence(recording([(t_s, 2.0, 1.0) for t_s in times])), **limits)
+    assert (found.diagnosis, found.observed.split(":")[1].split(" s ")[0]) == ("uneven-rate", " 0.38")
+
+
 def test_the_interval_that_is_worst_either_way_is_shown() -> None:
     times = [0.5, 1.0, 1.1, 1.6, 2.1, 2.9, *(3.4 + 0.5 * index for index in range(13))]
     found = finding("rate", evidence(recording([(t_s, 2.0, 1.0) for t_s in times])))

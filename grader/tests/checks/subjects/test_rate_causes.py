@@ -98,7 +98,7 @@ def test_a_sleep_without_a_timer_is_reported() -> None:
             (("        msg = Twist()", "        time.sleep(0.1); msg = Twist()"),),
             "uneven-rate",
             16,
-            "The method that calls publish sometimes takes longer than the period.",
+            "Does the method that calls publish sleep for longer than the period?",
         ),
         (
             (("publish(msg)", "publish(msg); self.publisher.publish(msg)"),),

@@ -113,7 +113,7 @@ def test_only_the_services_of_a_turtle_belong_to_a_turtle() -> None:
 
 
 ENDED = ProcessEnd(by="itself", exit_code=0, t_s=3.2, stop_s=None)
-BLOCKED = "Something in the node blocks its callbacks."
+BLOCKED = "Does something in the node block its callbacks?"
 
 
 def about_answers(calls: list[Call], **changes: Any) -> str:  # noqa: ANN401
@@ -138,7 +138,7 @@ def about_answers(calls: list[Call], **changes: Any) -> str:  # noqa: ANN401
         ),
         ("The response took 2.5 s.", [paused(5.5, success=True)], [paused(3.9, success=True)]),
         ("A callback must not sleep or wait.", [paused(5.5, success=True)], [paused(success=False)]),
-        ("The node received the call to /pause and never responded.", [paused(None)], [paused(None, missing=True)]),
+        ("The node offers /pause, but it did not respond to the call.", [paused(None)], [paused(None, missing=True)]),
         (BLOCKED, [paused(None)], [paused(None, missing=True)]),
         ("The node offers no service.", [paused(None, missing=True)], [paused(None)]),
     ],

@@ -159,7 +159,11 @@ def test_curves_are_a_share_of_the_whole_path() -> None:
 @pytest.mark.parametrize(
     ("words", "true", "near"),
     [
-        ("A side is too long, or a corner has the wrong angle.", round_((7.5, 2.0, 2.0, 2.0)), round_((2.5,) * 4)),
+        (
+            "A side is too long, a corner has the wrong angle, or the turtle does not stop after the fourth side.",
+            round_((7.5, 2.0, 2.0, 2.0)),
+            round_((2.5,) * 4),
+        ),
         ("Drive with angular.z at 0, then turn with linear.x at 0.", [(5, 2.0, 2.0)] * 4, round_()[:5]),
         ("Four sides and the turns between them must fit into", round_()[:5], [(5, 2.0, 2.0)] * 4),
         ("The second side is 1.50 m long: 0.50 m too short.", round_((2.0, 1.5, 2.0, 2.0)), round_()),

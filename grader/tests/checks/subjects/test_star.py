@@ -90,7 +90,11 @@ LONG = [(t_s, 3.0 * speed, turn) for t_s, speed, turn in star()]
         ("After the last side, the turtle drives 2.0 m further.", star(sides=6), star()),
         ("After the last side, the node needs a state in which it does nothing.", star(sides=6), star(sides=4)),
         ("The turtle ran into a wall.", LONG[:60], star()),
-        ("A side is too long, or a heading is wrong.", LONG[:60], star(turn=130.0)),
+        (
+            "A side is too long, a heading is wrong, or the turtle does not stop after the last side.",
+            LONG[:60],
+            star(turn=130.0),
+        ),
         ("The turtle did not drive.", [], star()),
     ],
 )

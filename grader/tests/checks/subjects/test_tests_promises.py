@@ -53,6 +53,22 @@ def test_a_method_or_an_attribute_of_the_node_is_no_promise(tests: str, line: in
     assert (found.diagnosis, found.where) == ("uses-own-names", Where(TESTS, line))
 
 
+@pytest.mark.parametrize(
+    ("imported", "diagnosis"),
+    [
+        ("WallGuard, SLOW", "uses-own-names"),
+        ("helper, PERIOD_S", "uses-own-names"),
+        ("LOW, HIGH", "uses-own-names"),
+        ("WallGuard, helper, main", None),
+    ],
+)
+def test_every_constant_of_the_node_is_found(imported: str, diagnosis: str | None) -> None:
+    node = f"SLOW: float = 0.5\nPERIOD_S = 0.1\nLOW, HIGH = 1, 2\n\ndef helper():\n    pass\n{GUARD}"
+    tests = f"from my_robot_controller.wall_guard import {imported}\n"
+    evidence = Evidence(find_exercise("12-tests"), made.submission({TESTS: tests, NODE: node}))
+    assert PROMISES.check(evidence, NoParams()).diagnosis == diagnosis
+
+
 LOOP = """def test_it(bench):
     end = time.time() + 1
     while time.time() < end:

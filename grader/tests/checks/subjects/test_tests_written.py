@@ -85,9 +85,9 @@ def about_steadiness(source: str) -> str:
 @pytest.mark.parametrize(
     ("words", "true", "near"),
     [
-        ("The tests call sleep.", NAP, CHANCE),
+        ("The tests use sleep.", NAP, CHANCE),
         ("On a slow computer, the sleep may be too short. Spin until the message arrives, or set", NAP, CHANCE),
-        ("The tests call randint.", CHANCE, NAP),
+        ("The tests use randint.", CHANCE, NAP),
         ("A failure that occurs only sometimes is hard to reproduce. Choose the values yourself.", CHANCE, NAP),
         (
             "The tests contain a loop that runs for a fixed time.",

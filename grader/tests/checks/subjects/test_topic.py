@@ -75,18 +75,18 @@ def test_on_the_turtles_topic_what_the_simulator_saw_counts() -> None:
 def test_another_topic_is_explained_by_the_two_names(topic: str, diagnosis: str) -> None:
     finding = publishes(observed(("publisher", topic, TWIST)))
     assert reported(finding) == (diagnosis, ":9")
-    assert finding.observed == f"The node publishes on {topic}, but no turtle subscribes to it."
+    assert finding.observed == f"The node publishes on {topic}, but turtle1 does not subscribe to it."
 
 
 def test_of_several_topics_those_of_the_type_and_the_nearest_are_named() -> None:
     both = observed(("publisher", "/turtle1/cmd_vol", TEXT), ("publisher", "/quaff", TWIST))
-    assert publishes(both).observed == "The node publishes on /quaff, but no turtle subscribes to it."
+    assert publishes(both).observed == "The node publishes on /quaff, but turtle1 does not subscribe to it."
     near = observed(("publisher", "/a", TWIST), ("publisher", "/turtle1/cmd_val", TWIST))
-    assert publishes(near).observed == "The node publishes on /turtle1/cmd_val, but no turtle subscribes to it."
+    assert publishes(near).observed == "The node publishes on /turtle1/cmd_val, but turtle1 does not subscribe to it."
     far = observed(("publisher", "/quaff", TWIST), ("publisher", "/a", TWIST))
-    assert publishes(far).observed == "The node publishes on /a and /quaff, but no turtle subscribes to it."
+    assert publishes(far).observed == "The node publishes on /a and /quaff, but turtle1 does not subscribe to them."
     other = observed(("publisher", "/a", TEXT), ("publisher", "/quaff", COLOR))
-    assert publishes(other).observed == "The node publishes on /a and /quaff, but no turtle subscribes to it."
+    assert publishes(other).observed == "The node publishes on /a and /quaff, but turtle1 does not subscribe to them."
 
 
 @pytest.mark.parametrize(
@@ -170,7 +170,7 @@ def test_a_second_type_is_reported_whoever_shows_it() -> None:
     for trial in (by_graph, by_message):
         finding = found(ONLY_TYPE, evidence(trial), topic=TOPIC, type=TWIST)
         assert reported(finding) == ("second-type", ":9")
-        assert finding.observed == f"{TOPIC} also receives messages of type {TEXT}."
+        assert finding.observed == f"{TOPIC} also has the type {TEXT}."
     one = observed(("publisher", TOPIC, TWIST), ("publisher", "/other", COLOR))
     assert found(ONLY_TYPE, evidence(one), topic=TOPIC, type=TWIST).status is Status.PASSED
 
@@ -259,9 +259,10 @@ def test_a_condition_that_is_only_compared_keeps_a_publisher_silent(line: str, d
 
 def test_the_sentences_about_types_are_told_only_for_a_wrong_type() -> None:
     wrong, silent = (publishes(observed(("publisher", TOPIC, type_))) for type_ in (TEXT, TWIST))
-    assert wrong.observed == f"{TOPIC} receives messages of type {TEXT}, which the turtle does not understand."
+    words = "which the turtle does not understand."
+    assert wrong.observed == f"The node publishes on {TOPIC} with the type {TEXT}, {words}"
     assert wrong.cause == "The message type is the first argument of create_publisher."
-    assert "receives messages of type" not in silent.observed
+    assert "with the type" not in silent.observed
     assert "The message type is the first argument" not in silent.cause
     listening, other = (publishes(observed(("subscription", topic, TWIST))) for topic in (TOPIC, "/other"))
     assert listening.cause == "A subscription only receives messages. Use create_publisher to send messages."
@@ -280,6 +281,6 @@ def test_the_sentences_about_types_are_told_only_for_a_wrong_type() -> None:
 def test_a_single_type_is_no_second_type(types: tuple[str, ...], *, two: bool) -> None:
     trial = observed(*(("publisher", TOPIC, each) for each in types))
     finding = found(ONLY_TYPE, evidence(trial), topic=TOPIC, type=TWIST)
-    assert (finding.observed == f"{TOPIC} also receives messages of type {TEXT}.") == two
+    assert (finding.observed == f"{TOPIC} also has the type {TEXT}.") == two
     assert (finding.observed == f"{TOPIC} has the type {TEXT}.") != two
     assert finding.diagnosis == ("second-type" if two else "wrong-type")
