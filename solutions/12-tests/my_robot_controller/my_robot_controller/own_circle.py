@@ -1,4 +1,4 @@
-"""Drive the circle of my_numbers.toml."""
+"""Drive a circle with the numbers of step 07."""
 
 import rclpy
 from geometry_msgs.msg import Twist
@@ -22,7 +22,7 @@ class OwnCircleNode(Node):
         self.publisher.publish(msg)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO a: the numbers are in my_numbers.toml, beside package.xml. Write them here.
+        # # TODO a: write your numbers here. `grader start 07` writes them to my_numbers.toml, beside package.xml.
         # END STARTER
 
 
