@@ -25,6 +25,9 @@ RESULTS = "results"
 """The folder of the grader's results, inside the folder of the class. See grader/classroom/results.py."""
 GRADEBOOK = "gradebook.db"
 """nbgrader's database, inside the folder of the class."""
+ID = "course_id"
+"""The file with the course's name in nbgrader's exchange, inside the folder of the class. Two classes that share an
+exchange need different names, or `collect` takes the submissions of both."""
 HANDED_IN = "handed-in"
 """The folder of the submissions that were completed with files from their notebooks, inside the folder of the class."""
 

@@ -115,9 +115,10 @@ def new(
     from grader.gradebook.class_folders import remember
     from grader.gradebook.new_class import make_class
 
-    students = make_class(folder, roster)
+    made = make_class(folder, roster)
     remember(folder)
-    typer.echo(f"A class of {count(students, 'student')}: {folder}")
+    typer.echo(f"A class of {count(made.students, 'student')}: {folder}")
+    typer.echo(f"The course in nbgrader's exchange: {made.course_id}")
     typer.echo(f"Next: cd {folder / 'course'}; nbgrader generate_assignment 01-first-node")
 
 

@@ -7,9 +7,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from grader.gradebook.class_folders import CLASS, GRADEBOOK
+from grader.gradebook.class_folders import CLASS, GRADEBOOK, ID
 
 COURSE_ID = "ros2-topics"
+"""The course's name in nbgrader's exchange, unless `grader class new` has written another name."""
 BUSY_S = 60
 """The maximum time that nbgrader waits for a locked database (s)."""
 
@@ -31,7 +32,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
     converters.install()
     folders = config.CourseDirectory
     folders.root = str(root)
-    folders.course_id = COURSE_ID
+    folders.course_id = _course_id(root / CLASS / ID)
     folders.source_directory = "solutions"
     folders.release_directory = "exercises"
     folders.submitted_directory = f"{CLASS}/submitted"
@@ -92,6 +93,13 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
         "nbconvert.preprocessors.CSSHTMLHeaderPreprocessor",
     ]
     config.ExportApp.plugin_class = ConfirmedCsv
+
+
+def _course_id(file: Path) -> str:
+    try:
+        return file.read_text("utf-8").strip() or COURSE_ID
+    except FileNotFoundError:
+        return COURSE_ID
 
 
 def _see_own_commands() -> None:

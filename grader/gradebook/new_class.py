@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import shutil
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.authoring.release import release
@@ -11,7 +13,8 @@ from grader.common.new_folder import new_folder
 from grader.common.words import shorten
 from grader.errors import UsageError
 from grader.exercise.model import catalogue, course_folder
-from grader.gradebook.class_folders import open_class
+from grader.gradebook.class_folders import CLASS, ID, open_class
+from grader.gradebook.config import COURSE_ID
 from grader.submission.search import IGNORE_MARKER
 
 if TYPE_CHECKING:
@@ -23,8 +26,16 @@ COLUMNS = ("id", "first_name", "last_name", "email")
 _LEFTOVERS = shutil.ignore_patterns("__pycache__", "*.pyc", ".ipynb_checkpoints", "build", "install", "log")
 
 
-def make_class(folder: Path, roster: Path | None) -> int:
-    """Create the folder and add the students of the roster to its gradebook. Return the number of students.
+@dataclass(frozen=True)
+class NewClass:
+    """A class that was created: the number of its students, and the course's name in nbgrader's exchange."""
+
+    students: int
+    course_id: str
+
+
+def make_class(folder: Path, roster: Path | None) -> NewClass:
+    """Create the folder and add the students of the roster to its gradebook. The course gets the folder's name.
 
     Raises:
         UsageError: the folder is not empty, the roster is invalid, or this copy of the course has no solutions.
@@ -38,12 +49,20 @@ def make_class(folder: Path, roster: Path | None) -> int:
     with new_folder(folder, mode=0o700):  # other users must not read the solutions and the gradebook
         # Without this file, colcon in this folder would run the setup.py of every submission outside the sandbox.
         (folder / IGNORE_MARKER).touch()
+        in_exchange = course_id(folder)
+        (folder / CLASS).mkdir(mode=0o700)
+        (folder / CLASS / ID).write_text(f"{in_exchange}\n", encoding="utf-8")
         shutil.copytree(root / "course", folder / "course", ignore=_LEFTOVERS)
         for name in catalogue():
             shutil.copytree(root / "solutions" / name, folder / "solutions" / name, ignore=_LEFTOVERS)
             release(folder / "solutions" / name, folder / "exercises" / name)
         _enrol(students, open_class(folder / "course"))
-    return len(students)
+    return NewClass(len(students), in_exchange)
+
+
+def course_id(folder: Path) -> str:
+    """Return a name for the course in nbgrader's exchange, where the name is a folder name and part of commands."""
+    return re.sub(r"[^A-Za-z0-9_.-]+", "-", folder.resolve().name).strip(".-") or COURSE_ID
 
 
 def _enrol(students: list[dict[str, str]], folders: ClassFolders) -> None:

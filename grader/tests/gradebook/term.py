@@ -69,7 +69,7 @@ class Term:
 
     def hand_in(self, student: str, change: Callable[[Path], None], at: str = FIRST) -> None:
         """Apply `change` to a copy of the released folder, and put it into the exchange as `nbgrader submit` does."""
-        folder = self.exchange / "ros2-topics" / "inbound" / f"{student}+{self.step}+{at}"
+        folder = self.exchange / self.root.name / "inbound" / f"{student}+{self.step}+{at}"
         shutil.copytree(self.root / "exercises" / self.step, folder)
         change(folder)
         (folder / "timestamp.txt").write_text(at)
@@ -102,7 +102,7 @@ class Term:
         """Return nbgrader's gradebook, which is a context manager."""
         from nbgrader.api import Gradebook
 
-        return Gradebook(f"sqlite:///{self.root}/class/gradebook.db", "ros2-topics")
+        return Gradebook(f"sqlite:///{self.root}/class/gradebook.db", self.root.name)
 
     def feedback(self, student: str) -> str:
         """Return the HTML of the feedback."""

@@ -159,7 +159,7 @@ def hostile(tmp_path_factory: pytest.TempPathFactory) -> Hostile:
     term.run("release_assignment", HOMEWORK)
     for name, change in SUBMISSIONS.items():
         hand_in(term, name, change, secret)
-    inbound = term.exchange / "ros2-topics" / "inbound"
+    inbound = term.exchange / term.root.name / "inbound"
     (inbound / f"mallory+{HOMEWORK}+when I had time").mkdir()
     (inbound / f"mallory+{HOMEWORK}+{LATER}").symlink_to(f"anna+{HOMEWORK}+{FIRST}")
     (inbound / f"nobody+{HOMEWORK}+{LATER}").symlink_to("nowhere")
@@ -177,7 +177,7 @@ def hostile(tmp_path_factory: pytest.TempPathFactory) -> Hostile:
 
 
 def hand_in(term: Term, student: str, change: Callable[[Path, Path], object], secret: Path) -> None:
-    to = term.exchange / "ros2-topics" / "inbound" / f"{student}+{HOMEWORK}+{FIRST}"
+    to = term.exchange / term.root.name / "inbound" / f"{student}+{HOMEWORK}+{FIRST}"
     shutil.copytree(term.root / "exercises" / HOMEWORK, to)
     (to / readable.TIMESTAMP).write_text(FIRST)
     change(to, secret)

@@ -8,7 +8,8 @@ from sqlalchemy.exc import SAWarning
 
 from grader.errors import MachineError, UsageError
 from grader.gradebook.class_folders import CONFIG, open_class, remember
-from grader.gradebook.new_class import make_class, read_students
+from grader.gradebook.config import COURSE_ID
+from grader.gradebook.new_class import NewClass, course_id, make_class, read_students
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -20,11 +21,20 @@ def roster(folder: Path, text: str) -> Path:
     return file
 
 
+@pytest.mark.parametrize(
+    ("folder", "name"),
+    [("ros2-2027", "ros2-2027"), ("ROS 2 (spring)", "ROS-2-spring"), ("Übung.1", "bung.1"), ("龜", COURSE_ID)],
+)
+def test_a_class_has_a_name_of_its_own_in_the_exchange(folder: str, name: str, tmp_path: Path) -> None:
+    assert course_id(tmp_path / folder) == name
+
+
 def test_a_class_has_its_students_and_no_other_data(tmp_path: Path) -> None:
     file = roster(tmp_path, "id,last_name,first_name,room\nada,Lovelace,Ada,12\nbob,,,\n")
-    assert make_class(tmp_path / "new", file) == 2
+    assert make_class(tmp_path / "new", file) == NewClass(2, "new")
     folders = open_class(tmp_path / "new")  # finds its folder course/
     assert open_class(tmp_path / "new" / "course").course.root == folders.course.root == str(tmp_path / "new")
+    assert folders.course.course_id == "new"
     from nbgrader.api import Gradebook
 
     with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:

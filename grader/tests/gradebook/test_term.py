@@ -158,7 +158,8 @@ def test_a_whole_term(term: Term) -> None:
     mine = term.root.parent / "home-of-a-student"
     mine.mkdir()
     (mine / "nbgrader_config.py").write_text(
-        f"c = get_config()\nc.Exchange.root = {str(term.exchange)!r}\nc.CourseDirectory.course_id = 'ros2-topics'\n"
+        f"c = get_config()\nc.Exchange.root = {str(term.exchange)!r}\n"
+        f"c.CourseDirectory.course_id = {term.root.name!r}\n"
     )
     term.run("fetch_assignment", STEP, cwd=mine)
     solve(mine / STEP)

@@ -11,7 +11,7 @@ from websockets.sync.client import connect
 from websockets.typing import Origin
 
 from grader.tests.view.tab import VIEW, address, live, opened, url
-from grader.tests.waiting import until
+from grader.tests.waiting import HANG_S, until
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -91,7 +91,7 @@ def test_the_browser_is_opened_with_a_code_for_which_it_gets_the_token(browser: 
     address = (fresh.home / "opened").read_text().strip()
     assert address != url(simulator)
     tab = opened(browser, address)
-    until(lambda: tab.url == url(simulator))
+    tab.wait_for_url(url(simulator), timeout=1000 * HANG_S)  # tab.url changes only while Playwright handles events
     second = browser.new_page()
     second.goto(address)
     second.get_by_text("This is not the address of the running simulator.").wait_for()
