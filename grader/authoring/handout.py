@@ -49,7 +49,7 @@ def _readme() -> str:
     )
     return f"""# ROS 2 topics, graded by doing
 
-You need Linux on x86-64 and Python 3.10 or newer. You do not need ROS. Set up once:
+You need Linux on x86-64 and Python 3.10 to 3.14. You do not need ROS. Set up once:
 
     make demo
     source .venv/setup.bash

@@ -166,7 +166,8 @@ DECLARED = Kind(
     "colcon test runs the tests with pytest",
     NoParams,
     declared,
-    about="setup.py lists pytest under `test` in `extras_require`, and package.xml declares python3-pytest.",
+    about="`extras_require` lists pytest under `test`, `tests` or `testing`, in a file that colcon reads (setup.py, "
+    "setup.cfg or pyproject.toml), and package.xml declares python3-pytest.",
 )
 OUTSIDE = Kind(
     "tests_outside",
