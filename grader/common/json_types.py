@@ -6,7 +6,7 @@ from typing import TypeVar
 
 T = TypeVar("T")
 MOST = 1e9
-"""No number in a report of the grader has a larger absolute value than this."""
+"""The largest absolute value that `number` accepts. The numbers in the grader's reports are smaller."""
 
 
 def text(value: object) -> str:

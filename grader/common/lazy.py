@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 IMPORTING = threading.RLock()
-"""This lock is held while numpy or catkin_pkg is imported, and while the process forks."""
+"""This lock is held while numpy or catkin_pkg is imported, and while the process forks to read a submission."""
 
 
 _CONDITION = "catkin_pkg.condition"

@@ -20,6 +20,7 @@ from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, R
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocketDisconnect
 
+from grader.common.system_errors import refusal
 from grader.errors import GraderError
 from grader.open.turtle_relay import relay
 from grader.view.guard import admitted
@@ -97,17 +98,20 @@ class DeskServer:
             return JSONResponse({"problem": "The action does not exist."}, 404)
         try:
             wanted = await asyncio.wait_for(_wanted(request), PATIENCE_S)
-            if iscoroutinefunction(action):
-                return JSONResponse(await action(wanted))
-            return JSONResponse(await run_in_threadpool(action, wanted))
         except asyncio.TimeoutError:
             return JSONResponse({"problem": "The request took too long."}, 408)
         except OverflowError:
             return JSONResponse({"problem": "The request is too large."}, 413)
         except (ValueError, RecursionError):
             return JSONResponse({"problem": "The request is not a JSON object."}, 400)
+        try:
+            made = await (action(wanted) if iscoroutinefunction(action) else run_in_threadpool(action, wanted))
         except GraderError as error:
             return JSONResponse({"problem": str(error)}, 409)
+        except Exception as error:
+            fault = f"Internal error in the grader, not a problem with your work: {type(error).__name__}: {error}"
+            return JSONResponse({"problem": refusal(error) or f"{fault}. Please report the error."}, 500)
+        return JSONResponse(made)
 
     async def _live(self, socket: WebSocket) -> None:
         shown = socket.query_params.get("token", "")

@@ -1,8 +1,8 @@
 """Find the ROS 2 installation, and create the environment that child processes need for it.
 
 If a ROS 2 Jazzy is sourced, the grader uses this installation. If no ROS 2 Jazzy is sourced, the wheels in this
-Python's environment are used. The grader's own process never imports rclpy. All ROS 2 code runs in child processes,
-with the environment that this module creates.
+Python's environment are used. The process of the command `grader` never imports rclpy. All ROS 2 code runs in other
+processes, with the environment that this module creates.
 """
 
 from __future__ import annotations

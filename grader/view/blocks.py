@@ -32,7 +32,10 @@ Rgb = tuple[int, int, int]
 
 
 class Picture:
-    """An image to which the trail is added. The image is repainted only if the trail is cleared or the size changes."""
+    """An image to which the trail is added.
+
+    The image is repainted only if the trail is cleared or replaced by an image, or if the size changes.
+    """
 
     def __init__(self, side: int) -> None:
         """Create the image.

@@ -124,7 +124,7 @@ def _terminal(feed: socket.socket) -> Iterator[subprocess.Popen[bytes]]:
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         message = (
             "--view terminal needs a terminal to draw in and read keys from, but standard input or output is not a "
-            "terminal (it is a pipe or a file, or the command was started in the background)."
+            "terminal (but, for example, a pipe or a file)."
         )
         raise UsageError(message)
     name = os.environ.get("TERM", "")

@@ -96,7 +96,7 @@ function down(refused) {
   if (refused) {
     say("Open the address that grader open has printed", "ends");
   } else {
-    say("Not running: type grader open", "ends");
+    say("Not connected: type grader open", "ends");
   }
 }
 

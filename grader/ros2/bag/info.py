@@ -21,7 +21,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_bag(parser)
     parser.add_argument("-t", "--topic-name", action="store_true", help="print only the names of the topics")
-    parser.add_argument("-v", "--verbose", action="store_true", help="print more about services")
+    parser.add_argument("-v", "--verbose", action="store_true", help="print more about services (no effect)")
 
 
 def run(args: argparse.Namespace) -> int:

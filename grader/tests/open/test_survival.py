@@ -82,7 +82,7 @@ def test_the_page_survives_what_people_do(own: Course, browser: Browser) -> None
     # The server is killed and started again. The address and the token stay the same, and the open page continues.
     before = own.url
     assert own.end(signal.SIGKILL) == -signal.SIGKILL
-    page.get_by_text("Not running: type grader open").wait_for()
+    page.get_by_text("Not connected: type grader open").wait_for()
     assert own.start() == before
     page.get_by_text("Live", exact=True).wait_for()
     own.save()

@@ -191,7 +191,7 @@ def test_a_simulator_that_was_started_again_is_found_by_the_same_tab(browser: Br
     first = fresh.start(VIEW, "Spawning turtle")
     tab = opened(browser, url(first))
     assert first.stop() == 0
-    tab.get_by_role("status").get_by_text("Not running").wait_for()
+    tab.get_by_role("status").get_by_text("Not connected").wait_for()
     second = fresh.start(VIEW, "Spawning turtle")
     tab.get_by_role("status").get_by_text("Live").wait_for()
     assert url(second) == url(first)

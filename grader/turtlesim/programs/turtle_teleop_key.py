@@ -33,8 +33,8 @@ The arrow keys drive the turtle, for one second per key press.
     C V B
 F stops turning, Q quits."""
 _NO_TERMINAL = (
-    "turtle_teleop_key reads keys from a terminal, but its standard input is not a terminal (it is a pipe or a file, "
-    "or the program was started in the background). Start the program in a separate terminal: "
+    "turtle_teleop_key reads keys from a terminal, but its standard input is not a terminal (but, for example, a pipe "
+    "or a file). Start the program in a separate terminal: "
     "ros2 run turtlesim turtle_teleop_key"
 )
 _DISCOVERY_S = 2.0

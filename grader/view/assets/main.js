@@ -30,7 +30,7 @@ function lost(refused) {
     say("Wrong address", "ends");
     simulator.tell("This is not the address of the running simulator. Open the address that the simulator has printed.");
   } else {
-    say("Not running", "ends");
+    say("Not connected", "ends");
     simulator.tell("This page has no connection to the simulator. If the simulator has stopped, start it again with "
       + "--view. This page then continues.");
   }

@@ -51,7 +51,7 @@ function hear(news) {
 
 function lost(refused) {
   if (refused) say("Wrong address", "ends", "This is not the address of the running command. Open the address that the command has printed.");
-  else say("Not running", "ends", "This page has no connection to the command. If the command has stopped, start it "
+  else say("Not connected", "ends", "This page has no connection to the command. If the command has stopped, start it "
     + "again. This page then continues.");
 }
 

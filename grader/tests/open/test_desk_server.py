@@ -1,0 +1,48 @@
+"""The responses to the actions of a page."""
+
+from __future__ import annotations
+
+import asyncio
+import errno
+import json
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from grader.errors import UsageError
+from grader.open.desk_server import DeskServer
+from grader.view.guard import Door
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+class Asked:
+    """A request with a valid token and an empty body."""
+
+    headers: Mapping[str, str] = {"x-course-token": "token"}
+    path_params: Mapping[str, str] = {"name": "act"}
+
+    async def stream(self) -> Any:  # noqa: ANN401
+        yield b"{}"
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "problem"),
+    [
+        (UsageError("The step does not exist."), 409, "The step does not exist."),
+        (OSError(errno.ENOSPC, "full", "/state"), 500, "The disk is full for /state"),
+        (ValueError("odd"), 500, "Internal error in the grader, not a problem with your work: ValueError: odd."),
+        (TimeoutError("odd"), 500, "The system did not allow"),
+    ],
+)
+def test_an_error_of_an_action_is_not_reported_as_one_of_the_request(
+    error: Exception, status: int, problem: str
+) -> None:
+    def act(_: Mapping[str, Any]) -> object:
+        raise error
+
+    server: Any = DeskServer(None, None, Door("token"), None, {"act": act}, None)  # type: ignore[arg-type]
+    made = asyncio.run(server._act(Asked()))
+    assert made.status_code == status
+    assert problem in json.loads(made.body)["problem"]
