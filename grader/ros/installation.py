@@ -239,10 +239,10 @@ def _users_path(ros: Ros, env: Mapping[str, str]) -> str:
 
 
 def _sourced(env: Mapping[str, str]) -> Ros | None:
-    if env.get("ROS_DISTRO") != DISTRO:
-        return None
-    searched = [Path(p) for p in env.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
-    prefix = next((p for p in searched if _has(p, "rclpy") and p != Path(sys.prefix)), None)
+    path = env.get("AMENT_PREFIX_PATH", "") if env.get("ROS_DISTRO") == DISTRO else ""
+    others = (Path(p) for p in path.split(os.pathsep) if p and Path(p) != Path(sys.prefix))
+    # The .venv of another clone of the course has a course-setup.json.
+    prefix = next((p for p in others if _has(p, "rclpy") and not (p / "course-setup.json").exists()), None)
     if prefix is None:
         return None
 

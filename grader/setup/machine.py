@@ -88,12 +88,12 @@ class SourcedRos(NamedTuple):
 
 
 def sourced_ros(env: Mapping[str, str], ours: Path) -> Optional[SourcedRos]:
-    """Return the sourced ROS 2 Jazzy, or None. `ours`, the prefix of the wheels, is ignored."""
+    """Return the sourced ROS 2 Jazzy, or None. `ours`, the prefix of the wheels, and other clones are ignored."""
     if env.get("ROS_DISTRO") != "jazzy":
         return None
     for prefix in map(Path, clean(env).get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
         index = prefix / "share/ament_index/resource_index/packages"
-        if prefix == ours or not (index / "rclpy").is_file():
+        if prefix == ours or (prefix / "course-setup.json").is_file() or not (index / "rclpy").is_file():
             continue
         for minor in range(OLDEST[1], NEWEST[1] + 1):
             if (prefix / f"lib/python3.{minor}/site-packages/rclpy").is_dir():

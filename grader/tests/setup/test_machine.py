@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.common.package_managers import MANAGERS
+from grader.ros.installation import find_ros
 from grader.setup import machine
 from grader.setup.machine import Python, SourcedRos
 
@@ -243,6 +244,21 @@ def test_our_own_wheels_are_not_a_sourced_ros(tmp_path: Path) -> None:
     fake_ros(tmp_path, "rclpy")
     env = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": str(tmp_path)}
     assert machine.sourced_ros(env, tmp_path) is None
+
+
+def test_the_environment_of_another_clone_is_not_a_sourced_ros(tmp_path: Path) -> None:
+    fake_ros(tmp_path / "clone/.venv", "rclpy")
+    fake_ros(tmp_path / "jazzy", "rclpy")
+    env = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": f"{tmp_path}/clone/.venv:{tmp_path}/jazzy"}
+    (tmp_path / "clone/.venv/course-setup.json").write_text("{}")
+    (tmp_path / "jazzy/share/rclpy").mkdir(parents=True)
+    (tmp_path / "jazzy/share/rclpy/package.xml").write_text("<package><version>7.1.5</version></package>")
+    found = machine.sourced_ros(env, tmp_path / ".venv")
+    assert found is not None
+    assert found.prefix == str(tmp_path / "jazzy")
+    assert find_ros(env).prefix == tmp_path / "jazzy"
+    alone = {**env, "AMENT_PREFIX_PATH": f"{tmp_path}/clone/.venv"}
+    assert machine.sourced_ros(alone, tmp_path / ".venv") is None
 
 
 # --- the platform ---
