@@ -121,9 +121,11 @@ def _places(evidence: Evidence, params: Spawns, calls: list[Call], expected: str
 def places_differ(evidence: Evidence, params: PlacesDiffer) -> Finding:
     """The places of the turtles differ from their places in another trial of the same node."""
     expected = "Each time the node starts, the turtles are in different places."
-    calls = [_spawns(each) for each in (evidence, evidence.from_trial(params.other))]
+    views = (evidence, evidence.from_trial(params.other))
+    calls = [[call for call in _spawns(each) if str(call.request["name"]).startswith(params.name)] for each in views]
     if not all(calls):
-        return Finding(Status.SKIPPED, "Not judged, because the node did not spawn turtles in both trials.")
+        why = f"the node did not spawn turtles named {shorten(params.name)}... in both trials"
+        return Finding(Status.SKIPPED, f"Not judged, because {why}.")
     now, before = ([(float(call.request["x"]), float(call.request["y"])) for call in made] for made in calls)
     if now[: len(before)] == before[: len(now)]:
         name = shorten(str(calls[0][0].request["name"]))

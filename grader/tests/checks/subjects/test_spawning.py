@@ -88,6 +88,8 @@ def test_places_that_are_the_same_each_time_are_not_random() -> None:
     assert diagnosis(finding) == "target-place"
     assert "x=2.00, y=3.00 both times" in finding.observed
     assert found(PLACES_DIFFER, given(calls=[]), other=twice.trial.id).status is Status.SKIPPED
+    other = found(PLACES_DIFFER, twice, other=twice.trial.id, name="prey")
+    assert other.observed == "Not judged, because the node did not spawn turtles named prey... in both trials."
 
 
 ALL = [spawn(0.5, name, *place) for name, place in PLACES.items()]
@@ -215,4 +217,6 @@ def test_places_are_compared_with_those_of_another_trial() -> None:
         assert ("The node was started twice, and target1 was at x=2.00, y=3.00 both times." in reported) == is_same
         assert (reported.strip() == "Each time the node starts, the turtles are in different places.") != is_same
     none = replace(both, runs={same.trial.id: same.run, "other": given(calls=[]).run})
-    assert "the node did not spawn turtles in both trials." in told(found(PLACES_DIFFER, none, other="other"))
+    assert "the node did not spawn turtles named target... in both trials." in told(
+        found(PLACES_DIFFER, none, other="other")
+    )
