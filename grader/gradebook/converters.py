@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import shutil
 import sys
 import tempfile
 from datetime import datetime
@@ -63,10 +64,25 @@ class BoundedAutograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore
     def init_destination(self, assignment_id: str, student_id: str) -> bool:
         """Initialize the destination as nbgrader's method does, and return its result.
 
-        If the submission time is invalid, only this submission fails.
+        If the submission time is invalid, only this submission fails. A destination of a run that was killed is
+        removed, because nbgrader would skip this submission.
         """
         read(readable.time_of, Path(self._format_source(assignment_id, student_id)))
-        return bool(super().init_destination(assignment_id, student_id))
+        dest = Path(self._format_dest(assignment_id, student_id))
+        self._mark = dest.with_name(f".{dest.name}.unfinished")
+        if self._mark.exists() and dest.exists():
+            self.log.warning("Removing the unfinished assignment of an earlier run: %s", tree.shown(str(dest)))
+            shutil.rmtree(dest)
+        begins = bool(super().init_destination(assignment_id, student_id))
+        if begins:
+            self._mark.parent.mkdir(parents=True, exist_ok=True)
+            self._mark.touch()
+        return begins
+
+    def run_post_convert_hook(self) -> None:
+        """Run nbgrader's hook, and record that this submission is finished."""
+        super().run_post_convert_hook()
+        self._mark.unlink()
 
 
 class BoundedNotebook(NotebookExporter):

@@ -270,6 +270,8 @@ def _scores_in(notebook: Path) -> dict[str, float | None]:
 def _kernel_score(cell: Any) -> float | None:  # noqa: ANN401 - nbformat's NotebookNode
     from nbgrader.utils import determine_grade
 
+    if cell.cell_type == "code" and cell.get("execution_count") is None:
+        return None  # the kernel has not run this cell, for which nbgrader would give full points
     try:
         score: float | None = determine_grade(cell)[0]
     except (ValueError, AttributeError, KeyError, TypeError):

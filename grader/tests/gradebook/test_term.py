@@ -8,6 +8,7 @@ from __future__ import annotations
 import datetime as dt
 import getpass
 import json
+import re
 import shutil
 from typing import TYPE_CHECKING
 
@@ -147,6 +148,21 @@ def test_a_short_term(term: Term) -> None:
     before = term.exported()
     assert before["slow"] == (67.5, 0, 67.5)
     assert "0 scores of 3 submissions changed. 1 manual grade kept" in term.run("grader", "gradebook", "sync", STEP)
+    assert term.exported() == before
+
+    # nbgrader would skip a submission whose autograding was killed.
+    graded = term.root / "class/autograded/slow" / STEP
+    notebook, mark = graded / f"{STEP}.ipynb", graded.with_name(f".{STEP}.unfinished")
+    assert not mark.exists()
+    whole = notebook.read_text("utf-8")
+    notebook.write_text(re.sub(r'"execution_count": \d+', '"execution_count": null', whole))
+    assert "slow 03-circle-publisher topic: kernel nothing, grader 10" in term.run("grader", "gradebook", "compare")
+    mark.touch()
+    assert "Removing the unfinished assignment" in term.run("autograde", STEP)
+    assert not mark.exists()
+    assert '"execution_count": 1' in notebook.read_text("utf-8")
+    assert "1 manual grade kept" in term.run("grader", "gradebook", "sync", STEP)
+    assert "slow" not in term.run("grader", "gradebook", "compare")
     assert term.exported() == before
 
 
