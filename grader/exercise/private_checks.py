@@ -4,7 +4,8 @@ Such a file modifies the exercise.toml of the course:
 
     schema = 2
     [[check]]       If the id is in the course, these keys override those of the course's check (all of its keys if the
-                    kind differs). A new id adds a check. The check is hidden unless it has `hidden = false`.
+                    kind differs). A new id adds a check. A check that is new, or that judges something else than the
+                    course's check, is hidden unless it has `hidden = false`.
     [[trial]]       A trial is changed or added in the same way, by its id.
 """
 
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
     from grader.exercise.model import Exercise
 
 ALLOWED = ("schema", "check", "trial")
+_SHOWN = frozenset({"points", "title", "needs"})
+"""The keys that a private check can change without being hidden, since they are not part of what the check judges."""
 
 
 @dataclass(frozen=True)
@@ -109,9 +112,18 @@ def merge(public: Mapping[str, Any], private: Mapping[str, Any], name: str) -> d
         message = f"{name}: {mistake}. A file of private checks may contain {a_list(ALLOWED)}."
         raise UsageError(message)
     trials = _laid_over(list(public.get("trial", [])), _tables(private, "trial", name))
+    checks = expand(public.get("check", []), trials)
+    known = {each.get("id"): each for each in checks}
     own = expand(_tables(private, "check", name), trials)
-    hidden = [{"hidden": True, **each} for each in own]
-    return {**public, "trial": trials, "check": _laid_over(expand(public.get("check", []), trials), hidden)}
+    above = [{"hidden": True, **each} if _is_secret(each, known.get(each.get("id"))) else each for each in own]
+    return {**public, "trial": trials, "check": _laid_over(checks, above)}
+
+
+def _is_secret(private: Mapping[str, Any], public: Mapping[str, Any] | None) -> bool:
+    """Return whether a private check is new, or judges something else than the course's check with the same id."""
+    if public is None:
+        return True
+    return any(value != public.get(key) for key, value in private.items() if key not in _SHOWN)
 
 
 def _tables(private: Mapping[str, Any], key: str, name: str) -> list[dict[str, Any]]:

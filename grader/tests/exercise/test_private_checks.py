@@ -73,6 +73,23 @@ def test_what_is_private_is_hidden_unless_it_says_not() -> None:
     assert hidden == {"rate", "secret-radius"}
 
 
+@pytest.mark.parametrize(
+    ("keys", "hidden"),
+    [
+        ("points = 40", False),
+        ('points = 40\ntitle = "Mine"\nneeds = ["start"]', False),
+        ('kind = "rate"\nrate_hz = 2.0', False),  # as in the course
+        ("points = 40\nhidden = true", True),
+        ("rate_hz = 3.0", True),  # the number may be secret
+        ("rate_hz = 3.0\nhidden = false", False),
+        ('kind = "builds"\npoints = 2', True),
+    ],
+)
+def test_a_check_that_judges_the_same_as_before_stays_visible(keys: str, hidden: bool) -> None:
+    checks = {check.id: check for check in merged(f'schema = 2\n[[check]]\nid = "rate"\n{keys}').checks}
+    assert {check.id for check in checks.values() if check.hidden} == ({"rate"} if hidden else set())
+
+
 def test_both_files_are_part_of_the_digest() -> None:
     digests = {load_exercise(PUBLIC).digest, merged(PRIVATE).digest, merged(PRIVATE + "\n").digest}
     assert len(digests) == 3
