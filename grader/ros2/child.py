@@ -48,6 +48,7 @@ def run_child(command: Sequence[str]) -> int:
     try:
         process = subprocess.Popen(command, preexec_fn=prepare)
     except (OSError, subprocess.SubprocessError) as error:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
         message = (
             f"{command[0]} could not be started: {getattr(error, 'strerror', error)}. Is the interpreter "
             "in the first line of the file installed?"

@@ -72,6 +72,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.timeout(0))  # such a test may take hours
 
 
+@pytest.fixture(autouse=True)
+def _no_blocked_signals() -> Iterator[None]:
+    """Check that no test leaves signals blocked, which all later child processes of this process would inherit."""
+    yield
+    left = signal.pthread_sigmask(signal.SIG_SETMASK, ())
+    assert not left, f"this test leaves signals blocked: {left}"
+
+
 @pytest.fixture(scope="session")
 def in_ros(tmp_path_factory: pytest.TempPathFactory) -> InRos:
     """Processes with ROS 2 and the turtlesim interfaces. The interfaces are built on first use."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
@@ -9,6 +10,7 @@ import pytest
 
 from grader.ros.failure import Ros2Error
 from grader.ros2 import run
+from grader.ros2.child import run_child
 from grader.tests.pretended import mounted_noexec
 
 if TYPE_CHECKING:
@@ -64,3 +66,10 @@ def test_a_missing_interpreter_is_not_reported_as_the_prefix(tmp_path: Path, mon
     args.prefix = "no-such-command"
     with pytest.raises(Ros2Error, match="the command 'no-such-command' was not found"):
         run.run(args)
+
+
+def test_signals_are_not_blocked_after_a_program_that_cannot_be_started() -> None:
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ())
+    with pytest.raises(Ros2Error, match="/no/such/program could not be started: No such file"):
+        run_child(["/no/such/program"])
+    assert signal.pthread_sigmask(signal.SIG_BLOCK, ()) == before
