@@ -125,6 +125,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "away-from-goal": "the turtle drives away from the goal",
         "not-there": "the turtle does not reach the goal",
         "goes-on": "the turtle drives past the goal",
+        "long-way-round": "the turtle turns towards the goal the long way round",
         "still-moving": "the turtle does not stop at the end",
         "drives-on": "the turtle continues after the figure is complete",
     },

@@ -33,5 +33,7 @@ OF_CATCHING: dict[str, dict[Diagnosis, str]] = {
         "catch-again": "the node tries to catch the same target repeatedly",
         "not-driven": "the turtle is moved, or a target is removed, by a call that is not allowed",
         "other-node-ended": "the trial ended because the other node ended",
+        "not-forgotten": "the node does not forget a target that is no longer announced",
+        "service-not-ready": "the node calls a service that does not exist yet, so the request is lost",
     },
 }

@@ -113,6 +113,7 @@ Diagnosis = Literal[
     "away-from-goal",
     "not-there",
     "goes-on",
+    "long-way-round",
     "still-moving",
     "drives-on",
     # Log lines

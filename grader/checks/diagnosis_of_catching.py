@@ -29,4 +29,6 @@ DiagnosisOfCatching = Literal[
     "catch-again",
     "not-driven",
     "other-node-ended",
+    "not-forgotten",
+    "service-not-ready",
 ]

@@ -82,9 +82,13 @@ def moved_targets(recording: Recording) -> list[Track]:
 
 
 def caught(recording: Recording) -> list[Track]:
-    """Return the targets that were removed before SIGINT, in the order of their removal."""
+    """Return the targets that were removed before SIGINT, in the order of their removal.
+
+    A target that the trial itself removed does not count.
+    """
     until = activity.end_s(recording)
+    tracks = (track for track in recording.tracks if track.turtle not in recording.withdrawn)
     return sorted(
-        (track for track in recording.tracks if track.gone_s is not None and track.gone_s <= until),
+        (track for track in tracks if track.gone_s is not None and track.gone_s <= until),
         key=lambda track: track.gone_s or 0.0,
     )

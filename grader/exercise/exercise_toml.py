@@ -7,10 +7,11 @@ The keys in `schema = 2`:
   the checks that the starting point must fail).
 - `[numbers]` has file (the name of a TOML file in the package), and lists of possible values. Each student gets one
   value from each list. In a `[[check]]`, the value `{ own = "radius_m" }` stands for the student's own value.
-- `[[trial]]` has id, executable, node, duration_s, start, rename, pose_every, pose_from_s, answers_after_s, targets and
-  alone_s. A `[[trial]]` whose node runs in another trial has id, executable, node and beside. `[[trial.drive]]` has
-  from_s, linear_x_m_s and angular_z_rad_s (one number, or the two limits of a random number). `[[trial.call]]` has
-  at_s, service, type and request (a table with fields). `[[trial.set]]` has at_s, parameter, value and `also`.
+- `[[trial]]` has id, executable, node, duration_s, start, rename, pose_every, pose_from_s, answers_after_s, targets,
+  withdraws, catch_from_s and alone_s. A `[[trial]]` whose node runs in another trial has id, executable, node and
+  beside. `[trial.start_pose]` has x_m, y_m and theta_rad, and `[[trial.drive]]` has from_s, linear_x_m_s and
+  angular_z_rad_s (each is one number, or the two limits of a random number). `[[trial.call]]` has at_s, service, type
+  and request (a table with fields). `[[trial.set]]` has at_s, parameter, value and `also`.
   `[trial.parameters]` and `[trial.params_file]` map the names of parameters to their values.
 - A `[[trial]]` without a simulator has id and one of these groups: function and `[[trial.points]]`; executable and
   `[[trial.bag]]` (both in calls_toml.py); executable, node, duration_s and `[trial.tests]` (tests_toml.py).

@@ -63,23 +63,34 @@ class CallInput:
 
 
 @dataclass(frozen=True)
+class StartLimits:
+    """The limits of a random start pose: x and y (m) and the heading theta (rad)."""
+
+    x_m: tuple[float, float]
+    y_m: tuple[float, float]
+    theta_rad: tuple[float, float]
+
+
+@dataclass(frozen=True)
 class Scenario:
     """The events of a trial that lasts `duration_s` (s) on its clock and ends with SIGINT.
 
-    If `anywhere` is set, the start pose is random even without a seed. `rename` contains remapping rules for the
-    simulator, such as "/turtle1/pose:=/where". The pose and the colour of a turtle are published every `pose_every`
-    frames. The first pose of turtle1 is published at `pose_from_s` (s), as if the simulator had started late. Services
-    respond `answers_after_s` (s) after a call. The node starts with `parameters` on its command line and with
-    `params_file` in a parameter file.
+    If `anywhere` is set, the start pose is random even without a seed. With `start_limits`, it is random within these
+    limits. `rename` contains remapping rules for the simulator, such as "/turtle1/pose:=/where". The pose and the
+    colour of a turtle are published every `pose_every` frames. The first pose of turtle1 is published at `pose_from_s`
+    (s), as if the simulator had started late. Services respond `answers_after_s` (s) after a call. The node starts with
+    `parameters` on its command line and with `params_file` in a parameter file.
 
     The simulator adds `targets` turtles at random places, and the trial itself runs the node that announces these
-    turtles (grader/trial/target_keeper.py). If `alone_s` is set, the trial ends early once the other turtles are gone
-    and turtle1 has been alone for this long (s).
+    turtles (grader/trial/target_keeper.py). If `withdraws` is set, this node removes another target after the first
+    catch. Its service exists from `catch_from_s` (s) on, or from when turtle1 has been near a target. If `alone_s` is
+    set, the trial ends early once the other turtles are gone and turtle1 has been alone for this long (s).
     """
 
     duration_s: float
     drives: tuple[Drive, ...] = ()
     anywhere: bool = False
+    start_limits: StartLimits | None = None
     rename: tuple[str, ...] = ()
     pose_every: int = 1
     pose_from_s: float = 0.0
@@ -88,6 +99,8 @@ class Scenario:
     parameters: Mapping[str, Setting] = field(default_factory=dict)
     params_file: Mapping[str, Setting] = field(default_factory=dict)
     targets: int = 0
+    withdraws: bool = False
+    catch_from_s: float = 0.0
     alone_s: float | None = None
 
 

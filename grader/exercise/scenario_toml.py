@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from grader.common.words import shorten
 from grader.exercise.calls_toml import read_calls
-from grader.exercise.model import CallInput, Drive, Scenario, TrialSpec
+from grader.exercise.model import CallInput, Drive, Scenario, StartLimits, TrialSpec
 from grader.exercise.tests_toml import read_tests
 
 if TYPE_CHECKING:
@@ -33,6 +34,10 @@ MAX_DURATION_S = 600.0
 MOST_TARGETS = 5
 """The maximum number of targets. For more targets, target_places.py may find no places for which the nearest-first
 order is unambiguous."""
+FEWEST_TO_WITHDRAW = 3
+"""The minimum number of targets if the trial withdraws one of them."""
+FIELD_M = 11.0
+"""The largest coordinate of a start pose (m)."""
 MAX_SPEED = 10.0
 """The maximum speed (m/s, rad/s)."""
 
@@ -104,6 +109,7 @@ def _scenario(table: Table, node: str) -> Scenario:
         duration_s=table.number("duration_s", 0.1, MAX_DURATION_S, f"from 0.1 to {MAX_DURATION_S:g} (s)"),
         drives=tuple(_drive(each) for each in table.tables("drive")),
         anywhere=start == "anywhere",
+        start_limits=_start_limits(table.table("start_pose")) if "start_pose" in table.values else None,
         rename=table.strings("rename"),
         pose_every=int(table.number("pose_every", 1, 1000, "a number of frames from 1 to 1000", default=1)),
         pose_from_s=table.number("pose_from_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)", default=0.0),
@@ -116,11 +122,23 @@ def _scenario(table: Table, node: str) -> Scenario:
         if "alone_s" in table.values
         else None,
         targets=int(table.number("targets", 0, MOST_TARGETS, f"a number from 0 to {MOST_TARGETS}", default=0)),
+        withdraws=table.flag("withdraws"),
+        catch_from_s=table.number(
+            "catch_from_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)", default=0.0
+        ),
     )
+    if scenario.withdraws and scenario.targets < FEWEST_TO_WITHDRAW:
+        table.problem(f'"withdraws" needs "targets" to be at least {FEWEST_TO_WITHDRAW}.')
     for rule in scenario.rename:
         if not REMAP.fullmatch(rule):
             table.problem(f'"rename" contains "{shorten(rule)}"; a rule has the form "/old/name:=/new/name".')
     return scenario
+
+
+def _start_limits(table: Table) -> StartLimits:
+    limits = StartLimits(table.limits("x_m", FIELD_M), table.limits("y_m", FIELD_M), table.limits("theta_rad", math.pi))
+    table.finish()
+    return limits
 
 
 def _drive(table: Table) -> Drive:

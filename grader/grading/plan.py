@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from grader.checks.kinds import KINDS
 from grader.grading.clock import stops_at_doubt
 from grader.trial.inputs import draw_inputs
-from grader.trial.start_pose import start_pose
+from grader.trial.start_pose import start_pose, start_within
 from grader.trial.trial import Plan
 
 if TYPE_CHECKING:
@@ -34,7 +34,10 @@ def plan_of(evidence: Evidence, clock: ClockName, *, choice: ClockChoice, seed: 
     checks = [check for check in evidence.exercise.checks if check.trial in ids]
     radii = [KINDS[check.kind].radius(evidence, check.params) for check in checks]
     radius = max((each for each in radii if each is not None), default=USUAL_RADIUS_M)
-    start = start_pose(DEFAULT_SEED if seed is None and scenario.anywhere else seed, radius)
+    if scenario.start_limits is not None:
+        start = start_within(scenario.start_limits, DEFAULT_SEED if seed is None else seed)
+    else:
+        start = start_pose(DEFAULT_SEED if seed is None and scenario.anywhere else seed, radius)
     return Plan(
         clock=clock,
         start=start,

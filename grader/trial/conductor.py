@@ -167,6 +167,8 @@ def _conduct(order: dict[str, Any], answers: IO[str], nodes: socket.socket | Non
             offers=recorder.offers,
             pens=trial.turtles.pens,
             tracks=trial.turtles.tracks,
+            withdrawn=() if trial.keeper is None else trial.keeper.withdrawn,
+            catch_from_s=None if trial.keeper is None else trial.keeper.catch_from_s,
             doubts=doubts,
             stalls=trial.unreliable or tuple(each for each in trial.stalls if not _own_doing(each, node, trial)),
             crowded=trial.crowded(),

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from grader.trial.start_pose import MARGIN_M
-from grader.trial.target_places import Target, draw_targets
+from grader.trial.target_places import Target, draw_targets, to_withdraw
 from grader.turtlesim.turtle import FRAME_S, SIDE_M, Start, Turtle
 
 if TYPE_CHECKING:
@@ -37,8 +37,9 @@ class Inputs:
     """The inputs of a trial.
 
     Each row of `drives` contains a start time (s) and the speeds from that time on (m/s, rad/s). `arguments` are
-    additional ROS arguments of the node, and `params_file` is the text of a file with parameters. All other fields have
-    the same meaning as in Scenario.
+    additional ROS arguments of the node, and `params_file` is the text of a file with parameters. After the first
+    catch, the trial withdraws the first target in `withdrawn` that is left. All other fields have the same meaning as
+    in Scenario.
     """
 
     drives: tuple[tuple[float, float, float], ...] = ()
@@ -51,6 +52,8 @@ class Inputs:
     params_file: str = ""
     targets: tuple[Target, ...] = ()
     alone_s: float | None = None
+    withdrawn: tuple[str, ...] = ()
+    catch_from_s: float = 0.0
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Inputs:
@@ -62,7 +65,7 @@ class Inputs:
             "drives": drives,
             "calls": calls,
             "targets": targets,
-            **{name: tuple(data[name]) for name in ("rename", "arguments")},
+            **{name: tuple(data[name]) for name in ("rename", "arguments", "withdrawn")},
         }
         return cls(**{**data, **lists})
 
@@ -75,6 +78,7 @@ class Inputs:
 def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
     """Return the inputs of a trial, with random speeds that keep the turtle at least 0.5 m away from every wall."""
     draw = random.Random(seed)
+    targets = draw_targets(scenario.targets, start, seed) if scenario.targets else ()
     inputs = Inputs(
         rename=scenario.rename,
         pose_every=scenario.pose_every,
@@ -84,7 +88,9 @@ def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
         arguments=tuple(part for each in _settings(scenario.parameters) for part in ("-p", each)),
         params_file=_params_file(scenario.params_file),
         alone_s=scenario.alone_s,
-        targets=draw_targets(scenario.targets, start, seed) if scenario.targets else (),
+        targets=targets,
+        withdrawn=to_withdraw(targets, start) if scenario.withdraws else (),
+        catch_from_s=scenario.catch_from_s,
     )
     if not scenario.drives:
         return inputs

@@ -199,6 +199,10 @@ class Recording:
     """The changes to the pens, in order. A new turtle has turtlesim's default pen."""
     tracks: tuple[Track, ...] = ()
     """The tracks of the turtles other than turtle1."""
+    withdrawn: tuple[str, ...] = ()
+    """The targets that the trial itself removed, although no node had caught them."""
+    catch_from_s: float | None = None
+    """The time from which the trial's own service /catch existed (s), or None if it never existed."""
     graph_dropped: int = 0
     """The number of topics, nodes, endpoints and snapshots of the graph that were not kept because there were too
     many."""

@@ -96,6 +96,7 @@ def from_json(data: dict[str, Any], payloads: Iterable[bytes] | None = None) -> 
                 Track(track["turtle"], tuple(tuple(row) for row in track["rows"]), track["gone_s"])
                 for track in data.get("tracks", ())
             ),
+            "withdrawn": tuple(data.get("withdrawn", ())),
             "doubts": tuple(data["doubts"]),
             "stalls": tuple((begin, end) for begin, end in data["stalls"]),
         }

@@ -92,7 +92,7 @@ class Simulation:
         self._in_company_s: float | None = None
         leave_out_events(self.recorder)
         leave_out_events(self.turtlesim)  # before there are other turtles, which can be removed
-        self.keeper = TargetKeeper(self.turtlesim, inputs.targets, self._calls.answered) if inputs.targets else None
+        self.keeper = TargetKeeper(self.turtlesim, inputs, self._calls.answered) if inputs.targets else None
         self._nodes: tuple[Node, ...] = (self.turtlesim, self.recorder)
         self._nodes += (self.keeper,) if self.keeper is not None else ()
         self.executor = SingleThreadedExecutor()

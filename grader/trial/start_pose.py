@@ -1,12 +1,16 @@
-"""The start pose of the turtle: the usual pose of turtlesim, or a random pose from a seed."""
+"""The start pose of the turtle: the usual pose of turtlesim, or a random pose from a seed, possibly within limits."""
 
 from __future__ import annotations
 
 import math
 import random
+from typing import TYPE_CHECKING
 
 from grader.trial.recording import Pose
 from grader.turtlesim.turtle import SIDE_M, Start
+
+if TYPE_CHECKING:
+    from grader.exercise.model import StartLimits
 
 MARGIN_M = 0.5
 """The minimum distance between the ideal path and a wall (m)."""
@@ -29,3 +33,9 @@ def start_pose(seed: int | None, radius_m: float) -> Pose:
         centres = [(x + side * across[0], y + side * across[1]) for side in (1, -1)]
         if all(low <= value <= high for centre in centres for value in centre):
             return Pose(round(x, 3), round(y, 3), round(theta, 3))
+
+
+def start_within(limits: StartLimits, seed: int) -> Pose:
+    """Return a random start pose within these limits."""
+    draw = random.Random(seed)
+    return Pose(*(round(draw.uniform(*pair), 3) for pair in (limits.x_m, limits.y_m, limits.theta_rad)))

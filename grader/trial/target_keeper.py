@@ -5,6 +5,7 @@ The node of the trial receives the names on /targets twice a second, and calls /
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from rclpy.node import Node
@@ -16,46 +17,89 @@ from grader.turtlesim.turtle import Start
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from grader.trial.target_places import Target
+    from grader.trial.inputs import Inputs
     from grader.turtlesim.node import TurtlesimNode
 
 NAME = "spawner"
 TOPIC = "/targets"
 SERVICE = "/catch"
 ANNOUNCED_EVERY_S = 0.5
+NEAR_M = 1.0
+LATE_S = 1.5
+"""If the service is late, it exists from LATE_S (s) after turtle1 has first come within NEAR_M (m) of a target. In this
+time, every node that is fast enough to catch all targets also comes within its reach, and calls the service."""
 
 
 class TargetKeeper(Node):
-    """Adds the targets, announces the remaining targets, and removes each target that a node caught."""
+    """Adds the targets, announces the remaining targets, and removes each target that a node caught.
+
+    After the first catch, it also withdraws one of `inputs.withdrawn`, as if another node had caught it.
+    """
 
     def __init__(
         self,
         turtlesim: TurtlesimNode,
-        targets: tuple[Target, ...],
+        inputs: Inputs,
         on_call: Callable[[str, str, Any, Any, float], object],
     ) -> None:
         """Create the node. `on_call` is called for each service call, as in `grader.turtlesim.interface.Hooks`."""
         super().__init__(NAME)
         self._turtlesim = turtlesim
+        self._inputs = inputs
         self._on_call = on_call
         self._publisher = self.create_publisher(String, TOPIC, 10)
-        self.create_service(Kill, SERVICE, self._caught)
-        self._left = [target.name for target in targets]
+        self._left = [target.name for target in inputs.targets]
         self._next_s = 0.0
-        for target in targets:
+        self._near_s: float | None = None
+        self._start = self._place()
+        self.withdrawn: tuple[str, ...] = ()
+        self.catch_from_s: float | None = None
+        """The time from which the service exists (s), or None if it does not exist yet."""
+        for target in inputs.targets:
             turtlesim.add_turtle(target.name, Start(target.x, target.y, 0.0))
+        if not inputs.catch_from_s:
+            self._offer(0.0)
 
     def frame(self, now_s: float) -> None:
-        """Announce the remaining targets if an announcement is due at this time (s)."""
+        """Announce the remaining targets if an announcement is due at this time (s), and offer the service if due."""
+        if self.catch_from_s is None and self._is_due(now_s):
+            self._offer(now_s)
         if now_s >= self._next_s:
             self._next_s = now_s + ANNOUNCED_EVERY_S
             self._publisher.publish(String(data=" ".join(self._left)))
 
+    def _offer(self, now_s: float) -> None:
+        self.catch_from_s = now_s
+        self.create_service(Kill, SERVICE, self._caught)
+
+    def _is_due(self, now_s: float) -> bool:
+        """Return whether a late service must exist now (s).
+
+        A node may wait for the service before it drives. Therefore, the service does not wait for a turtle that has not
+        left its start.
+        """
+        place = self._place()
+        if self._near_s is None and any(math.dist(place, (each.x, each.y)) < NEAR_M for each in self._inputs.targets):
+            self._near_s = now_s
+        was_near = self._near_s is not None and now_s >= self._near_s + LATE_S
+        return now_s >= self._inputs.catch_from_s and (was_near or place == self._start)
+
+    def _place(self) -> tuple[float, float]:
+        state = self._turtlesim.turtle_state("turtle1")
+        return (math.inf, math.inf) if state is None else (state.x, state.y)
+
     def _caught(self, request: Kill.Request, response: Kill.Response) -> Kill.Response:
         if request.name in self._left:
-            self._left.remove(request.name)
-            self._turtlesim.remove_turtle(request.name)
+            self._remove(request.name)
+            if not self.withdrawn:
+                self.withdrawn = tuple(name for name in self._inputs.withdrawn if name in self._left)[:1]
+                for name in self.withdrawn:
+                    self._remove(name)
         else:
             self.get_logger().warning(f"There is no target named [{request.name}]")
         self._on_call(SERVICE, "turtlesim/srv/Kill", request, response, 0.0)
         return response
+
+    def _remove(self, name: str) -> None:
+        self._left.remove(name)
+        self._turtlesim.remove_turtle(name)

@@ -2,7 +2,7 @@
 
 Places are drawn again until the order of the targets is unambiguous. If a turtle always goes to the nearest target,
 only one order must be possible. Any other rule (by name, by the distance from the start) must lead to a different
-order.
+order. All this must also be true without the target that the trial may withdraw.
 """
 
 from __future__ import annotations
@@ -65,7 +65,27 @@ def nearest_first(targets: tuple[Target, ...], start: Pose) -> tuple[Target, ...
     return tuple(order)
 
 
+def to_withdraw(targets: tuple[Target, ...], start: Pose) -> tuple[str, ...]:
+    """Return the names of the targets of which the trial withdraws the first that is left after the first catch.
+
+    A node that does not forget a withdrawn target drives to it, since other targets are farther away. There are no
+    names if there are fewer than three targets.
+    """
+    order = nearest_first(targets, start)
+    return tuple(each.name for each in order[2:0:-1]) if len(order) > 2 else ()
+
+
 def _is_clear(targets: tuple[Target, ...], start: Pose) -> bool:
+    names = to_withdraw(targets, start)
+    if not names:
+        return _is_unambiguous(targets, start)
+    left = tuple(each for each in targets if each.name != names[0])
+    order = tuple(each for each in nearest_first(targets, start) if each in left)
+    both = _is_unambiguous(targets, start) and _is_unambiguous(left, start)
+    return both and nearest_first(left, start) == order
+
+
+def _is_unambiguous(targets: tuple[Target, ...], start: Pose) -> bool:
     order = nearest_first(targets, start)
     x, y = start.x, start.y
     way_m = 0.0

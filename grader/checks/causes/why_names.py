@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import builtins
+import keyword
 import math
 import random
 import re
@@ -210,6 +211,12 @@ def _alike(scene: CrashScene, name: str) -> Cause | None:
     if name in CONSTANTS:
         text = f"In Python, the spelling is {CONSTANTS[name]}. Upper and lower case matter."
         return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, name, CONSTANTS[name]))
+    statements = [node.value for node in scene.nodes if isinstance(node, ast.Expr)]
+    if any(isinstance(each, ast.Name) and each.id == name for each in statements):
+        word = nearest(name, keyword.kwlist, alike=0.8)
+        if word is not None:
+            text = f"A line that consists of one word is usually a keyword of Python. A similar keyword exists: {word}."
+            return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, name, word))
     bound = _bound(scene) - {name}
     guess = nearest(name, bound, alike=0.8) or next((each for each in bound if sorted(each) == sorted(name)), None)
     if guess is None and _is_called(scene, name):

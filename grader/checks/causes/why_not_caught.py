@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.waiting import waits_in_callback
 from grader.checks.causes.why_not_reached import why_not_reached, wrong_turn
-from grader.checks.causes.why_silent import why_nothing
+from grader.checks.causes.why_silent import ANSWERS, why_nothing
 from grader.checks.causes.why_unasked import why_unasked
 from grader.common.lazy import np
 from grader.common.words import a_list, shorten
@@ -108,6 +108,16 @@ def _nearest_m(evidence: Evidence, track: Track) -> float:
 def _stands_still(evidence: Evidence, left: list[Track]) -> Cause:
     recording = evidence.recording
     until = activity.end_s(recording)
+    early = _called_too_early(evidence)
+    if early is not None:
+        return early
+    for track in recording.tracks:
+        if track.turtle in recording.withdrawn and distance_m(recording, track, until) <= NEAR_M:
+            text = (
+                f"The turtle stood where {shorten(track.turtle)} had been, which was no longer announced. In the "
+                "callback of the topic, forget each target whose name is not in the message."
+            )
+            return Cause("not-forgotten", text, evidence.place("create_subscription"))
     near = min(left, key=lambda track: distance_m(recording, track, until), default=None)
     if near is not None and distance_m(recording, near, until) <= NEAR_M:
         asked = [call for call in recording.calls if call.service == CATCH and call.t_s < until]
@@ -121,6 +131,31 @@ def _stands_still(evidence: Evidence, left: list[Track]) -> Cause:
         "The turtle stood still at the end. After a catch, the node must choose the nearest of the remaining targets."
     )
     return Cause("stands-still", text, evidence.place("call_async", "publish"))
+
+
+def _called_too_early(evidence: Evidence) -> Cause | None:
+    """Return the cause if the node was near a target before the trial's service existed, and never called it later.
+
+    The node must have code that calls the service, and no code that finds out whether the service exists.
+    """
+    recording = evidence.recording
+    from_s = recording.catch_from_s
+    sends = evidence.code.calls("call_async")
+    if not from_s or not sends or any(evidence.code.calls(name) for name in ANSWERS):
+        return None
+    if any(call.service == CATCH for call in recording.calls):
+        return None
+    frames = recording.frames
+    times = frames.t_s[frames.t_s <= from_s]
+    near = (t_s for t_s in times if any(distance_m(recording, each, t_s) <= NEAR_M for each in recording.tracks))
+    near_s = next(near, None)
+    if near_s is None:
+        return None
+    text = (
+        f"The turtle was near a target at {near_s:.1f} s, but {CATCH} did not exist before {from_s:.1f} s, and no call "
+        "arrived. A request to a service that does not exist is lost. Before each call, use service_is_ready."
+    )
+    return Cause("service-not-ready", text, sends[0].where)
 
 
 def _moved_m(evidence: Evidence, from_s: float) -> float:

@@ -83,10 +83,12 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
         other = next(iter(evidence.exercise.beside(evidence.trial.id)), evidence.trial)
         cause = why_killed(evidence.from_trial(other.id), uncaught, params.service)
         return failed(observed, expected, cause)
-    if len(gone) == len(tracks) >= params.turtles:
-        if len(gone) == 1:
+    left = [track for track in tracks if track not in gone and track.turtle not in recording.withdrawn]
+    if not left and len(tracks) >= params.turtles:
+        if len(tracks) == 1:
             return passed(f"The only target was caught at {gone[0].gone_s:.0f} s.")
-        return passed(f"All {len(gone)} targets were caught, the last one at {gone[-1].gone_s:.0f} s.")
+        which = f"All {len(gone)}" if len(gone) == len(tracks) else "All remaining"
+        return passed(f"{which} targets were caught, the last one at {gone[-1].gone_s:.0f} s.")
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_observed(evidence), expected)
@@ -95,7 +97,6 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
         observed = f"Only {count(len(tracks), 'target')} of {params.turtles:.0f} appeared."
     if end_observed(evidence):
         observed = f"{end_observed(evidence)} {observed}"
-    left = [track for track in tracks if track not in gone]
     finding = failed(observed, expected, why_not_caught(evidence, left))
     return unless_starved(finding, recording, off=0.1, per_s=1.0)
 

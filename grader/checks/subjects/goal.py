@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
@@ -32,6 +33,11 @@ class Goal:
     tolerance_m: float = number(0.1, above=0, about="The maximum distance from the goal at the end.")
 
 
+SWAYS, SWAYS_LEAST = 0.4, 5
+"""A turtle sways if at least this fraction of its turning commands, and at least this number of them, turn it in the
+other direction than the command before."""
+LATE_S = 1.0
+"""A turtle that came nearer to the goal in this last part of the trial (s) might have reached the goal later."""
 NEARLY_M = 1.0
 """If the turtle stops within this distance (m) of the goal, and the goal's coordinates are constants in the code, the
 node may have stopped the turtle too early."""
@@ -71,14 +77,31 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
         if end >= away[0] - MOVED_M:
             cause = "The direction to the goal is atan2(goal_y - y, goal_x - x). The direction of the turtle is theta."
             return failed(observed, expected, Cause("away-from-goal", cause, where), near_edge=near)
-        cause = "The turtle may drive too slowly near the goal, or it may turn in the wrong direction."
-        if trajectory.wall.any():
-            cause = "The turtle ran into a wall. Keep the angle between -pi and pi with atan2(sin(a), cos(a))."
-        return failed(observed, expected, Cause("not-there", cause, where), near_edge=near)
+        return failed(observed, expected, Cause("not-there", _on_the_way(evidence, params), where), near_edge=near)
     if moving is not None:
         return moving
     start = math.dist((float(trajectory.x[0]), float(trajectory.y[0])), (params.x_m, params.y_m))
     return passed(f"The turtle drove to its goal, {start:.1f} m away, and stopped.", near_edge=near)
+
+
+def _on_the_way(evidence: Evidence, params: Goal) -> str:
+    """Return how a turtle that ends nearer to the goal than it started, but not at the goal, drove."""
+    trajectory = evidence.trajectory
+    if trajectory.wall.any():
+        return "The turtle ran into a wall. Keep the angle between -pi and pi with atan2(sin(a), cos(a))."
+    turns = [command.angular[2] for command in evidence.commands if command.angular[2]]
+    changes = sum(before * after < 0 for before, after in pairwise(turns))
+    if changes >= max(SWAYS_LEAST, SWAYS * len(turns)):
+        return (
+            f"The turtle sways: {changes} of {len(turns)} commands turn it in the other direction than the command "
+            "before. It turns too far between two commands, so the factor of the error may be too large."
+        )
+    away = np.hypot(trajectory.x - params.x_m, trajectory.y - params.y_m)
+    nearest = int(away.argmin())
+    near_s = float(trajectory.t_s[max(nearest - 1, 0)])
+    if away[-1] < away[np.searchsorted(trajectory.t_s, trajectory.t_s[-1] - LATE_S)] - MOVED_M:
+        return "The turtle was still getting nearer to the goal at the end of the trial, so it needs more time."
+    return f"The turtle came within {away[nearest]:.2f} m of the goal at {near_s:.1f} s, and no nearer after that."
 
 
 def _in_code(evidence: Evidence, *numbers: float) -> bool:

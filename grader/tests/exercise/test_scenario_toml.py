@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from grader.exercise.model import StartLimits
 from grader.exercise.scenario_toml import read_trials
 from grader.exercise.tables import Table
 from grader.trial.inputs import Inputs, draw_inputs
@@ -70,9 +71,22 @@ def test_the_parameters_at_the_start_are_ros_arguments_and_a_file() -> None:
     assert Inputs.from_json(asdict(inputs)) == inputs
 
 
+def test_a_trial_may_limit_its_start_pose_and_withdraw_a_target() -> None:
+    limits = {"x_m": [4.5, 7.5], "y_m": 6.0, "theta_rad": [2.8, 3.1]}
+    scenario, problems = read(start_pose=limits, targets=3, withdraws=True, catch_from_s=4.0)
+    assert problems == []
+    assert scenario.start_limits == StartLimits((4.5, 7.5), (6.0, 6.0), (2.8, 3.1))
+    inputs = draw_inputs(scenario, Pose(5.5, 5.5, 0.0), 1)
+    assert inputs.catch_from_s == 4.0
+    assert len(inputs.withdrawn) == 2
+    assert Inputs.from_json(asdict(inputs)) == inputs
+
+
 @pytest.mark.parametrize(
     ("more", "key"),
     [
+        ({"targets": 2, "withdraws": True}, "withdraws"),
+        ({"start_pose": {"x_m": 1.0, "y_m": 2.0}}, "theta_rad"),
         ({"call": [{**CALL, "service": "pause"}]}, "service"),
         ({"call": [{**CALL, "type": "std_srvs/SetBool"}]}, "type"),
         ({"call": [{**CALL, "at_s": -1.0}]}, "at_s"),

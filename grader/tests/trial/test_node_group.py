@@ -13,7 +13,7 @@ from grader.ros.underlay import with_turtlesim
 from grader.trial.inputs import Inputs
 from grader.trial.recording import Pose, Recording
 from grader.trial.recording_json import from_json, to_json
-from grader.trial.target_places import draw_targets
+from grader.trial.target_places import Target, draw_targets
 from grader.trial.trial import Plan, Trial
 
 PACKAGE = "my_package"
@@ -67,6 +67,13 @@ node.create_subscription(String, "/targets", hear, 10)
 """
 
 
+DRIVES = """
+from geometry_msgs.msg import Twist, Vector3
+publisher = node.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+node.create_timer(0.1, lambda: publisher.publish(Twist(linear=Vector3(x=0.5))))
+"""
+
+
 def trial_of(inputs: Inputs, duration_s: float = 4.0, **bodies: str) -> Recording:
     """Return the recording of one trial in which a node with each of these bodies runs."""
     stream = io.BytesIO()
@@ -117,6 +124,24 @@ def test_the_trial_plays_the_node_that_announces_and_removes_targets() -> None:
     assert [track.turtle for track in recording.tracks if track.gone_s is not None] == names
     assert recording.own_nodes == ("/turtlesim", "/spawner")
     assert recording.sigint_t_s < 3.0  # turtle1 has been alone for long enough
+
+
+def test_after_the_first_catch_the_trial_withdraws_another_target() -> None:
+    targets = draw_targets(3, START, 1)
+    names = [target.name for target in targets]
+    recording = trial_of(Inputs(targets=targets, alone_s=0.5, withdrawn=(names[0], names[2])), catcher=CATCHER)
+    assert recording.stdout.text.splitlines()[1:] == [" ".join(names), names[1], ""]
+    assert [call.request["name"] for call in recording.calls if call.service == "/catch"] == names[:2]
+    assert (recording.withdrawn, recording.catch_from_s) == ((names[2],), 0.0)
+    assert from_json(to_json(recording)).withdrawn == recording.withdrawn
+
+
+@pytest.mark.parametrize(("drives", "from_s"), [(False, 1.0), (True, 2.7)])
+def test_a_late_service_waits_until_a_turtle_that_drives_was_near_a_target(*, drives: bool, from_s: float) -> None:
+    targets = (Target("ada", START.x + 1.5, START.y),)
+    body = CATCHER + (DRIVES if drives else "")
+    recording = trial_of(Inputs(targets=targets, alone_s=0.5, catch_from_s=1.0), catcher=body)
+    assert recording.catch_from_s == pytest.approx(from_s, abs=0.15)
 
 
 def test_the_last_command_of_a_node_arrives_and_moves_the_turtle() -> None:

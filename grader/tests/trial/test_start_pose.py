@@ -5,8 +5,9 @@ import math
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader.exercise.model import StartLimits
 from grader.trial.recording import Pose
-from grader.trial.start_pose import MARGIN_M, start_pose
+from grader.trial.start_pose import MARGIN_M, start_pose, start_within
 from grader.turtlesim.turtle import SIDE_M
 
 
@@ -30,3 +31,12 @@ def test_the_ideal_circle_of_either_side_keeps_clear_of_the_walls(seed: int, rad
 def test_a_seed_gives_the_same_start_again_and_another_one_another() -> None:
     assert start_pose(7, 2.0) == start_pose(7, 2.0)
     assert start_pose(7, 2.0) != start_pose(8, 2.0)
+
+
+@given(st.integers())
+def test_a_start_pose_is_within_its_limits(seed: int) -> None:
+    start = start_within(StartLimits((4.0, 7.0), (5.0, 5.0), (2.8, 3.1)), seed)
+    assert start == start_within(StartLimits((4.0, 7.0), (5.0, 5.0), (2.8, 3.1)), seed)
+    assert 4.0 <= start.x <= 7.0
+    assert start.y == 5.0
+    assert 2.8 <= start.theta <= 3.1

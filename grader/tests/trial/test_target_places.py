@@ -5,7 +5,16 @@ import math
 import pytest
 
 from grader.trial.recording import Pose
-from grader.trial.target_places import CLEAR_M, HIGH_M, LONGEST_M, LOW_M, Target, draw_targets, nearest_first
+from grader.trial.target_places import (
+    CLEAR_M,
+    HIGH_M,
+    LONGEST_M,
+    LOW_M,
+    Target,
+    draw_targets,
+    nearest_first,
+    to_withdraw,
+)
 
 START = Pose(5.544445, 5.544445, 0.0)
 SEEDS = range(10)
@@ -38,3 +47,18 @@ def test_other_rules_give_another_order(targets: tuple[Target, ...]) -> None:
     order = nearest_first(targets, START)
     assert [each.name for each in order] != sorted(each.name for each in targets)
     assert order != tuple(sorted(targets, key=lambda each: math.hypot(each.x - START.x, each.y - START.y)))
+
+
+def test_without_the_withdrawn_target_the_order_is_the_same_and_still_unambiguous(targets: tuple[Target, ...]) -> None:
+    order = nearest_first(targets, START)
+    first, other = to_withdraw(targets, START)
+    assert (first, other) == (order[2].name, order[1].name)
+    left = tuple(each for each in targets if each.name != first)
+    again = nearest_first(left, START)
+    assert again == tuple(each for each in order if each.name != first)
+    assert again != left
+    assert again != tuple(sorted(left, key=lambda each: math.hypot(each.x - START.x, each.y - START.y)))
+
+
+def test_nothing_is_withdrawn_from_two_targets() -> None:
+    assert to_withdraw(draw_targets(2, START, 1), START) == ()

@@ -29,7 +29,7 @@ def cause(commands: list[Timed], x: float = 9.0, from_s: float = 0.0, **changes:
     poses = Endpoint("subscription", "/draw_circle", "/far/pose", "turtlesim/msg/Pose")
     seen = graph()
     changes.setdefault("graphs", (replace(seen, endpoints=(*seen.endpoints, poses)),))
-    trial = recording(commands, tracks=(far,), **changes)
+    trial = recording(commands, tracks=(far, *changes.pop("tracks", ())), **changes)
     return why_not_caught(evidence(trial, submission({NODE_FILE: CATCHER})), [far]).text
 
 
@@ -86,3 +86,23 @@ def test_the_end_of_the_other_node_ends_the_trial(by: Any, *, found: bool) -> No
     beside = (Beside("spawner", Output(""), Output(""), ProcessEnd(by, 0, 2.0, None)),)
     said = cause(AHEAD, beside=beside, sigint_t_s=2.0)
     assert (said == "spawner exited before all targets were caught, so the trial ended.") == found
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({}, "The turtle was near a target at 2.0 s, but /catch did not exist before 4.0 s, and no call arrived."),
+        ({"catch_from_s": 0.0}, "The turtle stood beside far at the end."),
+        ({"catch_from_s": 1.5}, "The turtle stood beside far at the end."),
+        ({"calls": (catch("far"),)}, "The turtle stood beside far at the end."),
+    ],
+)
+def test_a_call_before_the_service_existed_is_told(changes: dict[str, Any], words: str) -> None:
+    assert cause(AHEAD[:24], x=7.5, **{"catch_from_s": 4.0, **changes}).startswith(words)
+
+
+def test_a_turtle_that_stands_where_a_withdrawn_target_was_is_told() -> None:
+    gone = Track("gone", ((0.0, 7.0, 5.544445, 0.0),), 1.0)
+    words = "The turtle stood where gone had been"
+    assert words in cause(AHEAD[:24], x=1.0, tracks=(gone,), withdrawn=("gone",))
+    assert words not in cause(AHEAD[:24], x=1.0, tracks=(gone,))

@@ -137,6 +137,15 @@ def test_the_targets_count_that_were_caught_before_the_end() -> None:
     assert found(CATCHES, given(NEAR, late)).status is Status.FAILED
 
 
+def test_a_target_that_the_trial_withdrew_need_not_be_caught() -> None:
+    finding = found(CATCHES, given(NEAR, at("far", 9.0, 1.4), withdrawn=("far",)), turtles=2)
+    assert (finding.status, finding.observed) == (
+        Status.PASSED,
+        "All remaining targets were caught, the last one at 1 s.",
+    )
+    assert found(CATCHES, given(NEAR, at("far", 9.0, 1.4), withdrawn=("far",)), turtles=3).status is Status.FAILED
+
+
 WESTERN = at("far", 2.0, None)
 
 

@@ -74,6 +74,22 @@ def test_a_turtle_that_is_no_nearer_in_the_end_has_driven_away_and_no_wall_is_na
     assert (nearer.diagnosis, "wall" in nearer.cause) == ("not-there", False)
 
 
+SWAY = QUARTER / 3
+SWAYING = tuple((1, 0.5, side * 10 * SWAY) for side in (0.5, *(1.0, -1.0) * 5))
+
+
+@pytest.mark.parametrize(
+    ("parts", "words"),
+    [
+        (SWAYING, "The turtle sways: 9 of 11 commands turn it in the other direction than the command before."),
+        ((ahead(1.0, 100),), "The turtle was still getting nearer to the goal at the end of the trial"),
+        ((ahead(2.0), ahead(-1.0)), "The turtle came within 2.00 m of the goal at 2.0 s, and no nearer after that."),
+    ],
+)
+def test_a_turtle_that_does_not_arrive_is_described_by_its_way(parts: tuple[Leg, ...], words: str) -> None:
+    assert words in goal(*parts, stops=False).cause
+
+
 def test_a_node_that_stops_somewhere_else_has_another_goal() -> None:
     assert "the position of the goal" in goal(ahead(3.0)).cause
     assert "the position of the goal" not in goal(ahead(3.0), stops=False).cause
