@@ -26,8 +26,9 @@ SERVICE = "/catch"
 ANNOUNCED_EVERY_S = 0.5
 NEAR_M = 1.0
 LATE_S = 1.5
-"""If the service is late, it exists from LATE_S (s) after turtle1 has first come within NEAR_M (m) of a target. In this
-time, every node that is fast enough to catch all targets also comes within its reach, and calls the service."""
+"""If the service is late, it exists from LATE_S (s) after turtle1 has first come within NEAR_M (m) of a target, or when
+turtle1 has stood still for LATE_S. In this time, every node that is fast enough to catch all targets also comes within
+its reach, and calls the service. A node may also wait for the service before it drives."""
 
 
 class TargetKeeper(Node):
@@ -51,7 +52,7 @@ class TargetKeeper(Node):
         self._left = [target.name for target in inputs.targets]
         self._next_s = 0.0
         self._near_s: float | None = None
-        self._start = self._place()
+        self._rest, self._rest_s = self._place(), 0.0
         self.withdrawn: tuple[str, ...] = ()
         self.catch_from_s: float | None = None
         """The time from which the service exists (s), or None if it does not exist yet."""
@@ -73,16 +74,14 @@ class TargetKeeper(Node):
         self.create_service(Kill, SERVICE, self._caught)
 
     def _is_due(self, now_s: float) -> bool:
-        """Return whether a late service must exist now (s).
-
-        A node may wait for the service before it drives. Therefore, the service does not wait for a turtle that has not
-        left its start.
-        """
+        """Return whether a late service must exist now (s)."""
         place = self._place()
+        if place != self._rest:
+            self._rest, self._rest_s = place, now_s
         if self._near_s is None and any(math.dist(place, (each.x, each.y)) < NEAR_M for each in self._inputs.targets):
             self._near_s = now_s
-        was_near = self._near_s is not None and now_s >= self._near_s + LATE_S
-        return now_s >= self._inputs.catch_from_s and (was_near or place == self._start)
+        since_s = self._rest_s if self._near_s is None else min(self._rest_s, self._near_s)
+        return now_s >= max(self._inputs.catch_from_s, since_s + LATE_S)
 
     def _place(self) -> tuple[float, float]:
         state = self._turtlesim.turtle_state("turtle1")

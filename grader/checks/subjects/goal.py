@@ -48,9 +48,16 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
     expected = f"The turtle stops within {params.tolerance_m:g} m of x={params.x_m:g} y={params.y_m:g}."
     where = evidence.place("publish")
     still = not_driven(evidence, expected, where)
-    if still is not None:
-        return still
     trajectory = evidence.trajectory
+    if still is not None:
+        if still.diagnosis != "not-moving" or trajectory.turned_rad < math.tau:
+            return still
+        text = (
+            f"The turtle only turned on the spot, by {trajectory.turned_rad / math.tau:.0f} full turns in total. The "
+            "error is the direction to the goal minus theta."
+        )
+        where = evidence.code.assigned("angular", "z") or where
+        return still.because(Cause("turns-on-the-spot", text, where))
     away = np.hypot(trajectory.x - params.x_m, trajectory.y - params.y_m)
     end, nearest = float(away[-1]), float(away.min())
     moving = no_standstill(evidence, expected)

@@ -97,7 +97,7 @@ def test_a_part_has_hints_of_its_own(words: tuple[str, ...]) -> None:
 
 
 def test_a_part_that_has_passed_needs_no_hint() -> None:
-    verdict(LAST, done=("goal", "goal-subscription"), failed=("square",))
+    verdict(LAST, done=("goal", "goal-subscription", "goal-turn", "goal-first-pose"), failed=("square",))
     assert hints.hint("07", None, "d") == "Part d) of 07-challenges has passed, so you do not need more hints."
 
 
