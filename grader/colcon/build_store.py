@@ -96,7 +96,9 @@ def _tools() -> tuple[str, ...]:
     """Return strings that change when Python, its installed packages or the grader's code for builds changes."""
     colcon = find_spec("colcon_core")
     installed = Path(colcon.origin).parents[1] if colcon is not None and colcon.origin is not None else Path(sys.prefix)
-    own = hashlib.sha256(b"".join(Path(file).read_bytes() for file in (runner.__file__, runner.IN_CELL)))
+    own = hashlib.sha256(
+        b"".join(Path(file).read_bytes() for file in (runner.__file__, runner.IN_CELL, *runner.IMPORTED))
+    )
     # An installer that adds, updates or removes a package changes the time stamp of the folder.
     return sys.version, str(installed), str(installed.stat().st_mtime_ns), own.hexdigest()
 

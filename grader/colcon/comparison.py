@@ -21,7 +21,7 @@ _OF_METADATA = r"PKG-INFO|SOURCES\.txt|dependency_links\.txt|requires\.txt|top_l
 
 
 def installs(tree: bytes, predicted: Predicted) -> bool:
-    """Return whether the tree has exactly the predicted files, apart from those that colcon and setuptools always add.
+    """Return whether the tree has exactly the predicted files, apart from those that colcon and setuptools may add.
 
     The comparison includes contents, permissions and folders. Call this through `grader.submission.reader.read`.
     """

@@ -46,11 +46,13 @@ _IMPORTED = frozenset(
         *("traceback", "typing"),
     }
 )
-"""The packages that nodes usually import. If a node imports only these packages, it does not read the folder in which
-it is installed."""
+"""The packages that nodes usually import. If a node imports another package, that package could read the folder in
+which the node is installed, so nothing is predicted."""
 _READING = frozenset(
     {"open", "exec", "eval", "compile", "__import__", "__file__", "__path__", "__spec__", "__loader__"}
 )
+"""Names with which a node could read files, or find the folder in which it is installed. If a node uses one of these
+names, nothing is predicted."""
 
 
 @dataclass(frozen=True)

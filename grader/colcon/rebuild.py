@@ -70,7 +70,7 @@ def renewed(submission: Submission, before: Submission, built: runner.Built) -> 
 
 
 def _installed(path: str, built: runner.Built) -> str | None:
-    """Return the path at which this module of the submission was installed, or None for any other file."""
+    """Return where this module was installed, or None if it is not a module that was installed exactly once."""
     if not path.endswith(".py") or "/" not in path:
         return None
     places = [place for place in built.build.installed if place.endswith(f"/site-packages/{path}")]

@@ -1,8 +1,8 @@
 """Run `colcon build` on a submission in a cell, and read the result without executing it.
 
 The source enters the cell as a tar stream, and the install tree leaves the cell as another tar stream. Because of these
-streams, the build does not touch the disk of this machine, and the install tree can later be passed to the cell of the
-trial.
+streams, a build in a cell does not touch the disk of this machine, and the install tree can later be passed to the cell
+of the trial.
 """
 
 from __future__ import annotations

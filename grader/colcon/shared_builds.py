@@ -94,8 +94,8 @@ class SharedBuilds:
     ) -> tuple[runner.Built | None, bool]:
         """Return the build with empty modules, and whether it is an earlier one.
 
-        The build is None if colcon does not install the predicted files, or if the install tree is too large to keep.
-        In this case, nothing can be shared.
+        The build is None if it failed, if colcon does not install the predicted files, or if the install tree is too
+        large to keep. In this case, nothing can be shared.
         """
         key = (usual.empty.digest, usual.empty.executable, ros, in_cell)
         with self._lock:

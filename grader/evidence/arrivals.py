@@ -22,8 +22,8 @@ class Measured:
     """The arrival times, the intervals between them, and the times before the first and after the last arrival (s).
 
     `intervals` and `mean_s` leave out the intervals that were changed by a stall of the machine, and the intervals that
-    begin in the initial period (`activity.START_S`). `begins` contains the start times of the intervals. `trusted` is
-    the share of intervals that were not changed by a stall.
+    begin in the initial period (`activity.START_S`), unless all intervals begin there. `begins` contains the start
+    times of the intervals. `trusted` is the share of intervals that were not changed by a stall.
     """
 
     arrivals: tuple[float, ...]

@@ -30,9 +30,9 @@ class Circle:
 def fit_circle(x: Floats, y: Floats) -> Circle | None:
     """Return the circle that fits the points best, or None for fewer than three points or points on a straight line.
 
-    `x` and `y` have the shape (N,). The result is None if a coordinate is NaN. The fit is algebraic, with Taubin's
-    constraint, which does not shrink short arcs: Taubin, "Estimation of planar curves, surfaces and nonplanar space
-    curves defined by implicit equations", IEEE Transactions on PAMI 13 (1991) 1115-1138. The fit is computed from
+    `x` and `y` have the shape (N,). The result is None if a coordinate is not finite. The fit is algebraic, with
+    Taubin's constraint, which does not shrink short arcs: Taubin, "Estimation of planar curves, surfaces and nonplanar
+    space curves defined by implicit equations", IEEE Transactions on PAMI 13 (1991) 1115-1138. The fit is computed from
     singular values as in Chernov, "Circular and Linear Regression" (2010), sections 5.9 and 5.10.
     """
     if len(x) < 3 or not (np.isfinite(x).all() and np.isfinite(y).all()):

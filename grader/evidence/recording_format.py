@@ -5,12 +5,12 @@
                      instead, if the student's tests were run
     build.json       the result of the build
     tries.json       the fixes that were tested, with their results; only for instructors, since it shows solutions
-    submission.json  name, digest and paths
+    submission.json  name, digest and paths, the version of ROS 2, and what could not be read or run
     source/          the files of the submission
     exercise/        the exercise at that time: exercise.toml
     COLCON_IGNORE    so that colcon never runs the submission's setup.py
 
-trials/ID/ is missing if that trial was not run, and build.json is missing if nothing was built.
+trials/ID/ is missing if that trial was not completed, and build.json is missing if nothing was built.
 """
 
 from __future__ import annotations

@@ -76,7 +76,7 @@ def _bag_files(bag: BagInput, ros: Ros, seed: int) -> dict[str, bytes]:
 
 
 def _messages(bag: BagInput, seed: int) -> list[Message]:
-    """Return the poses and the commands in chronological order. The time stamp of the first message is 1 s."""
+    """Return the poses and the commands in chronological order. The time stamp of the first pose is 1 s."""
     x, y = bag.arc.points(bag.id, seed)
     messages = [
         _message("/turtle1/pose", "turtlesim/msg/Pose", 1.0 + index / bag.rate_hz, _POSE, *values, 0.0, _SPEED_M_S, 0.0)

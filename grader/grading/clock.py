@@ -6,7 +6,7 @@ The rules, in the order in which they are applied:
 2. Without these options, a trial starts in simulated time, in which the grader need not wait and other programs cannot
    disturb the trial. If the source contains a sign that the node may follow wall time, the trial starts in wall time
    instead (grader.trial.clues).
-3. A trial in simulated time stops at the first sign that the node follows wall time after all: a thread sleeps,
+3. A trial in simulated time stops at the first sign that the node may be misjudged, for example: a thread sleeps,
    commands arrive while the clock is stopped, or the node never becomes idle (grader.trial.simulated). After such a
    sign, the trial is repeated in wall time. If several threads kept the node from becoming idle, this may have happened
    by chance, so the trial is first repeated once in simulated time.
@@ -88,7 +88,7 @@ def first_clock(choice: ClockChoice, evidence: Evidence) -> Clock:
         return Clock("wall", f"the source could not be read ({in_words(error)}), so the node may use wall time")
     if clues:
         return Clock("wall", f"{clues[0].name} at {clues[0].file}:{clues[0].line} may use wall time")
-    return Clock("simulated", "the node waits only for ROS time and messages")
+    return Clock("simulated", "the source has no sign that the node uses wall time")
 
 
 def stops_at_doubt(choice: ClockChoice) -> bool:

@@ -1,7 +1,8 @@
 """Prove causes: in a copy of the submission, fix the place to which a failed check points, and run the copy.
 
-Each fix stays in the copy while the next cause is tested. In this way, mistakes that other mistakes hid are also found.
-Like the submission itself, the copy is built and run in the sandbox. The copy always runs in simulated time.
+Each fix that is not refuted stays in the copy while the next cause is tested. In this way, mistakes that other mistakes
+hid are also found. Like the submission itself, the copy is built and run in the sandbox. The copy always runs in
+simulated time.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ BARE_NODE_S = 0.35
 """The time that a minimal process with one node takes to start and exit (s)."""
 ENOUGH = f"at most {MOST_TRIES} fixes are tested"
 TOO_LONG = "there was no time to test more fixes"
-NOT_SIMULATED = "a node with a fix can only be tested in wall time, which takes too long"
+NOT_SIMULATED = "a node with a fix could not be tested in simulated time"
 
 
 def explain(

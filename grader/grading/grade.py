@@ -225,7 +225,7 @@ class _Grading:
 
 
 def _longest_first(evidence: Evidence) -> list[Evidence]:
-    """Return the evidence of each trial that runs a node.
+    """Return the evidence of each trial, except trials of tests and trials that run beside another trial.
 
     The longest trial comes first, so that it does not run alone at the end while other processors are idle.
     """

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 class Options:
     """The options for grading a submission. With `in_cell`, the student's code runs in a sandbox (grader.sandbox).
 
-    `trials_at_once` is the number of trials of an exercise that run at the same time. Set this number to 1 if other
-    submissions are graded at the same time.
+    `trials_at_once` is the maximum number of trials of an exercise that run at the same time. Set this number to 1 if
+    other submissions are graded at the same time.
     """
 
     in_cell: bool

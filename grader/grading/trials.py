@@ -62,7 +62,7 @@ class Trials:
         self.tree = b""
 
     def start(self, views: Iterable[Evidence]) -> None:
-        """Start the simulator and the launcher of each of these trials while the submission is built."""
+        """Start the simulator and the launcher of each of these trials that has a simulator, during the build."""
         for view in (each for each in views if not each.trial.calls):
             name = self._started[view.trial.id] = self._judging.first_clock(view).name
             self._ahead.start(view.trial.id, self._trial(view, name))

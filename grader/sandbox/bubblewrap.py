@@ -6,7 +6,8 @@ bubblewrap creates two kinds of containers:
   with separate pid and network namespaces, and only the loopback interface. The simulator reads the messages of a
   student's node with libraries that may have security holes;
 - a **cell** contains a student's process. A cell has its own user, pid, ipc, uts, cgroup and mount namespaces. It has
-  no network except the network of the room, and no files from the disk except the files in `View`. It has a system call
+  no network except the network of the room, and no files from the disk except the system's programs (/usr, a few files
+  in /etc) and the files in `View`. It has a system call
   filter (system_calls.py), and limits on memory, processes, files, CPU and disk. usage.py watches totals that the
   kernel does not limit.
 
@@ -47,9 +48,10 @@ ROOM_DISK = 256 * MIB
 
 @dataclass(frozen=True)
 class View:
-    """The files and folders on the disk that are visible in a sandbox room or cell, at the same paths.
+    """The files and folders on the disk that are visible in a room or cell in addition to the system's programs.
 
-    Inside the room or cell, the folders in `hidden` appear as empty folders.
+    They have the same paths. Inside the room or cell, only the parts of the folders in `hidden` are visible that are in
+    `read_only` themselves.
     """
 
     read_only: tuple[Path, ...]
@@ -57,9 +59,9 @@ class View:
 
 
 def ros_view(ros: Ros, *more: Path) -> View:
-    """Return a view that contains the interpreter, ROS 2 and the folders or files in `more`, but not the grader.
+    """Return a view that contains the interpreter, ROS 2 and the folders or files in `more`.
 
-    The view hides the grader even if the grader is installed in one of these folders.
+    The view hides the rest of the grader even if the grader is installed in one of these folders.
     """
     needed = [Path(sys.base_prefix), Path(sys.prefix), *ros.all_prefixes, *more]
     site = Path(sys.prefix) / f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
@@ -187,7 +189,7 @@ def require(*, trusted: bool = False) -> bool:
 
 
 def why_unavailable() -> str | None:
-    """Try to start a cell. Return None if the cell starts, and otherwise the reason and a remedy."""
+    """Try to start a cell. Return None if sandbox cells work, and otherwise the reason."""
     if program() is None:
         return _not_installed()
     view = View(read_only=())

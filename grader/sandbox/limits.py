@@ -38,7 +38,7 @@ class Limits:
 
     memory: int = 4096 * MIB
     total_memory: int = 2048 * MIB
-    """The maximum memory of all processes and disks of a cell together (bytes), which usage.py watches."""
+    """The maximum memory of all processes, disks and sockets of a cell together (bytes), which usage.py watches."""
     processes: int = 600
     """The maximum number of processes and threads together. Timers do not count, because a node needs no threads for
     them."""

@@ -38,7 +38,8 @@ _OF_THE_PROCESS = tuple(Path("/proc") / name for name in ("self", "cpuinfo", "me
 def keep_only(paths: Iterable[Path]) -> bool:
     """Permanently remove all files from this process's view, except these files and folders, which become read-only.
 
-    Paths that do not exist are ignored. Return False if the system does not permit the removal.
+    A few files of /proc stay, too. Paths that do not exist are ignored. Return False if the system does not permit the
+    removal.
     """
     c = ctypes.CDLL(None, use_errno=True)
     if platform.machine() not in _PIVOT_ROOT or not _unshared(c):

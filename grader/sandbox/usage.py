@@ -89,7 +89,10 @@ class Guard:
         self._thread.join()
 
     def worked_s(self, begin: float, end: float) -> float:
-        """Return a lower bound on the CPU time (s) that the cell used between two times of CLOCK_MONOTONIC."""
+        """Return about the CPU time (s) that the cell used between two times of CLOCK_MONOTONIC.
+
+        The CPU time is read every EVERY_S, so time shortly before and after may count too.
+        """
         first = self._worked[0][1]
         before = max((cpu for at, cpu in self._worked if at <= begin), default=first)
         return max((cpu for at, cpu in self._worked if at <= end + EVERY_S), default=first) - before
@@ -129,7 +132,7 @@ class Guard:
 def family(*pids: int) -> Iterator[int]:
     """Yield the processes and all their descendants.
 
-    Orphans are included, because they become children of the cell's first process.
+    In a cell, orphans are included, because they become children of the cell's first process.
     """
     waiting = [*pids]
     while waiting:

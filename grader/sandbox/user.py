@@ -45,7 +45,7 @@ def cell_user() -> Iterator[int | None]:
     Leave the context after the last process in the room or cell has exited.
 
     Raises:
-        MachineError: all ids are in use, or the file cannot be opened.
+        MachineError: all ids are in use, or the lock file cannot be opened.
     """
     if os.geteuid() != 0:
         yield None
@@ -57,7 +57,7 @@ def cell_user() -> Iterator[int | None]:
         message = f"The lock file for the user ids of sandboxes could not be opened: {error}."
         raise MachineError(message) from error
     try:
-        # Start at a random id, so that a new cell rarely gets the id of a cell whose grader was just killed.
+        # Choose a random id, so that a new cell rarely gets the id of a cell whose grader was just killed.
         for user in random.choices(users, k=TRIES):
             if _lock(file, user):
                 break
@@ -88,7 +88,7 @@ def _folder() -> Path:
 
 
 def _lock(file: int, byte: int) -> bool:
-    """Lock a byte of the file with F_OFD_SETLK of fcntl(2). Return False if another process has locked the byte."""
+    """Lock a byte of the file with F_OFD_SETLK of fcntl(2). Return False if the byte is already locked."""
     # The fields of struct flock are type, whence, start, length, pid.
     wanted = struct.pack("hhqqi4x", fcntl.F_WRLCK, os.SEEK_SET, byte, 1, 0)
     try:

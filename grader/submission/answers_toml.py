@@ -27,7 +27,8 @@ Answer = str | float | tuple[str, ...]
 class Answers:
     """The answers in the table [answers], by their ids: strings, numbers and lists of strings.
 
-    Answers of other types, empty answers and 0 are left out. `unusable` contains the ids of the answers of other types.
+    Answers of other types, empty answers and 0 are left out. `unusable` contains the ids of the answers of other types,
+    and of numbers that are too large.
 
     `lines` are the line numbers of the answers, counted from 1. `problem` is the reason why the file cannot be read.
     `line` is the line of this problem, if known.

@@ -32,7 +32,7 @@ Problem = Literal["", "missing", "elsewhere", "unfinished", "storage", "damaged"
 
 @dataclass(frozen=True)
 class Poses:
-    """The poses on one topic, in the order of the bag: the time of arrival (s), x and y (m)."""
+    """The poses on one topic, sorted by time: the time of arrival (s), x and y (m)."""
 
     t_s: tuple[float, ...] = ()
     x: tuple[float, ...] = ()

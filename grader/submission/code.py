@@ -93,7 +93,7 @@ class Call:
 class Code:
     """The node's file and the submission files that it imports, or all files if the node's file is unknown.
 
-    Tests and setup.py are left out.
+    Tests, launch files and setup.py are left out.
     """
 
     modules: tuple[Module, ...]
@@ -151,9 +151,10 @@ def _sets(node: ast.AST, path: tuple[str, ...]) -> list[int]:
 
 
 def read_code(files: Mapping[str, bytes], first: str | None) -> Code:
-    """Parse the node's file `first` and the submission's files that it imports. Without `first`, parse all files.
+    """Parse the node's file `first` and the submission's files that it imports.
 
-    Other nodes of the package do not affect the node in `first`.
+    Without `first`, parse all files except tests, launch files and setup.py. Other nodes of the package do not affect
+    the node in `first`.
     """
     paths = {path: None for path in sorted(files) if path.endswith(".py") and not _left_out(path)}
     modules: dict[str, Module] = {}

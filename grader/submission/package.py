@@ -102,7 +102,7 @@ def _opened(path: Path, exactly: bool) -> Iterator[int]:
 
 
 def open_answers(path: str | os.PathLike[str], *, exactly: bool = False) -> Submission:
-    """Read only answers.toml in this folder, for an exercise without a package.
+    """Read this folder, and keep only answers.toml, for an exercise without a package.
 
     `exactly` has the same meaning as in `open_submission`.
 

@@ -22,7 +22,7 @@ class Manifest:
     `run_depends` are the run-time dependencies. `other_depends` are dependencies only for building or testing.
 
     `problem` is the reason why the file is invalid, and `line` the line of the error, if known. If there is a
-    `problem`, the other fields are empty.
+    `problem`, the fields above it are empty.
     """
 
     name: str = ""

@@ -1,6 +1,6 @@
 """PlainSetup: a setup.py of the usual form, in which everything that affects the installed files is constant.
 
-Most packages have a setup.py of this form. A setup.py of this form is read with `ast` and never run. For any other
+Most packages have a setup.py of this form. This module reads setup.py with `ast` and never runs it. For any other
 setup.py, the result is None.
 """
 
@@ -74,7 +74,10 @@ def read_plain_setup(setup_py: bytes, setup_cfg: bytes, paths: Collection[str]) 
 
 
 def only_calls_setup(setup_py: bytes, setup_cfg: bytes) -> bool:
-    """Return whether setup.py only calls setup() with the usual arguments, whose values may be wrong."""
+    """Return whether setup.py only calls setup() with the usual arguments, and setup.cfg is usual.
+
+    The values of the arguments may be wrong.
+    """
     module = read_module("setup.py", setup_py)
     name = evaluate((_arguments(module) or {}).get("name"), module.names)
     return isinstance(name, str) and _is_plain(setup_cfg, name)

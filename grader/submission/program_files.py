@@ -1,4 +1,4 @@
-"""The files that the reading process can open besides a submission: files of Python, the grader and the course."""
+"""The files that the reading process can open besides a submission: files of the system, Python and the course."""
 
 from __future__ import annotations
 

@@ -73,7 +73,7 @@ def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> 
     instances of Path), if the machine has Landlock or lets this user create a mount namespace.
 
     Raises:
-        TooLargeError: the function took too much CPU time or memory.
+        TooLargeError: the function took too much CPU time, memory or stack, or its result is too large.
         UnreadableError: the function raised an exception other than the grader's own errors.
         MachineError: a module that the function needs is not installed, or the machine was too busy.
         GraderError: the function itself raised this error.

@@ -120,7 +120,7 @@ def _several(packages: list[str], name: str) -> str:
 
 
 def _none(search: _Search, root: int, name: str) -> str:
-    none = f"There is no package in {shown(name)}: no folder in it has a package.xml or a setup.py."
+    none = f"There is no package in {shown(name)}: the grader found no package.xml and no setup.py."
     if search.nearly:
         return f"{none} {shown(search.nearly[0])} is almost right: the name must be exactly package.xml or setup.py."
     if search.linked:
@@ -131,7 +131,7 @@ def _none(search: _Search, root: int, name: str) -> str:
         return f"{none} colcon ignores {shown(search.ignored[0])}, because it contains a file {IGNORE_MARKER}."
     for above in list(Path(name).resolve().parents)[:2]:
         if any((above / file).is_file() for file in PACKAGE_FILES):
-            return f"{none} Its parent folder, {shown(str(above))}, is a package: give that folder."
+            return f"{none} It is inside the package {shown(str(above))}: give that folder."
     names = [shown(entry.name) + ("/" if entry.is_folder else "") for entry in tree.entries(root) or []]
     if not names:
         return f"{none} The folder is empty. Give the folder of your package."

@@ -1,7 +1,7 @@
 """Read a folder from an untrusted source.
 
-Links are never followed. Every folder is opened relative to the descriptor of its parent folder, with O_NOFOLLOW. Even
-if a folder is replaced with a link while the folder is being read, the link is not followed.
+No link below the folder is followed. Every folder is opened relative to the descriptor of its parent folder, with
+O_NOFOLLOW. Even if a folder is replaced with a link while the folder is being read, the link is not followed.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ messages are arriving."""
 
 
 def take_messages(subscription: Subscription) -> None:
-    """Pass the messages that have arrived to the subscription's callback."""
+    """Pass the messages that have arrived, at most MOST_AT_ONCE, to the subscription's callback."""
     with subscription.handle:
         for _ in range(MOST_AT_ONCE):
             taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
@@ -27,7 +27,7 @@ def take_messages(subscription: Subscription) -> None:
 
 
 def take_requests(service: Service) -> int:
-    """Call the service's callback to respond to all requests that have arrived, and return their number."""
+    """Respond to the requests that have arrived, at most MOST_AT_ONCE, with the callback. Return their number."""
     with service.handle:
         for count in range(MOST_AT_ONCE):
             request, header = service.handle.service_take_request(service.srv_type.Request)

@@ -1,4 +1,4 @@
-"""The service calls that nodes make: to the simulator, and to each other."""
+"""The service calls that nodes make: to the nodes of the grader, and to each other."""
 
 from __future__ import annotations
 

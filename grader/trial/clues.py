@@ -53,7 +53,7 @@ MOST_NODES = 30
 
 @dataclass(frozen=True)
 class Clue:
-    """A name as written in the source, such as "time.sleep", and its place.
+    """A clue, such as "time.sleep" (the full name, even after `from time import sleep`), and its place in the source.
 
     `file` is relative to the package folder.
     """

@@ -7,10 +7,12 @@ conductor sends {"ready": true} when the simulator and the launcher are ready. T
 to start, and the install tree follows this line. The last line of output is one of these:
 
 - {"recording": {...}};
-- {"doubt": "...", "by_chance": false}: a trial with the other clock is needed;
+- {"doubt": "...", "by_chance": false}: simulated time may misjudge the node (grader.trial.rest.DoubtError);
 - {"overwhelmed": "..."}: the node made the simulator fail;
 - {"refused": "..."}: the machine refused something while the node was running;
-- {"fault": "..."}: the simulator failed for another reason.
+- {"fault": "..."}: the simulator or a launcher failed for another reason.
+
+A conductor of a simulator without a node reads only the first line, and writes only the last line.
 """
 
 from __future__ import annotations
@@ -49,18 +51,18 @@ if TYPE_CHECKING:
 LAUNCHER = Path(__file__).absolute().with_name("launcher.py")
 BUSY = 0.5
 BUSY_S = 0.04
-"""The node itself caused a stall if its processes used a processor for at least the fraction BUSY of the stall, and for
-at least BUSY_S (s). The node caused all stalls if its processes used a processor for at least the fraction BUSY of the
-trial."""
+"""The node itself caused a stall if its work used a processor for at least the fraction BUSY of the stall, and for at
+least BUSY_S (s). The node caused all stalls if its work used a processor for at least the fraction BUSY of the trial.
+The work of the node is the work of its processes and the work that it caused in the simulator."""
 REQUESTS_HZ = 500
-"""If the simulator answers more requests from the node than this (Hz), the node caused all stalls, on any machine.
+"""If the simulator answers at least this many requests (Hz), the node caused all stalls, on any machine.
 
 If other programs keep the machine busy, the simulator and the node each get little CPU time. Therefore, CPU time alone
 does not show that the node is the cause. For comparison, a node that sends three requests per pose sends 190 requests
 per second.
 """
 MESSAGES_HZ = 1000
-"""If nodes other than the simulator send more messages than this (Hz), the node caused all stalls."""
+"""If at least this many messages (Hz) arrive (see `_arrived`), the node caused all stalls."""
 STARTED = 0.4
 STARTED_LEAST = 1.2
 """The node caused all stalls if the processes that it started could use the whole machine. This is the case if the
@@ -68,7 +70,7 @@ total time for which these processes were ready to run reaches two limits: the f
 processors, and STARTED_LEAST times the length of the trial. A single process cannot reach both limits.
 """
 SIMULATORS = ("/pose", "/color_sensor")
-"""In each frame, the simulator publishes on topics whose names end with these strings, for each turtle."""
+"""The simulator publishes on topics whose names end with these strings, for each turtle."""
 
 
 class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grader
@@ -76,7 +78,7 @@ class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grad
 
 
 class RefusedError(Exception):
-    """The machine refused an operation of the simulator, such as opening a file. The node is never the cause."""
+    """The machine refused an operation of the simulator. The node does not count as the cause."""
 
 
 def main(nodes: socket.socket | None = None) -> None:
@@ -211,7 +213,7 @@ def _own_doing(stall: tuple[float, float], node: NodeGroup, trial: SimulatedTria
 
 
 def _arrived(trial: SimulatedTrial | WallTrial) -> int:
-    """Return the number of messages that arrived on topics other than those of the simulator."""
+    """Return the number of messages on topics other than SIMULATORS, and of all messages that were not kept."""
     recorder = trial.recorder
     return recorder.dropped + sum(not message.topic.endswith(SIMULATORS) for message in recorder.messages)
 

@@ -26,11 +26,11 @@ from grader.sandbox.user import cell_user
 from grader.trial import fork_client
 
 MOST_MEMORY = 3 * 1024 * MIB
-"""The maximum address space of the conductor (bytes). The conductor itself needs 1 GiB. Messages from the node can fill
-the rest."""
+"""The maximum address space of a conductor in a room (bytes). The conductor itself needs 1 GiB. Messages from the node
+can fill the rest."""
 MOST_ERRORS = 64 * MIB
-"""The maximum size of a file that the conductor writes (bytes). The limit is needed because the standard error of the
-conductor is a file outside the room. The messages of a node can make the libraries of ROS 2 print errors."""
+"""The maximum size of a file that a conductor in a room writes (bytes). The limit is needed because the standard error
+of the conductor is a file outside the room. The messages of a node can make the libraries of ROS 2 print errors."""
 
 _PLAIN = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin"}
 

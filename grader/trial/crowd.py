@@ -12,7 +12,7 @@ from grader.trial.rest import GoneError
 STALL_S = 0.03
 """If the simulator or the node had to wait longer than this between two frames (s), arrival times are unreliable."""
 OWN_DOING = 0.5
-"""If a node used a processor for at least this share of the time, it delayed itself, so the delay is not a stall. Work
+"""If a node used a processor for more than this share of the time, it delayed itself, so the delay is not a stall. Work
 that the node causes in the simulator counts as work of the node. For example, the machine is not to blame if the
 simulator is late because it responds to thousands of calls.
 """

@@ -68,7 +68,9 @@ class Fork:
         return None
 
     def wait(self, timeout: float | None = None) -> int:
-        """Wait until the process has exited, and return its exit code, or -SIGKILL if its fork server was killed.
+        """Wait until the process has exited, and return its exit code.
+
+        If no exit code arrives, return -SIGKILL: the fork server was killed, or could not create the process.
 
         Raises:
             subprocess.TimeoutExpired: the process did not exit within `timeout` (s).

@@ -3,20 +3,21 @@
 A grader has two fork servers: one forks the conductors of its trials, and the other forks the nodes
 (grader.trial.launcher). They are separate, because a conductor reads the messages of a student's node, and the node
 must not be able to find out the memory layout of the conductor. A server has no data about the trials. Its forks enter
-the sandbox before they read anything, and student code never runs outside the sandbox.
+the sandbox before they read anything but the request, and student code never runs outside the sandbox.
 
 The server runs outside the sandbox. It reads requests from the grader on a socket, each with descriptors:
 
 - **conductor**: JSON with the control groups, the user, the limits and HOME. The descriptors are a process in the room
   (pidfd_open(2)), standard input, output and error, the socket on which the conductor requests nodes, and the socket
   for the result;
-- **node**: JSON with the control groups, the limits, the system call filter and the number of nodes. The descriptors
-  are the socket on which the conductor requests nodes, and the socket for the result. For each node, the conductor
-  sends only descriptors: a process in the node's cell, standard input, output and error, and the socket for the result.
-  The conductor sends these descriptors before it starts any node.
+- **node**: JSON with the control groups, the limits, the system call filter, the workspace and the number of nodes. The
+  descriptors are the socket on which the conductor requests nodes, and the socket for the result. For each node, the
+  conductor sends only descriptors: a process in the node's cell, standard input, output and error, and the socket for
+  the result. The conductor sends these descriptors before it starts any node.
 
-On the socket for the result, the server sends STARTED with a descriptor of the new process, and at the end STATUS. If
-the other end of this socket is closed, the process is killed.
+On the socket for the result of a conductor or a node, the server sends STARTED with a descriptor of the new process,
+and at the end STATUS. If the other end of this socket is closed, the process is killed. On the socket for the result of
+a **node** request, the process that forks the nodes sends only STARTED.
 """
 
 from __future__ import annotations

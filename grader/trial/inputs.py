@@ -37,9 +37,9 @@ class Inputs:
     """The inputs of a trial.
 
     Each row of `drives` contains a start time (s) and the speeds from that time on (m/s, rad/s). `arguments` are
-    additional ROS arguments of the node, and `params_file` is the text of a file with parameters. After the first
-    catch, the trial withdraws the first target in `withdrawn` that is left. All other fields have the same meaning as
-    in Scenario.
+    additional ROS arguments of the node, `params_file` is the text of a file with parameters, and `targets` are the
+    targets with their places. After the first catch, the trial withdraws the first target in `withdrawn` that is left.
+    All other fields have the same meaning as in Scenario.
     """
 
     drives: tuple[tuple[float, float, float], ...] = ()
@@ -76,7 +76,10 @@ class Inputs:
 
 
 def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
-    """Return the inputs of a trial, with random speeds that keep the turtle at least 0.5 m away from every wall."""
+    """Return the inputs of a trial, with random speeds.
+
+    The speeds are drawn, at most MOST_DRAWS times, until they keep the turtle at least MARGIN_M away from every wall.
+    """
     draw = random.Random(seed)
     targets = draw_targets(scenario.targets, start, seed) if scenario.targets else ()
     inputs = Inputs(

@@ -2,13 +2,14 @@
 
 The launcher starts before the install tree exists: as a fork of the fork server (grader.trial.fork_server) or, if there
 is no fork server, as a separate script. The launcher reads one line of JSON (`script`,
-`ros_arguments`, `python_path`, `env`, `install`) and then the install tree, a tar stream, from standard input. After
-reading the install tree, the launcher runs the installed script as __main__, as the interpreter in the script's first
-line would.
+`ros_arguments`, `params_file`, `python_path`, `env`, `install`) and then the install tree, a tar stream, from standard
+input. After reading the install tree, the launcher runs the installed script as __main__, as the interpreter in the
+script's first line would.
 
 `ros_arguments` are the ROS arguments of the node, for example those that select simulated time. rclpy gets these
-arguments when it is initialized. The arguments never appear in sys.argv, because a program that reads its own arguments
-must find none, as with `ros2 run PACKAGE EXECUTABLE`.
+arguments when it is initialized. The arguments never appear in the sys.argv of a Python script, because a program that
+reads its own arguments must find none, as with `ros2 run PACKAGE EXECUTABLE`. A script that is not Python gets them on
+its command line.
 """
 
 from __future__ import annotations
@@ -117,6 +118,8 @@ def _initialize_with(ours: list[str]) -> None:
 
 def deliver_before_destroying() -> None:
     """Keep each publisher until its messages have been acknowledged, or until DELIVERY_S has passed.
+
+    After a crash, a publisher does not wait.
 
     A reader drops a message that it receives after the notice that the publisher is gone. Without the delay, it would
     depend on the machine whether the last message of a node arrives before this notice. The loops keep the node busy

@@ -59,7 +59,7 @@ class Launcher(ABC):
     def await_started(self) -> tuple[int, ...]:
         """Wait until the process exists.
 
-        Return its process id, and the id of the process that becomes the parent of orphans in the cell.
+        Return its process id and, in a cell, the id of bubblewrap, the ancestor of all orphans in the cell.
 
         Raises:
             LaunchError: the process could not be started.

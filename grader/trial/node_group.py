@@ -107,7 +107,7 @@ class GroupThreads:
         return [threads.look() for threads in self._each]
 
     def runs(self) -> tuple[bytes, ...]:
-        """Return the number of times that each thread in the last observation has run."""
+        """Return the schedstat line of each thread in the last observation (see `Look`)."""
         return sum((threads.runs() for threads in self._each), ())
 
     def main_asleep(self) -> bool:

@@ -1,4 +1,4 @@
-"""The process of the student's node: start it in a sandbox cell, keep its output, and stop it as with Ctrl-C."""
+"""The process of the student's node: start it through a launcher, keep its output, and stop it as with Ctrl-C."""
 
 from __future__ import annotations
 
@@ -160,13 +160,13 @@ class NodeProcess:
 
     @property
     def ended_itself(self) -> bool:
-        """True until the grader sends a signal to the process."""
+        """True until `interrupt` sends SIGINT, even if the node is killed because it exceeds a limit."""
         return self._by == "itself"
 
     def interrupt(self) -> None:
         """Send SIGINT, as Ctrl-C does in a terminal."""
         if self._is_gone():
-            # The node has just exited on its own, and bubblewrap is about to report it.
+            # The node has just exited on its own, and its exit code is about to be reported.
             with suppress(subprocess.TimeoutExpired):
                 self._launcher.wait(STOP_S)
         if not self.ended():

@@ -31,4 +31,4 @@ def own_domain(stack: ExitStack) -> int:
             file.close()
             continue
         return domain
-    raise MachineError("A hundred trials are already running on this machine: wait, or use --sandbox.")  # noqa: EM101
+    raise MachineError("All ROS domains from 1 to 101 are in use by other trials: wait until one has ended.")  # noqa: EM101

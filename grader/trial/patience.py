@@ -16,8 +16,8 @@ HANDSHAKE_LIMIT_S = 20.0
 """The maximum time (s) that a node may sleep, and the maximum CPU time (s) that it may use, before it waits for its
 clock."""
 HANDSHAKE_S = 100.0
-"""The maximum wall time until a node waits for its clock (s). A node can reach this limit only on a crowded machine.
-The limit for the whole trial is slightly higher (trial.py)."""
+"""The maximum wall time until a node waits for its clock (s). A node reaches this limit only on a crowded machine,
+or if it keeps writing output while it sleeps. The limit for the whole trial is higher (trial.py)."""
 TICK_CPU_S = 1.0
 """The maximum CPU time (s) that a node may use on one frame. If a node uses more, it is assumed never to become
 idle."""

@@ -47,7 +47,10 @@ MOST_JUDGED_BYTES = 4 * 1024 * 1024
 
 
 class Recorder(Node):
-    """A hidden node that subscribes to every topic in the graph."""
+    """A hidden node that subscribes to the topics in the graph, up to a limit.
+
+    Exceptions are the topics whose messages the simulator itself reports.
+    """
 
     def __init__(
         self, now: Callable[[], float], prefixes: list[Path], simulated: dict[str, str], judged: Collection[str] = ()
@@ -118,7 +121,7 @@ class Recorder(Node):
         return found
 
     def follow_graph(self) -> bool:
-        """Subscribe to new topics, and return whether there were any new topics."""
+        """Subscribe to new topics, and to new types on known topics. Return whether a subscription was created."""
         fresh = False
         for topic, types in self.get_topic_names_and_types():
             if topic not in self.topics and len(self.topics) >= 10 * MOST_TOPICS and topic not in self._judged:
@@ -147,7 +150,7 @@ class Recorder(Node):
                     self._offers.add(Offer(node, service, types[0]))
 
     def snapshot(self) -> None:
-        """Store a snapshot of the current graph."""
+        """Store a snapshot of the current graph if the graph has changed."""
         if self.follows_services:
             self.follow_services()
         # The judged topics come first, because a hundred other topics must not crowd them out.

@@ -38,8 +38,8 @@ class Pose:
 class Message:
     """A message that was received.
 
-    `data` is the message as serialized in CDR. `t_s` is the arrival time on the trial's clock (s, 0 when the scenario
-    starts, negative before). `mono_s` is the arrival time on CLOCK_MONOTONIC (s).
+    `data` is the message as serialized in CDR. `t_s` is the arrival time on the trial's clock (s, 0 until the
+    scenario starts). `mono_s` is the arrival time on CLOCK_MONOTONIC (s).
     """
 
     topic: str
@@ -70,7 +70,7 @@ class Command:
 
 @dataclass(frozen=True)
 class LogLine:
-    """A message on /rosout, with its arrival time. `level` is DEBUG, INFO, WARN, ERROR or FATAL."""
+    """A message on /rosout, with its arrival time. `level` is DEBUG, INFO, WARN, ERROR, FATAL or a number."""
 
     t_s: float
     level: str
@@ -132,10 +132,11 @@ class Output:
 class ProcessEnd:
     """The end of the node's process.
 
-    `by` is what stopped the process: "itself" (before the scenario was over), or a signal. `out_of` is set if the
-    grader stopped the process because it used more "memory", "processes" or "files" than a node may use. `stop_s` is
-    the time from SIGINT to the exit of the process (s of wall time), or None if the process exited on its own. `t_s` is
-    the time of the exit on the trial's clock. `exit_code` is negative for a signal, as in subprocess.
+    `by` is what stopped the process: "itself" (before the scenario was over), or a signal that the grader sent to end
+    the scenario. `out_of` is set if the grader or the kernel stopped the process because it used more "memory",
+    "processes" or "files" than a node may use. `stop_s` is the time from SIGINT to the exit of the process (s of wall
+    time), or None if the process exited on its own. `t_s` is the time of the exit on the trial's clock. `exit_code` is
+    negative for a signal, as in subprocess.
     """
 
     by: Literal["itself", "SIGINT", "SIGTERM", "SIGKILL"]
@@ -173,7 +174,8 @@ class Recording:
     log: tuple[LogLine, ...]
     graphs: tuple[Graph, ...]
     topics: dict[str, tuple[str, ...]]
-    """Every topic of the graph with its types, including topics whose messages could not be recorded."""
+    """The topics of the graph with their types, up to a limit, including topics whose messages could not be
+    recorded."""
     stdout: Output
     stderr: Output
     end: ProcessEnd
@@ -209,7 +211,7 @@ class Recording:
     doubts: tuple[str, ...] = ()
     """The reasons why simulated time may misjudge this node. The tuple is empty if simulated time is reliable."""
     seconds: dict[str, float] = field(default_factory=dict)
-    """The wall time of each part of the trial: discovery, run, stop (s)."""
+    """The wall time of each part of the trial: start, discovery, run, stop (s)."""
     stalls: tuple[tuple[float, float], ...] = ()
     """The periods of a trial in wall time in which the machine gave no processor time to the simulator or the node:
     (from, to) on the trial's clock (s). If the system's clock was set, the whole trial is such a period."""

@@ -47,7 +47,7 @@ class GoneError(Exception):
 
 
 class DoubtError(Exception):
-    """The process may follow wall time, so simulated time cannot rely on the process being idle.
+    """Simulated time may misjudge the process, for example because the process follows wall time or is always busy.
 
     The message gives the reason.
 
@@ -61,7 +61,11 @@ class DoubtError(Exception):
 
 @dataclass(frozen=True)
 class Look:
-    """One observation of some threads: whether all of them are sleeping, and how many times each of them has run."""
+    """One observation of some threads: whether all of them are sleeping, and the line of each thread in schedstat.
+
+    The line has the CPU time (ns), the time for which the thread waited for a processor (ns), and how many times it has
+    run.
+    """
 
     asleep: bool
     runs: tuple[bytes, ...]
@@ -151,7 +155,7 @@ class Threads:
         raise GoneError
 
     def runs(self) -> tuple[bytes, ...]:
-        """Return how often each thread in the last observation has run, or an empty tuple if one of them has exited.
+        """Return the schedstat lines of the last observation's threads (see `Look`), or () if one of them has exited.
 
         Reading the counters is three times as fast as a full observation of the threads.
         """

@@ -50,7 +50,7 @@ class Simulation:
 
     An executor checks every entity and every event each time it runs, which takes longer than anything else in a frame.
     `take_in` handles only messages and service requests. `take_in` is sufficient while `may_act` is false, that is,
-    while no other node can use an action of the simulator.
+    while no other node can use an action of the simulator and no call by the trial is pending.
     """
 
     held = False
@@ -103,7 +103,7 @@ class Simulation:
         self.stalls: list[tuple[float, float]] = []
         self.watch: Stalls | None = None
         self.requests = 0
-        """The number of service and action requests that were answered."""
+        """The number of service requests that were handled."""
         self.seconds: dict[str, float] = {}
         self._since = time.monotonic()
         self._actions: list[str] | None = None

@@ -1,8 +1,8 @@
 """Choose random places for targets, which are turtles that a node must catch, nearest first.
 
 Places are drawn again until the order of the targets is unambiguous. If a turtle always goes to the nearest target,
-only one order must be possible. Any other rule (by name, by the distance from the start) must lead to a different
-order. All this must also be true without the target that the trial may withdraw.
+only one order must be possible. With three or more targets, two other rules (by name, by the distance from the start)
+must lead to a different order. All this must also be true without the target that the trial may withdraw.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Pose
 
 GRAPH_S = 5.0
-"""The maximum time to wait until the simulator finds its own topics in the graph (s)."""
+"""The maximum time to wait until the recorder finds the topics of the simulator in the graph (s)."""
 
 
 class AloneTrial(Simulation):

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.colcon import build_store as store_module
+from grader.colcon import runner
 from grader.colcon.build import Build
 from grader.colcon.build_store import MOST_BUILDS, BuildStore, build_store, key_of
 from grader.colcon.runner import Built
@@ -94,6 +96,20 @@ def test_the_key_changes_with_what_affects_a_build(solution: Submission) -> None
     assert key_of(replace(solution, digest=digest({})), ros) != key
     assert key_of(replace(solution, executable=frozenset({"setup.py"})), ros) != key
     assert key_of(solution, replace(ros, version="another")) != key
+
+
+def test_the_key_changes_with_a_file_that_the_build_script_imports(
+    solution: Submission, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    key = key_of(solution, find_ros())
+    changed = tmp_path / "quick_exit.py"
+    changed.write_text("changed = True\n")
+    monkeypatch.setattr(runner, "IMPORTED", (changed,))
+    store_module._tools.cache_clear()
+    try:
+        assert key_of(solution, find_ros()) != key
+    finally:
+        store_module._tools.cache_clear()
 
 
 def test_the_next_command_does_not_run_colcon(

@@ -106,7 +106,7 @@ def test_an_empty_folder_is_called_empty(tmp_path: Path) -> None:
 
 
 def test_inside_of_the_package_the_folder_around_is_proposed(package: Path) -> None:
-    assert refused(package / "pkg").endswith(f"Its parent folder, {package.resolve()}, is a package: give that folder.")
+    assert refused(package / "pkg").endswith(f"It is inside the package {package.resolve()}: give that folder.")
 
 
 @pytest.mark.parametrize("name", ["Package.xml", "package.xml.txt", "SETUP.PY"])

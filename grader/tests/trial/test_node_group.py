@@ -137,7 +137,9 @@ def test_after_the_first_catch_the_trial_withdraws_another_target() -> None:
 
 
 @pytest.mark.parametrize(("drives", "from_s"), [(False, 1.5), (True, 2.7)])
-def test_a_late_service_waits_until_turtle1_has_stood_still_or_was_near_a_target(*, drives: bool, from_s: float) -> None:
+def test_a_late_service_waits_until_turtle1_has_stood_still_or_was_near_a_target(
+    *, drives: bool, from_s: float
+) -> None:
     targets = (Target("ada", START.x + 1.5, START.y),)
     body = CATCHER + (DRIVES if drives else "")
     recording = trial_of(Inputs(targets=targets, alone_s=0.5, catch_from_s=1.0), catcher=body)
