@@ -1,4 +1,5 @@
-# The targets of make; `make help` lists them. Each target first sets up what it needs, and is quick if that is done.
+# The targets of make; `make help` lists them. Each target except help and clean first sets up what it needs. This is
+# quick if it is already done.
 
 .DEFAULT_GOAL := help
 .PHONY: help demo cluster notebooks docs test test-cases test-all lint lock clean

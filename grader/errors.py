@@ -1,4 +1,4 @@
-"""The grader's exceptions. Each message says what was observed, what was expected, and what the student should do."""
+"""The grader's exceptions. A message says what was observed and, where it helps, what was expected and what to do."""
 
 from __future__ import annotations
 

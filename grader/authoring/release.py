@@ -100,7 +100,7 @@ def _fresh_notebooks(solution: Path) -> dict[str, bytes]:
 
 
 def stale(solutions: Path, exercises: Path) -> tuple[str, ...]:
-    """Return one sentence for each file in exercises/ that differs from the result of `release`."""
+    """Return one sentence for each outdated source notebook, and for each file that `release` would change."""
     steps = sorted({folder.name for root in (solutions, exercises) for folder in root.iterdir() if folder.is_dir()})
     return tuple(line for step in steps for line in _stale_step(solutions / step, exercises / step))
 

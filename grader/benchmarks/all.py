@@ -3,7 +3,7 @@
     python -m grader.benchmarks.all [--times N] [--class N] [--sync N]
 
 F is the sum of the wall times of a `colcon build` of the package and of a process with one rclpy node, both run without
-the grader. grader.benchmarks.check uses the same F. F is measured again before each cost, so that other programs slow
+the grader. grader.benchmarks.check uses the same F. F is measured again for each cost in F, so that other programs slow
 down F and the cost alike. The first line shows the load of the machine. Results from a busy machine can be compared
 only with each other.
 """
@@ -60,7 +60,7 @@ class InF:
 class Bench:
     """The measurements of one run.
 
-    The measurements write their files to `folder`, and each measurement is repeated `times` times.
+    The measurements write their files to `folder`, and `in_f` repeats a measurement `times` times.
     """
 
     def __init__(self, folder: Path, times: int) -> None:

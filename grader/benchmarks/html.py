@@ -29,7 +29,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 _GRADER = str(Path(sys.executable).with_name("grader"))
 _CLASS = 200
 
-# This script works like `grader check`, then creates the page, and prints the time for creating it (s) and its size.
+# This script works like `grader regrade`, then creates the page, and prints the time for creating it (s) and its size.
 _PAGE = """
 import sys, time
 from pathlib import Path

@@ -34,6 +34,6 @@ def _checked(repository: str) -> str:
     from grader.errors import UsageError
 
     if repository and not repository.startswith(("https://", "http://")):
-        message = f"--repository needs a URL that begins with https://, not {repository!r}."
+        message = f"--repository needs a URL that begins with https:// or http://, not {repository!r}."
         raise UsageError(message)
     return repository

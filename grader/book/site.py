@@ -28,6 +28,7 @@ def write_book(out: Path, repository: str = "") -> int:
 
     Raises:
         UsageError: `out` is not a folder, or cannot be written.
+        MachineError: a lesson cannot be read, the disk is full, or the machine failed in another way.
     """
     among = lessons()
     if out.exists() and not out.is_dir():

@@ -98,14 +98,14 @@ class _Run:
         self.graded[name] = result
         if broken and self.failures[name] < TRIES:
             self.again[name] = one
-            self.screen.show(name, "The submission could not be judged. It will be graded again later")
+            self.screen.show(name, "The submission could not be judged. It may be graded again later")
         else:
             self.screen.finished(result)
 
 
 def _in_words(why: str) -> str:
     return (
-        f"The grader's process was lost twice while it was grading this submission ({why}). The submission gets the "
-        "status error, which says nothing about the quality of the submission. Grade the submission alone with "
+        f"The grader's process was lost while it was grading this submission ({why}). The submission gets the status "
+        "error, which says nothing about the quality of the submission. Grade the submission alone with "
         "`grader check`, or run the same command again."
     )

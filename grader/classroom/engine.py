@@ -29,7 +29,7 @@ class Finished:
 
 @dataclass(frozen=True)
 class Died:
-    """A task whose worker was killed, ran out of memory, or was lost with its machine."""
+    """A task whose worker process exited, was stuck, or was lost with its machine."""
 
     task: Task
     why: str

@@ -26,7 +26,7 @@ class Key:
     exercise: str
     """The sha256 of exercise.toml, including private checks."""
     grader: str
-    """The version of the grader and the sha256 of its sources."""
+    """The version of the grader and the first 16 digits of the sha256 of its sources."""
     ros: str
     options: str
     """The clock, the seed, whether the submission ran in a sandbox, and whether causes were tested."""
@@ -43,7 +43,11 @@ def changed(old: Mapping[str, Any], new: Key) -> tuple[str, ...]:
 
 @cache
 def grader_key() -> str:
-    """Return the version of the grader and the sha256 of the source files that determine a report."""
+    """Return a string that identifies the grader.
+
+    The string consists of the version, and the first 16 digits of the sha256 of the source files that determine a
+    report.
+    """
     folder = Path(grader.__file__).parent
     whole = hashlib.sha256()
     for path in sorted(folder.rglob("*")):

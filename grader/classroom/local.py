@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 MEMORY_A_TASK = 1536 * 1024 * 1024
 """The memory that each task is expected to need (bytes). A cell may use more memory than this (sandbox.Limits), but few
-cells do, and never all of them at the same time."""
+cells do."""
 WAITING_A_JOB = 2
 """The number of additional tasks per job that may run while other tasks are in a trial in wall time."""
 TASK_S = 1800.0

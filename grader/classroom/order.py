@@ -149,4 +149,4 @@ def _why_again(old: Result, key: Key) -> str:
         return "judged with different checks"
     if parts:
         return "graded with different options"
-    return "not finished because the machine failed" if old.report.with_status(Status.ERROR) else ""
+    return "not judged last time" if old.report.with_status(Status.ERROR) else ""

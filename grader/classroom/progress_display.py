@@ -1,7 +1,7 @@
 """Show the progress of a run: a live table on a terminal, or one line per submission elsewhere.
 
-Students choose the names of submissions. Names are escaped, so that they cannot control a terminal or a continuous
-integration (CI) system.
+Students choose the names of submissions. `plain` changes these names, so that they cannot control a terminal or a
+continuous integration (CI) system.
 """
 
 from __future__ import annotations
@@ -41,7 +41,10 @@ class Screen(Protocol):
 
 
 def plain(text: str) -> str:
-    """Return the text without characters that control a terminal or a program that reads logs."""
+    """Return the text, changed so that it cannot control a terminal or a program that reads logs.
+
+    Each control character becomes a question mark, and `::` and `##` get a space in the middle.
+    """
     # GitHub executes ::command:: at the beginning of a line and ##[command] anywhere, and Azure Pipelines ##vso[.
     return printable(text).replace("::", ": :").replace("##", "# #")
 

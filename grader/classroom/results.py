@@ -37,7 +37,7 @@ _LOCK = ".grader-results"
 _PARTIAL = ".partial"
 _SAFE = re.compile(r"[^A-Za-z0-9 _@+,=-]")
 _LONGEST = 120
-"""The maximum length of a file name (bytes). Longer names are truncated, and a digest keeps them distinct."""
+"""The maximum length of the student's part of a file name (bytes). A longer part is truncated, and gets a digest."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ def file_name(student: str, exercise: str) -> str:
 
 @dataclass(frozen=True)
 class Results:
-    """The folder of the results. Create instances with `opened`."""
+    """The folder of the results. Use `opened` to write results, so that no other run writes to the folder."""
 
     folder: Path
 
@@ -163,7 +163,7 @@ def opened(folder: Path, submissions: Sequence[Path] = ()) -> Iterator[Results]:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
             message = (
-                f"Another `grader grade` is using {folder}. Let that command finish, "
+                f"Another `grader grade` or `grader gradebook sync` is using {folder}. Let that command finish, "
                 "or choose another folder with --out."
             )
             raise UsageError(message) from error

@@ -89,11 +89,11 @@ def read_archive(archive: Path) -> tuple[Member, ...]:
         except (zipfile.BadZipFile, tarfile.TarError, zlib.error, EOFError, gzip.BadGzipFile) as error:
             message = f"is not a .zip or .tar.gz, or is damaged ({_shown(str(error))[:200]})"
             raise NotUnpackedError(message) from error
-        except (NotImplementedError, RuntimeError, UnicodeError) as error:
+        except RuntimeError as error:  # NotImplementedError, too
             message = f"is compressed with a method that is not supported ({_shown(str(error))[:200]})"
             raise NotUnpackedError(message) from error
         except Exception as error:
-            # A damaged archive can make the modules raise other errors too.
+            # A damaged archive can make the modules raise other errors too, such as UnicodeError.
             detail = f"{type(error).__name__}: {_shown(str(error))[:200]}"
             message = f"is not a .zip or .tar.gz, or is damaged ({detail})"
             raise NotUnpackedError(message) from error
@@ -174,10 +174,10 @@ def _tar(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
 def _parts(name: str) -> tuple[str, ...]:
     path = PurePosixPath(name)
     if path.is_absolute() or ".." in path.parts:
-        message = f"contains a path that points outside the archive: {_shown(name)}"
+        message = f'contains an absolute path, or a path with "..": {_shown(name)}'
         raise NotUnpackedError(message)
     if len(path.parts) > MOST_DEPTH or len(os.fsencode(name)) > MOST_PATH_BYTES:
-        message = f"contains a path that is too long: {_shown(name[:60])}..."
+        message = f"contains a path that is too long or too deep: {_shown(name[:60])}..."
         raise NotUnpackedError(message)
     return path.parts
 

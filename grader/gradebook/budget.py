@@ -37,7 +37,7 @@ class Budget:
     """The maximum total size of all messages (bytes)."""
     messages: int = 10_000
     values: int = 1_000_000
-    """The maximum number of values (objects, lists, strings and numbers) in the JSON of all messages."""
+    """The maximum number of keys and values in the JSON of all messages."""
     depth: int = 50
     """The maximum nesting depth of objects and lists."""
 

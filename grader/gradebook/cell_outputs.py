@@ -22,7 +22,9 @@ def mark(cell: NotebookNode, why: str) -> None:
 
 
 def honest(cell: NotebookNode) -> None:
-    """Replace the result of a graded cell with an error if the result is not a valid number.
+    """Replace the outputs of a graded cell with an error if its result is not a number from 0 to the cell's points.
+
+    Cells that do not call `.points()`, and cells that already have an error as an output, stay unchanged.
 
     Without this replacement, nbgrader would give full marks to a cell that has no output.
     """

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 CONFIG = "nbgrader_config.py"
 CLASS = "class"
-"""The folder of the class data, which git ignores: submitted/, autograded/, feedback/, reports/ and gradebook.db."""
+"""The folder of the class data, which git ignores, such as submitted/, autograded/, feedback/ and gradebook.db."""
 RESULTS = "results"
 """The folder of the grader's results, inside the folder of the class. See grader/classroom/results.py."""
 GRADEBOOK = "gradebook.db"
@@ -133,7 +133,7 @@ def open_class(folder: Path | None) -> ClassFolders:
     used only if it belongs to this copy of the course or to a class that this user created.
 
     Raises:
-        UsageError: nbgrader_config.py does not exist, or this user did not create the class.
+        UsageError: nbgrader_config.py does not exist, or nothing shows that this user created the class.
         MachineError: nbgrader is not installed.
     """
     tried = [folder or Path(), (folder or Path()) / "course"]
@@ -146,8 +146,8 @@ def open_class(folder: Path | None) -> ClassFolders:
         raise UsageError(message)
     if folder is None and not _is_known(found.resolve()):
         message = (
-            f"{found.resolve() / CONFIG} is a program, but `grader class new` did not create this "
-            f"folder for you. If you trust this program, name the folder: --course {shlex.quote(str(found.resolve()))}"
+            f"{found.resolve() / CONFIG} is a program, and nothing shows that `grader class new` created this folder "
+            f"for you. If you trust this program, name the folder: --course {shlex.quote(str(found.resolve()))}"
         )
         raise UsageError(message)
     try:

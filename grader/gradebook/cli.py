@@ -85,7 +85,7 @@ def sync(
         typer.echo(printable(f"{each.student} {each.step}{which}: 0 points, needs manual grading: {each.why}."))
     if done.unjudged:
         unjudged = printable(a_list(done.unjudged))
-        typer.echo(f"Not judged because the machine failed: {unjudged}. Run this command again.")
+        typer.echo(f"Could not be judged: {unjudged}. Run this command again.")
         raise typer.Exit(3)
 
 
@@ -100,7 +100,8 @@ def compare(steps: Steps = None, course: Course = None) -> None:
         kernel_said = "nothing" if each.kernel is None else f"{each.kernel:g}"
         grader_said = f"0, needs manual grading ({each.why})" if each.grader is None else f"{each.grader:g}"
         typer.echo(printable(f"{each.student} {each.step} {each.check}: kernel {kernel_said}, grader {grader_said}"))
-    typer.echo(f"{count(len(differences), 'difference')}. After `sync`, the grader's score counts.")
+    differ = count(len(differences), "difference")
+    typer.echo(f"{differ}. After `sync`, the grader's score counts. A manual grade stays.")
 
 
 def new(

@@ -62,7 +62,7 @@ class ConfinedKernelManager(AsyncKernelManager):
         return KernelSpec(argv=argv, display_name="", language="python", interrupt_mode="message")
 
     async def _async_pre_start_kernel(self, **kw: Any) -> Any:  # noqa: ANN401 - as the base class
-        # Only the current user can access this folder. It is not visible in the cell.
+        # Only the current user can access this folder. The cell sees only the copy of the submission in it.
         self._folder = tempfile.TemporaryDirectory(prefix="kernel-")
         folder = Path(self._folder.name)
         self.transport = "ipc"

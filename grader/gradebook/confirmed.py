@@ -31,7 +31,10 @@ Name = tuple[str, str]
 
 @dataclass(frozen=True)
 class Unconfirmed:
-    """The cells of a submission that are worth 0 points until a person grades them, with the reason."""
+    """The cells of a submission that are worth 0 points until they are confirmed or graded by hand, with the reason.
+
+    `checks` is empty if the reason is about the whole submission.
+    """
 
     student: str
     step: str

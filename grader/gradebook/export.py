@@ -38,7 +38,7 @@ COLUMNS = (
 
 
 class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]
-    """Exports nbgrader's table with 0 points for every provisional score."""
+    """Exports nbgrader's table with 0 points for every score that is not confirmed."""
 
     def export(self, gradebook: Any) -> None:  # noqa: ANN401 - as the base class
         """Withhold scores that are not confirmed, report these scores, and write the table."""
@@ -46,9 +46,11 @@ class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]
         results = Results(Path(course.root) / CLASS / RESULTS)
         unconfirmed = withhold_unconfirmed(gradebook, results)
         if unconfirmed:
-            names = [printable(f"{each.student} ({each.step})") for each in unconfirmed]
+            # A submission appears once for each reason why some of its scores are not confirmed.
+            names = list(dict.fromkeys(printable(f"{each.student} ({each.step})") for each in unconfirmed))
             self.log.warning(
-                "%s not confirmed, exported as 0 points: %s. Run `grader gradebook sync`, then grade the rest by hand.",
+                "%s with scores that are not confirmed and count 0 points: %s. Run `grader gradebook sync`, then grade "
+                "the rest by hand.",
                 count(len(names), "submission"),
                 a_list(names),
             )

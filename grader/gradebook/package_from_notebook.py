@@ -44,7 +44,10 @@ def graded_folder(exercise: Exercise, submitted: Path, together: Path) -> Path:
 
 
 def _together(exercise: Exercise, submitted: Path) -> Submission | None:
-    """Return the submission together with the files from its notebook, or None if the notebook adds no file."""
+    """Return the submission together with the files from its notebook.
+
+    Return None if the notebook adds no file, or if a file of the submission cannot be used.
+    """
     time_of(submitted)  # raises UnreadableError for an invalid time, at which nbgrader would stop
     found = tree.read_folder(submitted)
     notebook = found.files.get(f"{exercise.id}.ipynb")

@@ -27,14 +27,14 @@ class, because of time zones."""
 MOST_BYTES = tree.MAX_FILE_BYTES
 """The maximum size of a notebook (bytes)."""
 MOST_VALUES = 500_000
-"""The maximum number of values (objects, lists, strings and numbers) in the JSON of a notebook."""
+"""The maximum number of keys and values in the JSON of a notebook."""
 MOST_DEPTH = 50
 """The maximum nesting depth of the objects and lists in a notebook."""
 MOST_CELLS = 1000
 
 
 def time_of(folder: Path) -> datetime | None:
-    """Return the time when the submission was handed in, in UTC, or None if the folder has no time stamp.
+    """Return the time when the submission was handed in, in UTC, or None if the time stamp is missing or empty.
 
     Raises:
         UnreadableError: the file is not a regular file with a valid time.

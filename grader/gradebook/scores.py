@@ -1,8 +1,9 @@
-"""`grader gradebook sync` and `compare`: write the scores that count, and list different scores from kernels.
+"""`grader gradebook sync` and `grader gradebook compare`.
 
-Scores from a kernel are provisional. These functions grade the submitted package in the sandbox and write the scores to
-nbgrader's gradebook through its API. A check that the grader cannot judge is worth 0 points and needs a manual grade
-(confirmed.py). A manual grade is never changed.
+`sync` writes the scores that count, and `compare` lists the scores on which a kernel and the grader disagree, and the
+unconfirmed scores. Scores from a kernel are provisional. `sync` grades the submitted package in the sandbox and writes
+the scores to nbgrader's gradebook through its API. A check that the grader cannot judge is worth 0 points and needs a
+manual grade (confirmed.py). The points of a manual grade are never changed.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Synced:
-    """The result of a sync: how many submissions were graded, how many scores have changed, and what was not judged."""
+    """The result of a sync: the numbers of submissions with a result and of changed scores, and what was not judged."""
 
     submissions: int
     changed: int
@@ -50,14 +51,14 @@ class Synced:
     """The number of manual grades, which stay unchanged."""
     unjudged: tuple[str, ...]
     elsewhere: tuple[str, ...]
-    """The checks that have a result but no cell in the notebook, and are therefore not in the gradebook."""
+    """The checks with points that have a result but no cell in the notebook, and are therefore not in the gradebook."""
     unconfirmed: tuple[Unconfirmed, ...]
-    """The cells that are worth 0 points until a person grades them."""
+    """The cells without a confirmed score, and the submissions that could not be read or written."""
 
 
 @dataclass(frozen=True)
 class Difference:
-    """A check on which the kernel and the grader disagree.
+    """A check on which the kernel and the grader disagree, or whose score is not confirmed.
 
     `kernel` is None if the notebook has no score for the check. `grader` is None if the grader has not confirmed a
     score. In this case, the check is worth 0 points, and `why` is the reason.
@@ -203,7 +204,7 @@ def _require_assignments(gradebook: Any, steps: set[str]) -> None:  # noqa: ANN4
 
 
 def _write(gradebook: Any, folders: ClassFolders, result: Result, tally: Counter[str]) -> list[str]:  # noqa: ANN401
-    """Write the scores of one submission to the gradebook. Return the checks without a cell in the notebook."""
+    """Write the scores of one submission. Return the checks with points that have no cell in the notebook."""
     student, step = result.student, result.report.exercise
     gradebook.update_or_create_student(student)
     timestamp = _time_of(folders.submitted(student, step))
@@ -252,7 +253,7 @@ def _late(folders: ClassFolders, student: str, step: str) -> None:
 
 
 def _kernel_scores(notebook: Path) -> dict[str, float | None] | None:
-    """Return the points in the output of each graded cell, or None if no autograded notebook exists."""
+    """Return the points in the output of each graded cell, or None if there is no readable autograded notebook."""
     try:
         return read(_scores_in, notebook)
     except UnreadableError:

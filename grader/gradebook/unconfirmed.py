@@ -1,4 +1,4 @@
-"""A step of `nbgrader autograde` that replaces SaveAutoGrades and stores no scores from kernels."""
+"""A step of `nbgrader autograde` that replaces SaveAutoGrades: no scores from kernels for the checks of the course."""
 
 from __future__ import annotations
 

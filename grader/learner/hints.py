@@ -36,8 +36,10 @@ def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
     wanted = [index for index, each in enumerate(exercise.hints) if part is None or each.part == _part(exercise, part)]
     known = progress.load(root).step(exercise.id)
     index = _next(exercise, wanted, known)
-    if index is None:
+    if index is None and (part or known.passed):
         return f"{_whole(exercise, part)} has passed, so you do not need more hints."
+    if index is None:
+        return f"{exercise.id} has no hints for the checks that have not passed. `grader check` shows these checks."
     read = (*(each for each in known.read if each != index), index)
     progress.update(root, lambda before: before.with_step(exercise.id, replace(before.step(exercise.id), read=read)))
     place = f"{sum(each in read for each in wanted)} of {len(wanted)}"

@@ -11,7 +11,7 @@ from grader.common.words import a_list, count
 def difference(theirs: str, ours: str, path: str) -> str:
     """Return one or more sentences about the differences between the learner's text and the solution's text."""
     if not theirs:
-        return "Your package does not contain this file."
+        return "Your work does not contain this file, or the file is empty."
     mine, solution = (_parts(text) if path.endswith(".py") else None for text in (theirs, ours))
     if mine is None or solution is None:
         changes = SequenceMatcher(None, theirs.splitlines(), ours.splitlines(), autojunk=False).get_opcodes()

@@ -84,7 +84,7 @@ def run(program: Program, *, view: bool) -> int:
 
     If `view` is true, a page shows the turtle. If a turtlesim is already running, the program drives the turtle of that
     turtlesim. The exit code is 0 if the node runs until Ctrl-C or exits without an error, and 1 otherwise. The output
-    of the build and the node appears on the terminal.
+    of the node, and of a build that failed, appears on the terminal.
     """
     from grader.ros import shell
 

@@ -105,7 +105,7 @@ def current(folder: Path | None) -> tuple[Exercise, Path] | None:
 
 
 def note(exercise: Exercise, submission: Path, report: Report, folder: Path | None = None) -> str:
-    """Store a report in the learner's progress if the submission is in the workspace.
+    """Store a report in the learner's progress if a step was started and the submission is in the workspace.
 
     Return a message about the next command to type, or an empty string.
     """

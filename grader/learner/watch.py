@@ -233,7 +233,7 @@ class Watched:
         return graded
 
     def prepare(self) -> None:
-        """Start the simulator and the launcher of the next trial.
+        """Start the simulator and the launcher of the next trial, if the last grading ran a trial in simulated time.
 
         Starting the simulator and the launcher keeps two processors busy for half a second.
         """

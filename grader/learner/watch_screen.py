@@ -73,7 +73,7 @@ class _Screen:
 
         Return the step that the learner has started in the meantime, or None to quit.
 
-        Every report clears the screen. `notice` is printed below the first report.
+        On a terminal, every report clears the screen. `notice` is printed below the first report.
         """
         self._grade(notice)
         self._prove(events)

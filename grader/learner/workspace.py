@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import MachineError, UsageError
@@ -16,7 +17,6 @@ from grader.submission.search import IGNORE_MARKER
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from pathlib import Path
 
     from grader.exercise.model import Exercise
 
@@ -89,7 +89,7 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
     If each student has different numbers in this step, the numbers of `student` are written.
 
     Raises:
-        UsageError: the workspace is not a folder.
+        UsageError: a file is in the place of a folder, or a folder is in the place of a file.
         MachineError: the workspace cannot be written.
     """
     source = starting_point(exercise)
@@ -107,8 +107,7 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
         lacking = lacking_lines(exercise, mine)
         tasks = open_tasks(exercise, mine) if added else {}
     except (FileExistsError, NotADirectoryError) as error:
-        message = f"{error.filename} is a file, but it must be a folder. Choose another workspace with --workspace."
-        raise UsageError(message) from error
+        raise UsageError(_in_the_way(Path(error.filename))) from error
     except OSError as error:
         message = f"{error.filename or folder} could not be written: {error.strerror}."
         raise MachineError(message) from error
@@ -226,6 +225,14 @@ def _tasks(theirs: Path, mine: bytes) -> tuple[str, ...]:
     known = mine.decode("utf-8", "replace")
     tasks = (task.strip() for task in _TASK.findall(theirs.read_text(encoding="utf-8")))
     return tuple(task for task in tasks if task not in known)
+
+
+def _in_the_way(path: Path) -> str:
+    """Return the message for a folder in the place of a file of the step, or for a file in the place of a folder."""
+    if path.is_dir():
+        return f"{path} is a folder, but the step has a file with this name. Rename the folder."
+    file = next((above for above in (path, *path.parents) if above.exists()), path)
+    return f"{file} is a file, but it must be a folder. Choose another workspace with --workspace."
 
 
 def _ignored(folder: Path) -> Path:

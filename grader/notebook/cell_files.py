@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
 MAGICS = ("node", "package", "answers")
 KEPT = ".kept"
-"""The folder for the old versions of files that were changed outside the notebook before a cell replaced them. This
-folder is hidden, so its files are not graded."""
+"""The folder for the old versions of files whose content the kernel that replaced them had not written. This folder is
+hidden, so its files are not graded."""
 SOLUTIONS = "solutions"
 """The folder with the notebooks that contain the solutions. This folder has the same name in the course and in a class
 of nbgrader."""

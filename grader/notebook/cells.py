@@ -97,7 +97,7 @@ class Cells:
             )
             return
         if worked_on and self._written.get(file) != present:
-            self._say(f"{path} was changed outside this notebook. The old version is kept in {_keep(file)}.")
+            self._say(f"{path} has content that this kernel did not write. The old version is kept in {_keep(file)}.")
         try:
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text, encoding="utf-8")

@@ -15,7 +15,7 @@ from pathlib import Path
 
 
 def main() -> None:
-    """Replace this process with the kernel."""
+    """Run the kernel in this process."""
     # Import this before changing to the submission's folder, whose modules must not shadow Python's.
     from ipykernel import kernelapp
 

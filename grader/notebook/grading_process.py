@@ -3,7 +3,8 @@
     python -m grader.notebook.grading_process EXERCISE FOLDER
 
 The process prints its progress line by line to standard error, and the verdict as JSON to standard output: {"points":
-{id: number}, "reasons": {id: text}, "text": the full verdict, "html": the same as HTML, "passed": bool}.
+{id: number}, "reasons": {id: text}, "text": the full verdict, "html": the same as HTML, "passed": bool}. If the work
+cannot be graded, the JSON is {"error": text}.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Fill in the templates in assets/. All values are escaped, and a missing value is an error."""
+"""Fill in the templates in assets/. All values except Markup are escaped, and a missing value is an error."""
 
 from __future__ import annotations
 

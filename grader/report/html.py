@@ -83,7 +83,7 @@ def save_html(evidence: Evidence, report: Report, file: Path) -> None:
 def html_page(evidence: Evidence, report: Report) -> str:
     """Return the page as a string.
 
-    If the output of a submission cannot be drawn, the page contains the verdict but no drawings.
+    If the output of a submission cannot be drawn, the page contains the verdict, but no code, drawings or logs.
     """
     compiled(TEMPLATE)
     try:

@@ -260,7 +260,7 @@ def distribution(shares: Iterable[float]) -> str:
             parts.append(words(str(amount), x + bar / 2, top + height - tall - 6, "middle"))
         parts.append(words(name.split()[0], x + bar / 2, top + height + 19, "middle"))
     base = tag("path", d=f"M8 {top + height}H{width - 8}", stroke="currentColor")
-    label = words("% of the points (each bar covers 10 %)", width - 10, top + height + 40, "end")
+    label = words("% of the points (the last bar: 100 %)", width - 10, top + height + 40, "end")
     return picture(
         *parts,
         base,

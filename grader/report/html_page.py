@@ -1,7 +1,7 @@
 """Make a single-file page from a template, a style sheet and a script, with a strict Content-Security-Policy.
 
-The policy allows the style sheet and the script by their hashes. Nothing else on the page can run or be loaded,
-regardless of what a submission contains. All text from a student is also escaped.
+The policy allows the style sheet and the script by their hashes, and images that are part of the page. Nothing else on
+the page can run or be loaded, regardless of what a submission contains. All text from a student is also escaped.
 """
 
 from __future__ import annotations

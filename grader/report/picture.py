@@ -1,6 +1,6 @@
 """A run as a PNG image: the turtle's canvas with axes, the verdict, a legend and some numbers.
 
-Multiple trials appear side by side.
+Several trials appear in two columns.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from PIL import Image, ImageDraw, ImageFont
 
 from grader.checks.outcome import Status
-from grader.common.words import printable
+from grader.common.words import count, printable
 from grader.report.output_file import write
 from grader.report.scene import Scene, executables, scene_of
 from grader.report.scene_image import paint
@@ -122,7 +122,8 @@ def _title(draw: ImageDraw.ImageDraw, report: Report, width: int) -> None:
     points = f"{report.points:g} of {report.max:g} points"
     errors, failed = report.with_status(Status.ERROR), report.with_status(Status.FAILED)
     if errors:
-        draw.text((LEFT, 44), f"Not finished, {points}: the machine failed.", fill=BAD, font=_font(16))
+        unjudged = f"{count(len(errors), 'check')} could not be judged."
+        draw.text((LEFT, 44), f"Not finished, {points}: {unjudged}", fill=BAD, font=_font(16))
     elif report.exit_code:
         first = f": {printable(failed[0].finding.observed)}" if failed and not failed[0].hidden else ""
         text = _cut(draw, f"Not passed yet, {points}{first}", width - LEFT - 20)

@@ -37,7 +37,7 @@ TICK_M = 0.11
 class Scene:
     """The content of a drawing: the `shapes` from bottom to top, the legend's text for each role, and some facts.
 
-    `notice` is the reason why there is no trajectory to draw. If there is a trajectory, `notice` is empty.
+    `notice` is the reason why there is no trajectory, or why the trajectory ends early. Otherwise, `notice` is empty.
     """
 
     shapes: tuple[Line | Ring | Arrow, ...] = ()

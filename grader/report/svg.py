@@ -23,8 +23,9 @@ if TYPE_CHECKING:
 Attribute = str | float | None
 
 SIDE = 500.0
-"""The position and size of the canvas in the picture."""
+"""The side length of the canvas in the picture."""
 LEFT, TOP, RIGHT, BOTTOM = 60.0, 10.0, 10.0, 46.0
+"""The width of the margins around the canvas."""
 FARTHEST = 1e5
 """Larger coordinates are clamped to this value, because browsers store coordinates with limited precision."""
 

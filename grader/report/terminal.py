@@ -39,7 +39,7 @@ STYLES = {"passed": "green", "failed": "bold red", "skipped": "yellow", "error":
 def render(report: Report, console: Console, *, brief: bool = False, verbose: bool = False) -> None:
     """Print the report.
 
-    With `brief`, only checks that did not pass are printed. With `verbose`, the clock is always printed.
+    With `brief`, checks that passed or were skipped are not printed. With `verbose`, the clock is always printed.
     """
     _line(console, Text(printable(f"{report.exercise_title}: {report.submission}"), style="bold"))
     shown = ""

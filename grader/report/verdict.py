@@ -33,9 +33,7 @@ def verdict(report: Report) -> str:
     if errors:
         return f"Not finished: {count(len(errors), 'check')} could not be judged. {points} so far."
     if report.warnings:
-        return (
-            f"Passed: {points}, with {count(len(report.warnings), 'warning')}: see the checks above that did not pass."
-        )
+        return f"Passed: {points}, with {count(len(report.warnings), 'warning')}: see the checks that did not pass."
     if not failed and not skipped:
         return f"Passed: {points}."
     if not failed:

@@ -118,7 +118,7 @@ def say(text: str) -> None:
 def look(
     ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python], parts: Sequence[str], *, made: bool
 ) -> Tuple[Optional[machine.Python], List[Need]]:
-    """Return the Python for .venv (None if .venv is already `made`), and the missing programs for these parts."""
+    """Return the Python for .venv (None if .venv is `made`, or if none is suitable), and the missing programs."""
     path = os.environ.get("PATH", "")
     tools = machine.missing_tools(path, ros)
     if "tests" in parts:

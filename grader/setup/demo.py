@@ -61,12 +61,10 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def closing_words(exit_code: int) -> str:
-    """Return the message to print if the solution could not be graded or did not pass."""
+    """Return the message to print if step 03 could not be graded, or if its result is not the expected one."""
     if exit_code == MACHINE_BROKEN:
-        return (
-            "\nThe solution could not be graded on this machine. To see what is missing, type: .venv/bin/grader doctor"
-        )
-    return "\nThe course's own solution did not pass. This is not your mistake. Please report the lines above."
+        return "\nStep 03 could not be graded on this machine. To see what is missing, type: .venv/bin/grader doctor"
+    return "\nThe result of step 03 is not the expected one. This is not your mistake. Please report the lines above."
 
 
 def uptime_s() -> float:

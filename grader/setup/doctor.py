@@ -1,7 +1,8 @@
 """`grader doctor`: check whether this machine has everything that grading needs.
 
-Each line of the output reports that a test succeeded, or states what to do. If possible, the command runs real tests:
-it builds the turtlesim interfaces if necessary, and starts a publishing node in a cell.
+Each line of the output reports what was observed. If the user can improve something, the line also states what to do.
+If possible, the command runs real tests: it builds the turtlesim interfaces if necessary, and starts a publishing node
+in a cell.
 """
 
 from __future__ import annotations
@@ -63,7 +64,10 @@ class Line:
 
 
 def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] = lambda _: None) -> list[Line]:
-    """Return all lines, each after the lines that it depends on. `tell` is called before slow tests."""
+    """Return the lines, each after the lines that it depends on. `tell` is called before slow tests.
+
+    The tests of turtlesim and of a node are left out if a test that they depend on fails.
+    """
     lines = [look_at_system(), look_at_python(), *look_at_set_up(env), *look_at_tools(env), look_at_colcon()]
     lines += [look_at_disk(xdg.cache()), look_at_memory(Path("/proc/meminfo").read_text(encoding="ascii"))]
     observed, todo = shares()
@@ -134,7 +138,7 @@ def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None)
     now = ros.prefix if ros else bootstrap.WHEELS
     made_for = "the course's own ROS 2" if stamp.ros == bootstrap.WHEELS else stamp.ros
     if stamp.digest != bootstrap.digest():
-        yield Line("set-up", "older than requirements.lock or pyproject.toml", "advice", "make demo")
+        yield Line("set-up", "made from other versions of the course's files", "advice", "make demo")
     elif os.path.realpath(stamp.ros) == os.path.realpath(now):
         yield Line("set-up", "matches the lock file")
     elif now == bootstrap.WHEELS:
@@ -242,7 +246,7 @@ def look_at_limits() -> Line:
             return Line("limits", "the kernel limits the memory and the processes of a sandbox")
     return Line(
         "limits",
-        "the grader measures a sandbox's memory ten times per second, since it is not allowed to use control groups",
+        "the grader measures a sandbox's memory ten times per second, since it cannot use control groups",
     )
 
 

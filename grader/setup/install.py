@@ -30,7 +30,7 @@ _OPTIONS = ("--no-deps", "--require-hashes", "--no-build-isolation")
 _PROGRESS = ("Downloading ", "Using cached ", "Building ", "Prepared ", "Installed ", "Bytecode compiled ")
 _MOST_LINES = 40
 _RETRIES = 2
-"""The number of failed name look-ups after which the installer is stopped. pip would continue for ten more seconds."""
+"""The number of retries without a network after which the installer is stopped. pip would try for ten more seconds."""
 _FIRST = frozenset({"uv", "setuptools"})
 """The packages that pip installs, although pip is slower than uv: uv, and setuptools, which uv needs to build empy."""
 _OLDEST_NUMPY = (1, 25)

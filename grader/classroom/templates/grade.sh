@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Grade one submission as a class with one student. All templates in this folder call this script.
+# Grade one submission as a class with one student. The templates for GitHub, GitLab and Gradescope call this script.
 #
 #   grade.sh SUBMISSION STUDENT EXERCISE OUT [options of `grader grade`, such as --fail-under 60]
 #

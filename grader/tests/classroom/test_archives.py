@@ -90,9 +90,9 @@ def test_unpacked_files_are_removed_afterwards(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["../out", "a/../../out", "/tmp/out", "..\\out"])
 def test_a_path_that_leads_out_is_refused(tmp_path: Path, name: str) -> None:
-    assert "points outside the archive" in why_not(zipped(tmp_path / "a.zip", (name, b"1")))
+    assert 'path with ".."' in why_not(zipped(tmp_path / "a.zip", (name, b"1")))
     if "\\" not in name:
-        assert "points outside the archive" in why_not(tar(tmp_path / "a.tar.gz", (member(name), b"1")))
+        assert 'path with ".."' in why_not(tar(tmp_path / "a.tar.gz", (member(name), b"1")))
     assert not (tmp_path / "out").exists()
 
 

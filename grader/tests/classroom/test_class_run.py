@@ -81,7 +81,7 @@ def make_four(folder: Path) -> Path:
 def assert_set_aside(done: dict[str, Result]) -> None:
     aside = done["deadly"].report
     assert {outcome.status for outcome in aside.outcomes} == {Status.ERROR}
-    assert "lost twice" in aside.outcomes[0].finding.observed
+    assert "was lost while it was grading" in aside.outcomes[0].finding.observed
     assert (aside.points, aside.max) == (0.0, 100.0)
     assert (done["anna"].report.points, done["ben"].report.points) == (100.0, 0.0)
 
@@ -96,7 +96,7 @@ def test_a_submission_that_kills_two_workers_is_an_error_and_the_others_are_grad
     with opened(tmp_path / "grades") as results:
         kept, todo = sort_out(order, results)
     assert sorted(result.student for result in kept) == ["anna", "ben", "clara"]
-    assert [(one.found.student, one.why) for one in todo] == [("deadly", "not finished because the machine failed")]
+    assert [(one.found.student, one.why) for one in todo] == [("deadly", "not judged last time")]
 
 
 def test_a_worker_ends_with_its_owner() -> None:

@@ -90,7 +90,7 @@ def test_the_configuration_of_an_unknown_folder_is_not_run(clone: Path) -> None:
     for place in (clone, clone / "course"):
         with pytest.MonkeyPatch.context() as patch:
             patch.chdir(place)
-            with pytest.raises(UsageError, match=r"is a program, but .* did not create this folder for you.*--course "):
+            with pytest.raises(UsageError, match=r"nothing shows that .* created this folder for you.*--course "):
                 open_class(None)
     assert not (clone.parent / "touched").exists()
 

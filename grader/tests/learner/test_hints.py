@@ -89,6 +89,14 @@ def test_passed_checks_get_no_hint() -> None:
     assert hints.hint(None, None) == "04-package-files has passed, so you do not need more hints."
 
 
+def test_a_step_is_not_said_to_have_passed_if_a_check_without_hints_has_not() -> None:
+    helped = {check for hint in find_exercise("04").hints for check in hint.checks}
+    verdict("04-package-files", done=tuple(helped))
+    assert hints.hint(None, None) == (
+        "04-package-files has no hints for the checks that have not passed. `grader check` shows these checks."
+    )
+
+
 @pytest.mark.parametrize("words", [("07", "d"), ("7", "D"), ("07", "d)"), ("d",)])
 def test_a_part_has_hints_of_its_own(words: tuple[str, ...]) -> None:
     verdict(LAST, failed=("rate",))

@@ -34,7 +34,7 @@ REST = "The code is the same in __init__ and the lines outside functions."
             OURS.replace("def step", "def go"),
             f"{REST} Only your file has go. Only the solution has step.",
         ),
-        ("", "Your package does not contain this file."),
+        ("", "Your work does not contain this file, or the file is empty."),
     ],
 )
 def test_it_is_said_in_words(theirs: str, said: str) -> None:

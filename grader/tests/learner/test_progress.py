@@ -217,7 +217,13 @@ def test_a_failure_in_the_folder_that_a_lesson_names_points_to_the_workspace(hom
 
 def test_a_workspace_that_is_a_file_is_a_usage_error(home: Path) -> None:
     (home / "ros2_ws").write_text("")
-    with pytest.raises(UsageError, match="is a file"):
+    with pytest.raises(UsageError, match="ros2_ws is a file, but it must be a folder"):
+        steps.start("01", None)
+
+
+def test_a_folder_in_the_place_of_a_file_is_a_usage_error(home: Path) -> None:
+    (home / "ros2_ws/src/my_robot_controller/package.xml").mkdir(parents=True)
+    with pytest.raises(UsageError, match=r"package\.xml is a folder, but the step has a file with this name"):
         steps.start("01", None)
 
 

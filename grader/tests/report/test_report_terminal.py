@@ -81,7 +81,7 @@ def worth(points: float, *, others: tuple[float, ...] = (100.0,)) -> Report:
 @pytest.mark.parametrize(
     ("made", "verdict", "exit_code"),
     [
-        (worth(0.0), "Passed: 100 of 100 points, with 1 warning: see the checks above that did not pass.", 0),
+        (worth(0.0), "Passed: 100 of 100 points, with 1 warning: see the checks that did not pass.", 0),
         (worth(5.0), "Not passed yet: 100 of 105 points, 1 check failed.", 1),
         (worth(0.0, others=(0.0,)), "Not passed yet: 0 of 0 points, 1 check failed.", 1),
     ],
