@@ -115,7 +115,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "lobe-radius": "a lobe of the figure eight has the wrong radius",
         "lobe-angle": "a lobe of the figure eight is not closed, or is too long",
         "lobe-gap": "the two lobes of the figure eight do not meet",
-        "too-soon": "the first commands were published before the simulator was connected",
+        "too-soon": "the first commands were probably published before the simulator was connected",
         "curves": "the sides are curved",
         "too-few-sides": "the figure has too few sides",
         "side-length": "a side has the wrong length",

@@ -1,4 +1,4 @@
-"""Explain why a value is None: no message has arrived yet, a future is not done, or a function returned nothing."""
+"""Explain why a value is None: it has no value yet, a future is not done, or a function returned nothing."""
 
 from __future__ import annotations
 
@@ -39,8 +39,6 @@ def _before_message(scene: CrashScene, objects: list[ast.expr]) -> Cause | None:
     for holder in filter(None, map(dotted, objects)):
         values = [node for node in scene.nodes if isinstance(node, ast.Assign) and holder in map(dotted, node.targets)]
         if any(isinstance(each.value, ast.Constant) and each.value.value is None for each in values):
-            text = (
-                f"{shorten(holder)} is None until the first message arrives. Check for None before you use the value."
-            )
+            text = f"{shorten(holder)} is None until it gets a value. Check for None before you use the value."
             return Cause("none-before-message", text)
     return None

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from grader.submission.setup_py import EntryPoint
 
 JOINED = re.compile(r"=[^=]*:[^=]*=")
-"""Matches an equals sign, a colon and an equals sign: two entry points without a comma between them."""
+"""Matches an equals sign, a colon and an equals sign, as in a string with two entry points."""
 
 
 def bad_entry_point(point: EntryPoint) -> Finding:
@@ -26,7 +26,8 @@ def bad_entry_point(point: EntryPoint) -> Finding:
     why = Cause("entry-point-format", "Check the entry point character by character: = and : must each appear once.")
     module = point.text.partition("=")[2].partition(":")[0]
     if is_joined(point):
-        why = Cause("entry-point-comma", "A comma is missing between two strings, so Python joins them into one.")
+        text = "This string contains two entry points. Write one string for each, with a comma after it."
+        why = Cause("entry-point-comma", text)
     elif "/" in point.text:
         why = Cause(
             "entry-point-slash",
@@ -43,7 +44,7 @@ def bad_entry_point(point: EntryPoint) -> Finding:
         text = "The entry point does not name a function. After the module, write a colon and the function name."
         why = Cause("entry-point-no-function", text)
     elif "-" in module:
-        text = "A module name cannot contain a hyphen. The name of the folder with the Python files has underscores."
+        text = "A module name cannot contain a hyphen. Use underscores in the names of Python files and folders."
         why = Cause("entry-point-format", text).fixed_by(at(where, module, module.replace("-", "_")))
     return failed(observed, expected, why.at(where))
 

@@ -24,9 +24,11 @@ def why_setup_cfg_unreadable(data: bytes) -> Cause | None:
         parser.read_string(data.decode("utf-8"))
     except UnicodeDecodeError as error:
         return Cause("not-utf8", "Save the file as UTF-8.", Where(FILE, data.count(b"\n", 0, error.start) + 1))
+    except configparser.MissingSectionHeaderError as error:
+        text = "A line with a section, such as [develop], must come before this line."
+        return Cause("setup-cfg", text, Where(FILE, error.lineno))
     except configparser.ParsingError as error:
-        line = error.lineno if isinstance(error, configparser.MissingSectionHeaderError) else error.errors[0][0]
-        return Cause("setup-cfg", "Each line must be [SECTION] or NAME=VALUE.", Where(FILE, line))
+        return Cause("setup-cfg", "This line is neither [SECTION] nor NAME=VALUE.", Where(FILE, error.errors[0][0]))
     except (configparser.DuplicateOptionError, configparser.DuplicateSectionError) as error:
         return Cause("setup-cfg", "No section, and no name in a section, may occur twice.", Where(FILE, error.lineno))
     return None

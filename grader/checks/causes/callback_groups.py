@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 REGISTERS = {"create_timer": 2, "create_subscription": 4, "create_service": 3}
-"""Maps each method that registers a callback to the number of parameters before `callback_group`."""
+"""Maps a method that registers a callback to the number of parameters before `callback_group`."""
 SELF = "self."
 
 
@@ -61,7 +61,7 @@ def _clients(node: ast.ClassDef) -> set[str]:
 
 
 def _registered(node: ast.ClassDef) -> Iterator[str]:
-    """Yield the methods that the node registers as callbacks without a callback group."""
+    """Yield the attributes of self that the node passes to these methods, such as its callbacks, without a group."""
     for call in _calls(node):
         most = REGISTERS.get(_own(call.func))
         if most is not None and len(call.args) <= most and not _grouped(call):

@@ -32,6 +32,7 @@ STOPS = frozenset({"KeyboardInterrupt", "ExternalShutdownException"})
 """The exceptions that Ctrl-C raises in a node that is written as in the tutorial."""
 
 RCLPY_ERRORS = frozenset({"InvalidNodeNameException", "InvalidTopicNameException", "NotInitializedException"})
+"""The exceptions of rclpy that explain a mistake better than the first exception of a chain."""
 
 MEANINGS = {
     "AssertionError": "An assertion failed: a condition was false, or a message field got a value of the wrong type.",
@@ -39,19 +40,19 @@ MEANINGS = {
     "EOFError": "input() waits for the keyboard, but the grader does not type. A node must not ask for input.",
     "ImportError": "That name cannot be imported from this module. Check the name letter by letter.",
     "IndentationError": "All lines of a block must have the same indentation.",
-    "IndexError": "The list has no item with this index.",
+    "IndexError": "The sequence, such as a list or a string, has no item with this index.",
     "InvalidNodeNameException": "A node name may contain only letters, digits and underscores.",
     "InvalidTopicNameException": "A topic name may contain only letters, digits, underscores and slashes.",
     "InvalidParameterTypeException": "A parameter has the type of its default value: 2 is an integer, 2.0 is a float.",
     "KeyError": "The dictionary has no such key.",
     "ModuleNotFoundError": "No module with that name is installed. Check the name letter by letter.",
-    "NameError": "This name was never defined. Check the spelling of the name, and the imports.",
+    "NameError": "This name has no value here. Check the spelling of the name, and the imports.",
     "NotInitializedException": "ROS 2 was used before rclpy.init or after rclpy.shutdown.",
     "ParameterNotDeclaredException": "Declare a parameter with declare_parameter before you read or set it.",
     "SyntaxError": "Python cannot read this line or the line before it.",
     "TabError": "The indentation mixes tabs and spaces.",
     "TypeError": "A function or an operator got a value of the wrong type, or the wrong number of arguments.",
-    "ValueError": "An argument has the right type, but its value is not allowed.",
+    "ValueError": "A value has the right type, but it is not allowed here.",
     "ZeroDivisionError": "A number was divided by zero.",
 }
 
@@ -61,8 +62,8 @@ class Crash:
     """An exception in the student's node.
 
     `error` is the exception's class or, without an exception, the signal, the exit code or the exceeded limit. `where`
-    is the last line of the traceback that is in the student's own code. `callers` are the other lines in this code, the
-    nearest caller first.
+    is the last line of the traceback, or else of another traceback in its chain, that is in the student's own code.
+    `callers` are the other lines of the traceback in this code, the nearest caller first.
     """
 
     error: str
@@ -126,8 +127,8 @@ def end_observed(evidence: Evidence) -> str:
 def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:
     """Return the last exception in stderr, or None.
 
-    In a chain of exceptions, those that Ctrl-C caused do not count. Of the others, return the first one that rclpy
-    raised, or else the first one.
+    In a chain of exceptions, those that Ctrl-C caused do not count. Of the others, return the first one in
+    RCLPY_ERRORS, or else the first one.
     """
     last: list[Crash] = []
     for chained, crash in read_tracebacks(text, files):

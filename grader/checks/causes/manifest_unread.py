@@ -44,13 +44,17 @@ def why_not_read(evidence: Evidence, manifest: Manifest) -> Cause:
         return Cause("package-xml-old-tag", cause, Where(FILE, line_of(data, f"<{tag['tag']}")))
     twice = TWICE.search(problem)
     if twice is not None:
-        cause = f"The package {shorten(twice['name'])} is declared twice. Remove one of the two lines."
+        cause = f"The package {shorten(twice['name'])} is declared more than once."
+        cause += " One tag <depend> is enough." if "generic" in problem else " Remove one of the tags."
         return Cause("package-xml-invalid", cause, _last_line(data, rf">\s*{re.escape(twice['name'])}\s*<"))
     other = UNKNOWN_TAG.search(problem)
     if other is not None:
         right = nearest(other["tag"], TAGS)
         cause = f"Format {other['format']} of {FILE} has no tag <{shorten(other['tag'], 30)}>."
-        cause += f" There is a tag <{right}>." if right else ""
+        if other["tag"] in TAGS:
+            cause += ' Write format="3" in the tag <package>.'
+        elif right:
+            cause += f" There is a tag <{right}>."
         return Cause("package-xml-invalid", cause, Where(FILE, line_of(data, f"<{other['tag']}")))
     if XML.search(problem):
         return _malformed(data, problem, manifest.line)

@@ -38,7 +38,7 @@ def line(evidence: Evidence) -> Where:
 
 
 def indented(module: Module | None, name: str) -> Cause | None:
-    """Return the cause if the module has the function only inside another statement, such as a class, else None."""
+    """Return the cause if the module has the function inside another statement, such as a class, else None."""
     functions = [node for node in module.nodes if isinstance(node, ast.FunctionDef)] if module is not None else []
     inside = next((node for node in functions if node.name == name and node.col_offset), None)
     if module is None or inside is None:
@@ -82,7 +82,7 @@ def no_entry_point(evidence: Evidence) -> Finding:
 
 
 def _is_another(evidence: Evidence, name: str) -> bool:
-    """Return whether an executable is a separate program, and not the executable of the exercise under another name."""
+    """Return whether an executable is not the executable of the exercise under another name."""
     executable = evidence.trial.executable
     has_file = any(path.rpartition("/")[2] == f"{executable}.py" for path in evidence.submission.files)
     module = evidence.built.entry_points.get(name, "").partition(":")[0].strip()
@@ -126,7 +126,7 @@ def _unread(evidence: Evidence, setup: SetupPy | None) -> Cause | None:
         group = line_of(source, rf"['\"]{re.escape(setup.groups[0])}['\"]")
         return Cause("entry-point-group", text, Where("setup.py", group) if group is not None else None)
     if stray is not None:
-        text = "The entry point is in another list. The list console_scripts ends before the entry point."
+        text = "The entry point is not in the list console_scripts."
         return Cause("entry-point-elsewhere", text, Where("setup.py", stray.line))
     return None
 

@@ -20,17 +20,22 @@ if TYPE_CHECKING:
     from grader.submission.code import Unreadable
 
 NOT_UTF8 = r"codec can't decode|unicode error|[Nn]on-UTF-8|encoding"
-"""Matches Python's messages about a file that is not valid UTF-8."""
+"""Matches Python's messages about a file that is not valid UTF-8, and about a wrong escape sequence in a string."""
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 """The byte order marks at the beginning of a UTF-16 file. Python's message about such a file mentions null bytes."""
 EXPECTED = "The file is valid Python."
 
 CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
+    (
+        r"unicodeescape|unicode_escape",
+        "syntax-error",
+        "In a string, a backslash begins an escape sequence. Write \\\\ for a backslash, or r before the string.",
+    ),
     (NOT_UTF8, "not-utf8", "Save the file as UTF-8."),
     (
         "inconsistent use of tabs",
         "tabs-and-spaces",
-        "Some lines start with tabs, others with spaces. Tabs and spaces look alike but are different. Use spaces.",
+        "The indentation mixes tabs and spaces. Tabs and spaces look alike but are different. Use spaces.",
     ),
     (
         "Missing parentheses in call to 'print'",
@@ -65,7 +70,7 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
     (
         r"invalid character|invalid non-printable",
         "typographic-character",
-        "This character comes from a word processor or a web page. Type it again. Strings need plain \" or '.",
+        "Such a character often comes from a word processor or a web page. Type it again. Strings need plain \" or '.",
     ),
     (
         r"unindent|unexpected indent|expected an indented block",
@@ -212,7 +217,7 @@ def _other_syntax(line: str, message: str) -> Cause | None:
 
 
 def _fix(diagnosis: Diagnosis, file: str, unreadable: Unreadable, data: bytes) -> tuple[Edit, ...]:
-    """Return the edit that adds a colon or closing bracket at the end of the line, if one of these may be missing."""
+    """Return the edit that adds a colon or a closing parenthesis at the end of the line, if one may be missing."""
     missing = {"colon-missing": ":", "bracket-open": ")"}.get(diagnosis)
     line = _line(unreadable, data).rstrip()
     if missing is None or not line.strip():

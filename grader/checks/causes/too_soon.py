@@ -1,4 +1,4 @@
-"""Explain why the start of a trajectory is missing: commands were sent before the simulator was connected."""
+"""Explain why the start of a trajectory is missing: commands may be lost before the simulator is connected."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def too_soon(finding: Finding, evidence: Evidence) -> Finding:
     if evidence.recording.clock != "wall" or any(evidence.code.calls(name) for name in WAITS_FOR_SUBSCRIBER):
         return finding
     text = (
-        "The rest of the trajectory is right. The first commands were published before the simulator was connected, so "
-        "they were lost. Do not publish while get_subscription_count() returns 0."
+        "Commands that are published before the simulator is connected are lost. The first commands may be among them. "
+        "Do not publish while get_subscription_count() returns 0."
     )
     return finding.because(Cause("too-soon", text, evidence.place("publish")))

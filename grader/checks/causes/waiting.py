@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 
 RESPONSES = ("call", "send_goal", "cancel_goal", "get_result")
-"""Methods of service and action clients that wait for the response. Each of them also exists with the suffix _async."""
+"""Methods of service clients, action clients and goal handles that wait for the response.
+
+Each of them also exists with the suffix _async."""
 CREATE = ("create_client", "ActionClient")
 """Functions that return a client of a service or of an action."""
 SPINS = ("spin", "spin_once", "spin_until_future_complete")
@@ -34,8 +36,8 @@ THREADS = frozenset({"MultiThreadedExecutor", "Thread", "ThreadPoolExecutor", "T
 STARTS = frozenset({"Thread", "Timer", "start_new_thread", "submit", "to_thread", "run_in_executor"})
 """Functions that call one of their arguments in another thread."""
 STRAIGHT = frozenset({"__init__", "main"})
-"""Functions that run before rclpy.spin. They are not counted as callbacks, even if their names are used without a
-call."""
+"""Functions that the executor does not call. They are not counted as callbacks, even if their names are used without
+a call."""
 OTHER_CALLS = frozenset({"subprocess", "self", "super", "cls"})
 """Objects whose method `call` does not belong to a service client."""
 
@@ -50,7 +52,7 @@ class Wait:
 
     @property
     def deadlock(self) -> bool:
-        """Whether the wait is for a response. A node with one thread never receives this response."""
+        """Whether the node waits for a response, or spins. If it has one thread, it never receives the response."""
         return self.name in (LOOP, *RESPONSES, *SPINS)
 
     @property
@@ -70,12 +72,12 @@ class Wait:
         if self.name in SERVERS:
             ready = self.name.replace("wait_for_", "") + "_is_ready"
             text = (
-                f"{self._subject} waits inside a callback until the server exists, perhaps forever. Meanwhile, the "
-                f"node calls no other callback. {ready} returns at once."
+                f"{self._subject} waits inside a callback until the server exists, perhaps forever. Meanwhile, a node "
+                f"with one thread calls no other callback. {ready} returns at once."
             )
             return Cause("waits-in-callback", text, self.where)
         text = (
-            "While a callback sleeps, the node calls no other callback. "
+            "While a callback sleeps, a node with one thread calls no other callback. "
             "Count the timer calls instead, or use a second timer."
         )
         return Cause("sleep-in-callback", text, self.where)
@@ -232,7 +234,7 @@ def _in_threads(module: Module) -> Iterator[ast.expr]:
 
 
 def inside(function: Function) -> Iterator[ast.AST]:
-    """Yield the syntax nodes of a function, except the nodes of functions that are defined inside this function."""
+    """Yield the syntax nodes of a function, except those inside functions and classes that it defines."""
     waiting: list[ast.AST] = list(function.body) if isinstance(function.body, list) else [function.body]
     while waiting:
         node = waiting.pop()

@@ -24,7 +24,7 @@ CATCHES_ALL = frozenset({"AssertionError", "Exception", "BaseException"})
 
 
 def without_assert(code: TestCode) -> tuple[TestFunction, ...]:
-    """Return the tests that neither assert anything themselves nor call a function that does."""
+    """Return the tests that neither assert anything themselves nor use a function or a fixture that does."""
     functions = _functions(code.modules)
     asserting = {name for name, node in functions if _asserts(node)}
     before = -1
@@ -57,7 +57,7 @@ def always_true(code: TestCode) -> Cause | None:
 
 
 def always_false(code: TestCode) -> Cause | None:
-    """Return the cause if a test fails on every node, else None.
+    """Return the cause if a test asserts a constant that is false, or calls pytest.fail, on every node, else None.
 
     A test that may return, or skip itself, before it fails does not count.
     """
@@ -103,7 +103,7 @@ def in_a_loop(code: TestCode) -> Cause | None:
         for node in loops if asserts else ():
             inside = set(map(id, ast.walk(node)))
             if _may_be_empty(node.iter, test.module) and {id(each) for each in asserts} <= inside:
-                text = "If no message arrives, the list is empty and the assert in this loop never runs."
+                text = "If there is nothing to loop over, for example no message, the assert in this loop never runs."
                 return Cause("assert-in-loop", text, Where(test.module.file, node.lineno))
     return None
 

@@ -108,6 +108,8 @@ def _is_subclass_elsewhere(scene: CrashScene, owner: str, name: str) -> bool:
 
 def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None:
     """Return the cause if an rclpy object, a message or a plain value lacks the attribute, else None."""
+    if name in ros_names.FIELDS.get(owner, ()):
+        return Cause("message-field", f"This is a {owner} of another package, which has other fields.")
     if owner in ros_names.FIELDS:
         fields = ros_names.FIELDS[owner]
         guess = nearest(name, fields)
@@ -130,7 +132,7 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
 
 
 def _of_class_elsewhere(scene: CrashScene, owner: str, name: str) -> Cause:
-    """Return the reason why a ROS 2 class lacks the attribute, for example because only its objects have fields."""
+    """Return the reason why a class of another file lacks the attribute: perhaps only its objects have fields."""
     if owner in ros_names.FIELDS:
         return class_for_object(scene, owner, name)
     text = f"The class {shorten(owner)} has no constant or method with that name."
@@ -176,9 +178,8 @@ def _of_own_type(scene: CrashScene, owner: str, name: str) -> Cause:
     assert own is not None
     outside = next((each for each in scene.top_functions() if each.name == name), None)
     if outside is not None:
-        return Cause("method-outside-class", f"{name} is outside the class. Indent {name} like the other methods.").at(
-            scene.at(outside)
-        )
+        text = f"{name} is outside the class. Indent {name} like the other methods."
+        return Cause("method-outside-class", text, scene.at(outside))
     first = next((each for each in scene.top_functions() if "self" in [a.arg for a in each.args.args]), None)
     if first is not None and first.lineno > own.lineno:
         text = f"{first.name} is not indented, so the class ends above it. Indent {first.name} like the other methods."

@@ -46,7 +46,7 @@ TAKES = {
     "spin": "the node",
     "info": "one string",
 }
-"""Maps a function to the arguments that it takes."""
+"""Maps a function to the arguments that beginners pass to it."""
 
 
 def callback_called(scene: CrashScene) -> Cause | None:
@@ -80,9 +80,8 @@ def swapped(scene: CrashScene) -> Cause | None:
             kinds = [kind_of(argument, scene) for argument in call.args]
             known = [kind for kind in kinds if kind]
             if len(known) == len(kinds) == len(wanted) and kinds != wanted and sorted(kinds) == sorted(wanted):
-                return Cause(
-                    "arguments-swapped", f"{name} takes its arguments in this order: {TAKES[name]}.", scene.at(call)
-                )
+                text = f"{name} takes its arguments in this order: {TAKES[name]}."
+                return Cause("arguments-swapped", text, scene.at(call))
     return None
 
 
@@ -113,7 +112,7 @@ def why_type(scene: CrashScene) -> Cause | None:
             return Cause("message-arguments", "Create the message without arguments, then set its fields one by one.")
         return _too_many(scene, many)
     if keyword is not None:
-        more = f" It takes {TAKES[keyword['function']]}." if keyword["function"] in TAKES else ""
+        more = f" Pass {TAKES[keyword['function']]}." if keyword["function"] in TAKES else ""
         return Cause("unexpected-keyword", f"{keyword['function']} has no parameter {keyword['name']}.{more}")
     if (expected := EXPECTED.search(text)) is not None:
         return published_other(scene, expected["wanted"], expected["got"])
@@ -132,21 +131,21 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
         return comma_for_dot(scene)
     if "'property' object is not iterable" in text:
         spun = next(iter(scene.calls_on_line("spin")), None)
-        name = ast.unparse(spun.args[0]) if spun is not None and spun.args else "It"
+        name = ast.unparse(spun.args[0]) if spun is not None and spun.args else ""
         set_to = scene.module.names.get(name) if scene.module is not None else None
-        text = f"rclpy.spin was called with {shorten(name)}, which is a class. {CREATE_OBJECT}"
+        spun_with = f"rclpy.spin was called with {shorten(name)}, which is a class."
+        text = f"{spun_with if name else 'A class is used as a node.'} {CREATE_OBJECT}"
         fix = at(scene.at(set_to), ast.unparse(set_to), f"{ast.unparse(set_to)}()") if set_to is not None else ()
         return Cause("class-for-object", text, scene.at(set_to)).fixed_by(fix)
     if "descriptor '__init__'" in text and "'super'" in text:
         return Cause("not-called", "super is a function. Write super().__init__, with parentheses after super.")
     if LOGGED in text:
-        return Cause(
-            "string-and-number", "A string and a number cannot be added. Use an f-string to put a number into a string."
-        )
+        return Cause("string-and-number", "A log method takes a string. Use an f-string to put a number into a string.")
     if "'NoneType' object does not support the context manager" in text:
         return _with_init(scene) or _after_shutdown(scene) or _never_init(scene)
     if "rclpy_resolve_name(): incompatible" in text:
-        return Cause("crash", "A topic name must be a string in quotation marks, or a variable that contains a string.")
+        text = "The name of a topic or service must be a string in quotation marks, or a variable with a string."
+        return Cause("crash", text)
     if "Expected QoSProfile or int" in text:
         quotes = " without quotation marks" if "'str'" in text else ""
         return Cause("queue-size", f"The last argument is the queue size, a whole number{quotes}.")
@@ -170,7 +169,7 @@ def _never_init(scene: CrashScene) -> Cause | None:
 
 
 def _after_shutdown(scene: CrashScene) -> Cause | None:
-    """Return the cause if an earlier line of the same function calls rclpy.shutdown, else None."""
+    """Return the cause if an earlier line of the same function, or of an __init__, calls shutdown, else None."""
     calls = (node for node in scene.nodes if isinstance(node, ast.Call) and node.lineno < scene.line)
     ended = [node for node in calls if (dotted(node.func) or "").rpartition(".")[2] in ("shutdown", "try_shutdown")]
     around = scene.function_around(ended[-1]) if ended else None
@@ -212,13 +211,10 @@ def _too_many(scene: CrashScene, many: re.Match[str]) -> Cause | None:
     if own is not None:
         return own
     if function in ros_names.OTHERS["RcutilsLogger"]:
-        return Cause(
-            "log-arguments",
-            f"{function} takes one string, not several as print does. "
-            "Use an f-string to put everything into one string.",
-        )
+        text = f"{function} takes one string, not several as print does. Use an f-string to put everything into one."
+        return Cause("log-arguments", text)
     if function in TAKES:
-        return Cause("too-many-arguments", f"{function} takes {TAKES[function]}, and nothing else.")
+        return Cause("too-many-arguments", f"Pass only {TAKES[function]} to {function}.")
     calls = scene.calls_on_line(function)
     if len(calls) != 1 or any(isinstance(each, ast.Starred) for each in calls[0].args):
         return None
@@ -267,9 +263,7 @@ def why_refused(scene: CrashScene) -> Cause | None:
     if "must only be called once" in text:
         return Cause("init-twice", f"Call rclpy.init only once.{_calls_of_init(scene)}")
     if "called for existing topic name" in text:
-        return Cause(
-            "second-type", "A topic has one type. Two publishers with different types cannot use the same topic name."
-        )
+        return Cause("second-type", "A topic has one type. A program cannot use the same topic name with two types.")
     if "callback should be either be callable" in text:
         return callback_called(scene) or _no_message(scene)
     if "timer period must be non-negative" in text:
@@ -297,4 +291,4 @@ def _no_message(scene: CrashScene) -> Cause:
             if (only := [each.arg for each in method.args.args if each.arg != "self"]) and scene.class_around(method):
                 text = f"{name} is a method, so its first parameter is self. Write {name}(self, {only[0]})."
             return Cause("callback-parameters", text, scene.at(method))
-    return Cause("not-callable", "The callback of the subscription is not a function.")
+    return Cause("not-callable", "The callback of a subscription is a function or method that takes the message.")

@@ -80,7 +80,7 @@ def _why_undeclared(scene: CrashScene) -> Cause:
 
 def _why_value(scene: CrashScene) -> Cause | None:
     if "to unpack" in scene.crash.message:
-        text = "The number of names before the equals sign differs from the number of values after it."
+        text = "The number of names differs from the number of values that are unpacked."
         return comma_for_dot(scene) or Cause("crash", text)
     if "empty" not in scene.crash.message or not any(name in scene.crash.message for name in ("min()", "max()")):
         return None

@@ -21,7 +21,7 @@ LIST = re.compile(r"The '(?P<field>\w+)' field must be a set or sequence")
 FLOAT = ("float", "double")
 KINDS = {"int": "a whole number", "str": "a string", "bool": "True or False"}
 """Maps the Python type of a field to a phrase for the values of the field."""
-READS = ("input", "get", "str", "format", "getenv")
+READS = ("input", "str", "format", "getenv")
 """Functions that return a string."""
 
 
@@ -93,7 +93,7 @@ def why_no_float(field: str, value: ast.expr | None) -> Cause | None:
             f"The field {field} is a float, but this is the parameter itself. The value of the parameter is in .value."
         )
         return Cause("field-type", text)
-    if names and names[0].rpartition(".")[2] in READS:
+    if names and (names[0].rpartition(".")[2] in READS or names[0].endswith("environ.get")):
         return Cause(
             "string-for-number",
             f"The field {field} is a float, but the value is a string. Convert it with float(...).",

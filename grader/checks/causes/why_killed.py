@@ -39,7 +39,7 @@ def why_killed(evidence: Evidence, track: Track, service: str) -> Cause:
 
 
 def _place(evidence: Evidence) -> Where | None:
-    """Return the place where the node creates a request to /kill, or else where it calls a service, or None."""
+    """Return the place where the node creates a request to /kill, or else where it uses a client, or None."""
     for call in evidence.code.calls("Request"):
         if isinstance(call.node.func, ast.Attribute) and ast.unparse(call.node.func.value) == "Kill":
             return call.where

@@ -14,6 +14,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.comma_for_dot import comma_for_dot
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
+from grader.checks.causes.why_other_object import NEED_THE_NODE
 from grader.checks.edit import Edit, at
 from grader.common.words import nearest, shorten
 
@@ -34,8 +35,6 @@ MEMBERS = {
 """Maps a module to those of its names that learners often use without the name of the module as a prefix."""
 TAKE_A_STRING = {"__init__": 0, "create_node": 0, "create_publisher": 1, "create_subscription": 1, "create_client": 1}
 """Functions of rclpy that take the name of a node, topic or service, each with the position of this argument."""
-NEED_THE_NODE = ("spin", "spin_once", "spin_until_future_complete", "add_node")
-"""Functions of rclpy that take the node as an argument."""
 CONSTANTS = {
     "true": "True",
     "false": "False",
@@ -65,6 +64,8 @@ def why_no_name(scene: CrashScene) -> Cause | None:
 
 
 def _unknown(scene: CrashScene, name: str) -> Cause:
+    if lines := [line for line, _ in _stores(scene, name)]:
+        return Cause("name-undefined", f"Line {min(lines)} gives {name} a value, but {name} has none here.")
     if name[:1].isupper():
         return Cause("name-undefined", "Nothing defines this name before this line, and nothing imports it.")
     text = "Nothing defines this name before this line."
@@ -86,13 +87,20 @@ def _of_self(scene: CrashScene, name: str) -> Cause | None:
     own = scene.own_class
     if own is None:
         return None
-    known = {*(each.name for each in methods(own)), *(each for each, _ in attributes_set(own))}
+    known = {*(each.name for each in methods(own)), *(each for each, _ in attributes_set(own)), *_set_in_class(own)}
     if _of_string(scene, name) is not None and not _holds_string(own, name):
         return None
     if name in known or (name in ros_names.NODE and _is_called(scene, name)):
         text = f"{name} belongs to the object. Inside a method, write self.{name}."
         return Cause("missing-self", text).fixed_by(at(scene.crash.where, name, f"self.{name}"))
     return None
+
+
+def _set_in_class(own: ast.ClassDef) -> set[str]:
+    """Return the names that the body of the class assigns, outside its methods."""
+    targets = [target for each in own.body if isinstance(each, ast.Assign) for target in each.targets]
+    targets += [each.target for each in own.body if isinstance(each, ast.AnnAssign) and each.value is not None]
+    return {target.id for target in targets if isinstance(target, ast.Name)}
 
 
 def _of_string(scene: CrashScene, name: str) -> Cause | None:

@@ -26,8 +26,8 @@ def why_no_error(evidence: Evidence) -> Cause:
     where = evidence.place("ValueError", "lstsq", "solve")
     if evidence.code.calls("ValueError"):
         return Cause("no-error", "For these points, the function does not reach the line with ValueError.", where)
-    text = "The function does not check the points before the computation. A printed message, NaN or None is not an "
-    return Cause("no-error", f"{text}exception.", where)
+    text = "The function raises no exception for these points. A printed message, NaN or None is not an exception."
+    return Cause("no-error", text, where)
 
 
 def _is_error(value: ast.expr | None) -> bool:

@@ -17,11 +17,11 @@ WITH_NONE = re.compile(
     r"unsupported operand type\(s\) for .*'NoneType'|bad operand type for unary .*'NoneType'|"
     r"not supported between instances of .*'NoneType'"
 )
-"""Matches Python's messages about an operator with None on one side."""
+"""Matches Python's messages about an operator with None as an operand."""
 
 
 def why_none(scene: CrashScene) -> Cause | None:
-    """Return the cause if one side of an operator is None, else None."""
+    """Return the cause if an operand is None. If the exception has another reason, return None."""
     if not WITH_NONE.search(scene.crash.message):
         return None
     names = dict.fromkeys(name for node in scene.on_line for name in map(dotted, _sides(node)) if name)
@@ -32,7 +32,7 @@ def why_none(scene: CrashScene) -> Cause | None:
     if empty:
         text = f"{a_list(empty)} are None until they get a value. Check for None before you compute with them."
         return Cause("none-before-message", text)
-    return Cause("crash", "One side of the operator is None, which is not a number.")
+    return Cause("crash", "An operand is None, which is not a number.")
 
 
 def _sides(node: ast.AST) -> list[ast.expr]:

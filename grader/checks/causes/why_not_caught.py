@@ -176,8 +176,10 @@ def loop_variable(evidence: Evidence) -> Cause | None:
     for module in evidence.code.modules:
         for loop in (node for node in module.nodes if isinstance(node, ast.For)):
             name = loop.target.id if isinstance(loop.target, ast.Name) else ""
+            keys = {id(each.value) for each in ast.walk(loop) if isinstance(each, ast.keyword) and each.arg == "key"}
             for made in ast.walk(loop):
-                if isinstance(made, ast.Lambda | ast.FunctionDef) and _uses(made, name):
+                # A key, such as that of min, is called before the iteration ends.
+                if isinstance(made, ast.Lambda | ast.FunctionDef) and id(made) not in keys and _uses(made, name):
                     text = (
                         f"The function is created in a loop and uses {shorten(name)}, the loop variable. When the "
                         "function is called, the loop has ended, and the variable has its last value. Create the "

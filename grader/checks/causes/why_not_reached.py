@@ -29,7 +29,7 @@ ASIDE_RAD = 0.3
 """A target within this angle (rad) is considered straight ahead or straight behind, so a turn in either direction is
 right."""
 MOST = 0.8
-"""The cause is reported only if the turtle turned away or faced away in at least this fraction of the commands."""
+"""The cause is reported only if the turtle turned or faced away in at least this fraction of the commands to turn."""
 FEWEST, FEWEST_AWAY = 10, 3
 """The minimum number of turns, and of turns away from the target, that are needed for a conclusion."""
 
@@ -98,7 +98,7 @@ def _farthest(evidence: Evidence) -> Cause | None:
     chosen = [call for call in evidence.code.calls("max") if (key := call.argument(99, "key")) and not _negates(key)]
     if not chosen or evidence.code.calls("min"):
         return None
-    text = "max with a key returns the target with the largest distance."
+    text = "max with a key returns the target for which the key, such as the distance, is largest."
     return Cause("farthest-chosen", text, chosen[0].where)
 
 
@@ -113,14 +113,14 @@ def wrong_turn(evidence: Evidence) -> Cause | None:
 
 
 def _turns_away(evidence: Evidence) -> Cause | None:
-    """Return the cause if, in most commands, turtle1 turned away from the nearest target or faced away from it."""
+    """Return the cause if, in most commands to turn, turtle1 turned or faced away from the nearest target."""
     turns = list(_turns(evidence))
     away, faced = turns.count("away"), turns.count("behind")
     if away < FEWEST_AWAY or len(turns) < FEWEST or away + faced < MOST * len(turns):
         return None
     text = (
-        f"In {away + faced} of {len(turns)} commands, the turtle turned away from the nearest target, or faced away "
-        "from it. A positive angular.z turns to the left: the error is the direction to the target minus theta."
+        f"In {away + faced} of {len(turns)} commands to turn, the turtle turned away from the nearest target, or faced "
+        "away from it. A positive angular.z turns to the left: the error is the direction to the target minus theta."
     )
     return Cause("turns-away", text, evidence.code.assigned("angular", "z") or evidence.place("publish"))
 

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
 
+NEED_THE_NODE = ("spin", "spin_once", "spin_until_future_complete", "add_node")
+"""Functions of rclpy that take the node as an argument."""
 CREATE_OBJECT = "Add parentheses after the class name to create an object."
 
 
@@ -59,9 +61,14 @@ def without_return(scene: CrashScene, call: ast.expr) -> Cause | None:
 
 
 def no_object(scene: CrashScene) -> Cause:
-    """Return the cause if rclpy.spin was called with None, for example because a function returned nothing."""
-    text = "rclpy.spin was called with None instead of a node."
-    given = {dotted(call.args[0]) for call in scene.calls_on_line("spin") if call.args}
+    """Return the cause if spin or a similar function was called with None instead of a node.
+
+    A function without a return statement may have returned this None.
+    """
+    calls = [call for name in NEED_THE_NODE for call in scene.calls_on_line(name) if call.args]
+    function = (dotted(calls[0].func) if calls else None) or "rclpy.spin"
+    text = f"{shorten(function)} was called with None instead of a node."
+    given = {dotted(call.args[0]) for call in calls}
     for node in scene.nodes:
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and given & set(map(dotted, node.targets)):
             maker = without_return(scene, node.value)

@@ -115,7 +115,7 @@ def why_sleep_in_callback(evidence: Evidence) -> Cause | None:
     found = _made_in_callback(evidence, "sleep")
     if found is None or not any(call.where == found[1] and _length(call) for call in evidence.code.calls("sleep")):
         return None
-    text = "While a method sleeps, nothing else in the node runs, not even its timer."
+    text = "While a method sleeps, a node with one thread does nothing else, and its timer waits."
     return Cause("sleep-in-callback", text, found[1])
 
 

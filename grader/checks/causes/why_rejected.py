@@ -109,6 +109,6 @@ def _of_ros(message: str, where: Where | None) -> Cause | None:
 
 
 def last_error(message: str) -> str:
-    """Return the exception from an excerpt of pytest's output, on one line."""
+    """Return the last exception in an excerpt of pytest's output, or else its first 150 characters, on one line."""
     found = [match["text"] for match in ERROR.finditer(message)]
     return found[-1] if found else " ".join(message.removeprefix("E ").split())[:150]

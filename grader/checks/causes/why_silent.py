@@ -38,8 +38,8 @@ def why_qos(evidence: Evidence) -> Cause | None:
     if not any(INCOMPATIBLE in text for text in output):
         return None
     text = (
-        "The QoS settings are not compatible with those of turtlesim. If you pass a queue size instead of a QoS "
-        "profile, they are compatible."
+        "The QoS settings of a publisher and a subscription are not compatible. If you pass a queue size instead of a "
+        "QoS profile, they are compatible with those of turtlesim."
     )
     return Cause("qos-mismatch", text, evidence.place("QoSProfile", "create_publisher", "create_subscription"))
 
@@ -86,7 +86,7 @@ def _stuck(evidence: Evidence) -> Cause | None:
     for module, method in methods_of(evidence):
         for node in inside(method):
             where = Where(module.file, getattr(node, "lineno", None))
-            waiting = _waits(node, module)
+            waiting = _waits(evidence, node, module)
             if waiting is not None:
                 return waiting.at(where)
             endless = isinstance(node, ast.While) and ast.unparse(node.test) in ALWAYS and not _ends(node)
@@ -102,13 +102,16 @@ def _stuck(evidence: Evidence) -> Cause | None:
     return waits_in_callback(evidence)
 
 
-def _waits(node: ast.AST, module: Module) -> Cause | None:
-    """Return the cause if the node waits forever for a service that turtlesim does not have, else None."""
+def _waits(evidence: Evidence, node: ast.AST, module: Module) -> Cause | None:
+    """Return the cause if the node waits forever for a service that no node of the trial has, else None."""
     if not isinstance(node, ast.Call) or getattr(node.func, "attr", "") != "create_client" or len(node.args) < 2:
         return None
     name = evaluate(node.args[1], module.names)
     waits = any(isinstance(each, ast.Attribute) and each.attr == "wait_for_service" for each in module.nodes)
-    if not isinstance(name, str) or not waits or f"/{name.strip('/')}" in ros_names.SERVICES:
+    recording = evidence.recording
+    observed = {*(each.service for each in recording.offers), *(each.service for each in recording.calls)}
+    known = observed | set(ros_names.SERVICES)
+    if not isinstance(name, str) or not waits or f"/{name.strip('/')}" in known:
         return None
     guess = nearest(f"/{name.strip('/')}", ros_names.SERVICES)
     more = f" A similar service exists: {guess}." if guess else ""
@@ -182,7 +185,10 @@ def _never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
 
 
 def _is_called_by_others(evidence: Evidence, module: Module, method: ast.FunctionDef) -> bool:
-    """Return whether Python (as with __call__), a base class such as Thread, or getattr may call the method."""
+    """Return whether Python (as with __call__), a base class such as Thread, or a decorator may call the method.
+
+    Code that uses getattr may call every method.
+    """
     classes = [node for each in evidence.code.modules for node in each.nodes if isinstance(node, ast.ClassDef)]
     own = next(each for each in classes if method in each.body)
     bases = {(dotted(base) or "").rpartition(".")[2] for base in own.bases} - {each.name for each in classes}

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def why_unasked(evidence: Evidence, service: str) -> Cause:
-    """Return the most likely cause if no call arrives at this service of the simulator."""
+    """Return the most likely cause if no call arrives at this service."""
     return (
         waits_in_callback(evidence)
         or _wrong_name(evidence, service)

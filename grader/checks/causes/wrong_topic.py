@@ -54,9 +54,9 @@ def _has_turtle(evidence: Evidence, topic: str) -> bool:
 
 
 def _is_absolute(evidence: Evidence, maker: str, topic: str) -> bool:
-    """Return whether the source contains this full name, which means that ROS 2 did not add a namespace to it."""
-    calls = evidence.code.calls(maker)
-    return any(evaluate(call.argument(1, "topic"), call.module.names) == topic for call in calls)
+    """Return whether the source contains the whole name, which means that ROS 2 did not add a namespace to it."""
+    names = (evaluate(call.argument(1, "topic"), call.module.names) for call in evidence.code.calls(maker))
+    return any(name in (topic, topic.removeprefix("/")) for name in names)
 
 
 def _line(evidence: Evidence, maker: str, topic: str) -> Where | None:

@@ -23,7 +23,7 @@ GENERAL = "Check the entry point character by character: = and : must each appea
         (
             "draw_circle = my-robot-controller.draw_circle:main",
             "entry-point-format",
-            "A module name cannot contain a hyphen. The name of the folder with the Python files has underscores.",
+            "A module name cannot contain a hyphen. Use underscores in the names of Python files and folders.",
         ),
         (
             "draw_circle = my_robot_controller/draw_circle:main",
@@ -43,7 +43,7 @@ GENERAL = "Check the entry point character by character: = and : must each appea
         (
             "draw_circle = a.b:mainother = a.c:main",
             "entry-point-comma",
-            "A comma is missing between two strings, so Python joins them into one.",
+            "This string contains two entry points. Write one string for each, with a comma after it.",
         ),
     ],
 )

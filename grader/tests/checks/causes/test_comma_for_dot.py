@@ -56,6 +56,6 @@ def test_a_comma_between_two_values_is_not_mistaken(line: str, error: str) -> No
 
 @pytest.mark.parametrize("error", [TOO_FEW, TOO_MANY])
 def test_names_and_values_of_different_numbers_are_explained(error: str) -> None:
-    text = "The number of names before the equals sign differs from the number of values after it."
+    text = "The number of names differs from the number of values that are unpacked."
     assert reported(IMPORTS + DRIVER.format(line="x, y = read()"), error).cause == text
     assert reported(IMPORTS + DRIVER.format(line="x = read()"), "ValueError: not a number").cause != text

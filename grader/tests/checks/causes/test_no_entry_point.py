@@ -55,7 +55,7 @@ def setup_py(instead: str, more: str = "") -> Files:
             setup_py('            "a = b.c:main" "draw_circle = my_robot_controller.draw_circle:main",\n'),
             "entry-point-comma",
             "setup.py:14",
-            "A comma is missing between two strings, so Python joins them into one.",
+            "This string contains two entry points. Write one string for each, with a comma after it.",
         ),
         (
             setup_py(f"            # {POINT.strip()}\n"),
@@ -67,7 +67,7 @@ def setup_py(instead: str, more: str = "") -> Files:
             setup_py("", f"    tests_require=[\n{POINT}    ],\n"),
             "entry-point-elsewhere",
             "setup.py:13",
-            "The entry point is in another list.",
+            "The entry point is not in the list console_scripts.",
         ),
         ({"setup.py": None}, "entry-point-missing", "setup.py", f"{NODE_FILE} exists, but"),
         ({"setup.py": "setup(\n"}, "entry-point-missing", "setup.py", f"{NODE_FILE} exists, but"),

@@ -62,7 +62,7 @@ def cause(line: str, error: str, name: str = "__init__") -> str:
             "self.create_subscription(Pose, '/a', 'send', 10)",
             "self.create_subscription(Pose, '/a', self.send, 10)",
             CALLBACK,
-            "The callback of the subscription is not a function.",
+            "The callback of a subscription is a function or method that takes the message.",
         ),
     ],
 )
@@ -87,7 +87,7 @@ def test_a_refused_call_is_told_from_one_that_is_nearly_the_same(line: str, near
         (
             "RuntimeError: callback should be either be callable with one argument or two",
             "RuntimeError: callback failed",
-            "The callback of the subscription is not a function.",
+            "The callback of a subscription is a function or method that takes the message.",
         ),
     ],
 )

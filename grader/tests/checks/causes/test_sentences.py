@@ -31,7 +31,7 @@ def cause(line: str, error: str) -> str:
 @pytest.mark.parametrize(
     ("words", "true", "near", "error"),
     [
-        ("The list has no item with this index", "x = [1][1]", None, "IndexError: list index out of range"),
+        ("has no item with this index", "x = [1][1]", None, "IndexError: list index out of range"),
         ("A node name may contain only letters", "x = 1", None, "InvalidNodeNameException: Invalid node name"),
         ("ROS 2 was used before rclpy.init or after", "x = 1", None, "NotInitializedException: no context"),
         (

@@ -9,6 +9,7 @@ from grader.submission.code import Unreadable, read_module
 from grader.tests.checks.made import NODE_FILE, evidence, finding, submission
 
 WORDS = {
+    "(unicode error) 'unicodeescape' codec can't decode bytes in position 2-3": "syntax-error",
     "(unicode error) 'utf-8' codec can't decode byte 0xe4": "not-utf8",
     "inconsistent use of tabs and spaces in indentation": "tabs-and-spaces",
     "Missing parentheses in call to 'print'. Did you mean print(...)?": "python-2-print",
@@ -127,6 +128,7 @@ def test_an_entry_point_without_quotation_marks_is_one_of_setup_py(file: str, li
 
 
 SAID = {
+    "(unicode error) 'unicodeescape' codec can't decode bytes": "begins an escape sequence. Write \\\\ for",
     "(unicode error) 'utf-8' codec can't decode byte 0xe4": "Save the file as UTF-8.",
     "inconsistent use of tabs and spaces in indentation": "Tabs and spaces look alike but are different.",
     "Missing parentheses in call to 'print'. Did you mean print(...)?": "In Python 3, print is a function",
@@ -138,7 +140,7 @@ SAID = {
     "invalid syntax. Perhaps you forgot a comma?": "Put a comma between two arguments",
     "cannot assign to function call here.": "= assigns a value to a name. == compares two values.",
     "'(' was never closed": "This bracket is never closed.",
-    "invalid non-printable character U+00A0": "This character comes from a word processor or a web page.",
+    "invalid non-printable character U+00A0": "Such a character often comes from a word processor or a web page.",
 }
 
 

@@ -126,7 +126,7 @@ def test_the_cause_names_the_deadlock_and_the_line() -> None:
 def test_a_sleep_in_a_callback_is_told_from_a_deadlock(step: str, *, found: bool) -> None:
     source = NODE.format(init="pass", callback="self.step", step=step, ask="pass", main="time.sleep(0.5)")
     (wait,) = waits_in_callbacks(evidence(package=submission({NODE_FILE: source})))
-    words = "While a callback sleeps, the node calls no other callback. Count the timer calls instead,"
+    words = "While a callback sleeps, a node with one thread calls no other callback. Count the timer calls instead,"
     assert wait.cause.text.startswith(words) == found
     assert wait.deadlock != found
 

@@ -104,5 +104,5 @@ def test_an_except_that_hides_a_failure_is_found(handler: str, after: str, *, fo
 )
 def test_a_loop_over_what_may_be_empty_is_found(above: str, listed: str, *, found: bool) -> None:
     cause = in_a_loop(code(f"    for each in {listed}:\n        assert each", above))
-    words = "If no message arrives, the list is empty and the assert in this loop never runs."
+    words = "If there is nothing to loop over, for example no message, the assert in this loop never runs."
     assert (cause is not None and cause.text == words) == found

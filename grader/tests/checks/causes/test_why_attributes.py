@@ -84,6 +84,12 @@ def test_a_class_that_was_made_nowhere_is_reported_where_it_crashed() -> None:
     assert "It is a class." in found.cause
 
 
+def test_a_pose_of_another_package_is_not_described_by_the_fields_of_turtlesims_pose() -> None:
+    error = "AttributeError: 'Pose' object has no attribute 'theta'"
+    found = reported("pose = Pose()\nprint(pose.theta)  # crashed\n", error)
+    assert found.cause == "This is a Pose of another package, which has other fields."
+
+
 def none_error(name: str) -> str:
     return f"AttributeError: 'NoneType' object has no attribute '{name}'"
 
@@ -103,6 +109,11 @@ def test_what_no_message_has_filled_is_none(first: str, diagnosis: str) -> None:
     found = reported(source, none_error("x"))
     assert found.diagnosis == diagnosis
     assert ("self.pose is None until" in found.cause) == (diagnosis == "none-before-message")
+
+
+def test_the_function_that_was_called_with_none_instead_of_a_node_is_named() -> None:
+    found = reported("executor.add_node(make())  # crashed\n", none_error("executor"))
+    assert found.cause == "executor.add_node was called with None instead of a node."
 
 
 def test_spin_wants_a_node() -> None:

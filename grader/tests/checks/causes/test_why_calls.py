@@ -155,14 +155,14 @@ def test_a_call_over_several_lines_is_shown_where_it_begins() -> None:
             "Node.create_timer() takes from 3 to 6 positional arguments but 7 were given",
             "too-many-arguments",
             "",
-            "create_timer takes the period and the callback, and nothing else.",
+            "Pass only the period and the callback to create_timer.",
         ),
         ("fill() takes 0 positional arguments but 1 was given", "crash", "", ""),
         (
             "Node.create_timer() got an unexpected keyword argument 'period'",
             "unexpected-keyword",
             "",
-            "create_timer has no parameter period. It takes the period and the callback.",
+            "create_timer has no parameter period. Pass the period and the callback.",
         ),
         (
             "fill() got an unexpected keyword argument 'colour'",
@@ -184,13 +184,19 @@ def test_a_call_over_several_lines_is_shown_where_it_begins() -> None:
         ),
         ("'int' object is not callable", "not-callable", "", "A value of type int is called"),
         ('can only concatenate str (not "int") to str', "string-and-number", "", "A string and a number"),
+        (
+            "rclpy_logging_rcutils_log(): incompatible function arguments.",
+            "string-and-number",
+            "",
+            "A log method takes a string. Use an f-string to put a number into a string.",
+        ),
         ("Expected QoSProfile or int, but received <class 'str'>", "queue-size", "", f"{QUEUE} without quotation"),
         ("Expected QoSProfile or int, but received <class 'float'>", "queue-size", "", f"{QUEUE}."),
         (
             "'property' object is not iterable",
             "class-for-object",
             "",
-            "rclpy.spin was called with It, which is a class.",
+            "A class is used as a node. Add parentheses after the class name",
         ),
         ("what nobody has seen", "crash", "", ""),
     ],
@@ -209,7 +215,7 @@ def test_what_was_spun_is_named() -> None:
     found = reported("rclpy.spin(Driver)  # crashed\n", "TypeError: 'property' object is not iterable")
     assert (found.diagnosis, "was called with Driver, which" in found.cause) == ("class-for-object", True)
     assert (
-        "was called with It,"
+        "A class is used as a node."
         in reported("rclpy.spin()  # crashed\n", "TypeError: 'property' object is not iterable").cause
     )
 

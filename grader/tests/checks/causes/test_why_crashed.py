@@ -52,7 +52,7 @@ def test_each_rule_for_topic_names_is_told_alone(message: str, rule: str) -> Non
 @pytest.mark.parametrize(
     ("error", "words"),
     [
-        ("NameError: free variable 'y' referenced", "This name was never defined. Check the spelling"),
+        ("NameError: free variable 'y' referenced", "This name has no value here. Check the spelling"),
         ("TabError: inconsistent use", "The indentation mixes tabs and spaces."),
         ("IndentationError: unexpected indent", "All lines of a block must have the same indentation."),
         ("KeyError: 'speed'", "The dictionary has no such key."),

@@ -21,6 +21,7 @@ FLOAT = "AssertionError: The 'x' field must be of type 'float'"
         ('msg.linear.x = "2.0"', "string-for-number", "In quotation marks, a number is a string."),
         ("msg.linear.x = input()", "string-for-number", "but the value is a string."),
         ('msg.linear.x = os.environ.get("SPEED")', "string-for-number", "but the value is a string."),
+        ('msg.linear.x = speeds.get("slow")', "field-type", "but the value has another type."),
         ("msg.linear.x = np.float32(2)", "numpy-for-float", "not a NumPy number."),
         ("msg.linear.x = 2 * numpy.sqrt(2)", "numpy-for-float", "not a NumPy number."),
         ("msg.linear.x = True", "field-type", "not True or False."),

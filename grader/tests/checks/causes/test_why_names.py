@@ -50,6 +50,22 @@ def test_what_is_imported_is_a_name(imported: str, name: str, guess: str) -> Non
     assert (found.diagnosis, f"A similar name exists: {guess}." in found.cause) == ("name-misspelt", True)
 
 
+@pytest.mark.parametrize("assigned", ["SPEED = 1.0", "SPEED: float = 1.0"])
+def test_a_method_reads_a_name_of_the_class_with_self(assigned: str) -> None:
+    source = f"class Driver:\n    {assigned}\n\n    def send(self):\n        print(SPEED)  # crashed\n"
+    found = reported(source, name_error("SPEED"))
+    assert (found.diagnosis, "write self.SPEED." in found.cause) == ("missing-self", True)
+
+
+def test_a_line_that_has_not_run_is_named_for_a_name_without_a_value() -> None:
+    source = "if False:\n    forward = 1.0\nprint(forward)  # crashed\n"
+    found = reported(source, name_error("forward"))
+    text = "Line 2 gives forward a value, but forward has none here."
+    assert (found.diagnosis, found.cause) == ("name-undefined", text)
+    assert "a value, but" not in reported("print(forward)  # crashed\n", name_error("forward")).cause
+    assert "has none here." not in reported("print(forward)  # crashed\n", name_error("forward")).cause
+
+
 def test_a_method_without_self_does_not_know_it() -> None:
     source = "class Driver:\n    def send():\n        self.count += 1  # crashed\n"
     assert reported(source, name_error("self")).diagnosis == "self-parameter"

@@ -24,7 +24,7 @@ class Driver(Node):
 FIRST = "self.x is None until it gets a value. Check for None before you compute with it."
 BOTH = "self.x and self.y are None until they get a value. Check for None before you compute with them."
 MINUS_NONE = "unsupported operand type(s) for -: 'float' and 'NoneType'"
-ONE_SIDE = "One side of the operator is None, which is not a number."
+ONE_SIDE = "An operand is None, which is not a number."
 
 
 @pytest.mark.parametrize(

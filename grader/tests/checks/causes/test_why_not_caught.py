@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from grader.checks.causes.why_not_caught import why_not_caught
+from grader.checks.causes.why_not_caught import loop_variable, why_not_caught
 from grader.tests.checks.made import NODE, NODE_FILE, evidence, graph, recording, submission
 from grader.trial.observed import Call, Track
 from grader.trial.recording import Beside, Endpoint, Output, ProcessEnd
@@ -106,3 +106,10 @@ def test_a_turtle_that_stands_where_a_withdrawn_target_was_is_told() -> None:
     words = "The turtle stood where gone had been"
     assert words in cause(AHEAD[:24], x=1.0, tracks=(gone,), withdrawn=("gone",))
     assert words not in cause(AHEAD[:24], x=1.0, tracks=(gone,))
+
+
+@pytest.mark.parametrize(("made", "found"), [("min(self.poses, key={})", False), ("self.listen({})", True)])
+def test_a_key_in_a_loop_is_called_before_the_iteration_ends(made: str, *, found: bool) -> None:
+    line = f"for name in self.names:\n            {made.format('lambda pose: name')}"
+    code = CATCHER.replace("        self.timer", f"        {line}\n        self.timer")
+    assert (loop_variable(evidence(recording([]), submission({NODE_FILE: code}))) is not None) == found

@@ -78,9 +78,9 @@ MOST = NODE.replace("min(", "max(")
         ("angle-in-degrees", cause(DEGREES), cause(LOGGED)),
         ("farthest-chosen", cause(MOST), cause(MOST.replace("=self.distance", "=lambda name: -self.distance(name)"))),
         ("farthest-chosen my_robot_controller/draw_circle.py:8: ", cause(MOST), cause()),
-        ("max with a key returns the target with the", cause(MOST), cause(NODE.replace("4.0 *", "max(4.0, 5.0) *"))),
+        ("max with a key returns the target for which", cause(MOST), cause(NODE.replace("4.0 *", "max(4.0, 5.0) *"))),
         ("turns-away my_robot_controller/draw_circle.py:11: ", cause(commands=RIGHT_TURN), cause(commands=LEFT_TURN)),
-        ("commands, the turtle turned away from the nearest target", cause(commands=RIGHT_TURN), cause(commands=LEFT)),
+        ("commands to turn, the turtle turned away from the", cause(commands=RIGHT_TURN), cause(commands=LEFT)),
         (
             "A positive angular.z turns to the left: the error is the direction to the target minus theta.",
             cause(commands=RIGHT_TURN),

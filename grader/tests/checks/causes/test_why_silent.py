@@ -10,6 +10,7 @@ from grader.checks.causes.why_silent import returns_before, why_nothing, why_qos
 from grader.evidence.evidence import Run
 from grader.tests.checks.crashes import LOOK, line_with
 from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
+from grader.trial.observed import Offer
 from grader.trial.recording import LogLine, Output
 
 if TYPE_CHECKING:
@@ -185,6 +186,13 @@ def test_a_service_that_nobody_offers_is_named(name: str, waits: str, words: str
         assert (found[0], found[2]) == ("service-not-there", line_with(LOOK, source))
         assert found[1].startswith(words)
         assert found[1].endswith(" A similar service exists: /spawn.") == ("spwan" in name)
+
+
+def test_a_service_that_another_node_of_the_trial_offers_exists() -> None:
+    quiet = given(SERVICE.format(name='"/catch"', waits="self.client.wait_for_service()"))
+    offered = recording([], offers=(Offer("/spawner", "/catch", "turtlesim/srv/Kill"),))
+    assert why_nothing(quiet, ("publish",)) is not None
+    assert why_nothing(quiet.with_run(Run(offered)), ("publish",)) is None
 
 
 def test_a_client_without_a_name_is_none() -> None:

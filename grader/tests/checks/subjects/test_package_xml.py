@@ -192,7 +192,7 @@ def test_what_was_left_out_of_the_submission_is_reported(more: tuple[str, ...], 
             xml("<depend>rclpy</depend>", "<depend>rclpy</depend>\n  <depend>rclpy</depend>"),
             "package-xml-invalid",
             "package.xml:9",
-            "The package rclpy is declared twice. Remove one of the two lines.",
+            "The package rclpy is declared more than once. One tag <depend> is enough.",
         ),
         (
             xml("<depend>rclpy</depend>", "<exec_depends>rclpy</exec_depends>"),

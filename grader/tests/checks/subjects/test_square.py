@@ -137,6 +137,13 @@ def too_soon(sides: tuple[float, ...], clock: str = "wall", publish: str = "publ
     return found(SQUARE, observed, side_m=2.0).diagnosis
 
 
+@pytest.mark.parametrize(("clock", "lost"), [("wall", True), ("simulated", False)])
+def test_only_by_wall_time_can_the_first_commands_be_lost(clock: str, *, lost: bool) -> None:
+    observed = evidence(recording(legs(*round_((1.7, 2.0, 2.0, 2.0))), clock=clock))
+    words = "Commands that are published before the simulator is connected are lost."
+    assert (words in found(SQUARE, observed, side_m=2.0).cause) == lost
+
+
 def test_a_first_side_that_lacks_its_beginning_by_the_walls_clock_was_begun_before_anybody_listened() -> None:
     assert too_soon((1.7, 2.0, 2.0, 2.0)) == "too-soon"
     for others in ((2.3, 2.0, 2.0, 2.0), (1.7, 2.0, 2.0, 1.6), (2.0, 1.7, 2.0, 2.0)):
