@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import io
 import json
-import re
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -16,7 +15,6 @@ from grader.errors import MachineError, UsageError
 from grader.exercise.model import catalogue, course_folder
 from grader.exercise.own_numbers import draw_numbers, from_toml
 from grader.learner import progress, steps, workspace
-from grader.learner.compare import OTHER_NUMBERS, print_solution
 from grader.learner.progress import Progress, StepProgress
 from grader.tests.report.reports import report
 
@@ -26,13 +24,7 @@ if TYPE_CHECKING:
 FIRST, SECOND = "01-first-node", "02-discover-topics"
 
 
-@pytest.fixture(autouse=True)
-def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Create a learner with a separate progress file."""
-    monkeypatch.setenv("HOME", str(tmp_path))
-    monkeypatch.delenv("XDG_STATE_HOME", raising=False)
-    monkeypatch.delenv("ROS2_WORKSPACE", raising=False)
-    return tmp_path
+pytestmark = pytest.mark.usefixtures("home")
 
 
 def passed(name: str) -> None:
@@ -104,7 +96,6 @@ def test_start_adds_missing_files_and_overwrites_nothing(home: Path) -> None:
     assert (package / "setup.py").read_text() == "mine"
 
 
-@pytest.mark.usefixtures("home")
 def test_start_quotes_the_path_that_a_new_terminal_sources(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.prefix", "/home/ada/my course/.venv")
     monkeypatch.setenv("SHELL", "/bin/bash")
@@ -133,7 +124,6 @@ def test_start_lists_lines_that_a_later_step_needs_in_package_files(home: Path) 
     assert steps.start("03", None, fresh=True).started.lacking == {}
 
 
-@pytest.mark.usefixtures("home")
 def test_start_lists_the_questions_that_answers_toml_does_not_have() -> None:
     steps.start("05", None)
     begun = steps.start("11", None)
@@ -269,42 +259,6 @@ def test_the_status_after_the_last_step_names_no_next_step() -> None:
     assert "start next" not in text
 
 
-def test_the_solution_shows_only_files_that_the_learner_had_to_write(home: Path) -> None:
-    steps.start("01", None)
-    said = Console(width=100, record=True, file=io.StringIO())
-    with pytest.raises(UsageError, match="after your own solution has passed"):
-        print_solution("01", None, said)
-    passed(FIRST)
-    (home / "ros2_ws/src/my_robot_controller/package.xml").write_text("grown in later steps")
-    print_solution("01", None, said)
-    text = said.export_text()
-    assert '+            "test_node = my_robot_controller.my_first_node:main",' in text
-    assert "-            # TODO 5" in text
-    assert "package.xml" not in text
-    assert "BEGIN SOLUTION" not in text
-    assert "Afterwards: answers to" in text
-
-
-def test_the_solution_does_not_show_the_nodes_of_earlier_steps() -> None:
-    steps.start("12", None)
-    passed("12-tests")
-    said = Console(width=100, record=True, file=io.StringIO())
-    print_solution("12", None, said)
-    text = said.export_text()
-    assert "test/test_wall_guard.py" in text
-    assert "wall_guard.py" in text
-    assert [name for name in ("two_pens", "tunable_circle", "draw_star", "circle_fit") if f"{name}.py" in text] == []
-
-
-@pytest.mark.parametrize(("step", "tells"), [("10", True), ("01", False)])
-def test_the_solution_says_that_its_numbers_are_not_the_learners(step: str, *, tells: bool) -> None:
-    steps.start(step, None)
-    passed(find_exercise(step).id)
-    said = Console(width=100, record=True, file=io.StringIO())
-    print_solution(step, None, said)
-    assert (OTHER_NUMBERS in said.export_text()) == tells
-
-
 def test_the_parts_of_the_course_are_shown_with_their_steps() -> None:
     said = Console(width=100, record=True, file=io.StringIO())
     steps.print_status(None, said)
@@ -320,12 +274,3 @@ def test_the_status_never_cuts_what_a_learner_types(width: int) -> None:
     text = said.export_text()
     assert "…" not in text
     assert [name for name in catalogue() if name not in text] == []
-
-
-@pytest.mark.parametrize("name", [file.parent.name for file in course_folder().glob("*/afterwards.md")])
-def test_each_question_of_a_lesson_has_an_answer(name: str) -> None:
-    folder = find_exercise(name).folder
-    questions = (folder / "lesson.md").read_text("utf-8").partition("## To think about")[2].partition("\n---")[0]
-    numbers = re.compile(r"^(\d+)\. ", re.MULTILINE)
-    answers = (folder / "afterwards.md").read_text("utf-8")
-    assert numbers.findall(questions) == numbers.findall(answers) != []
