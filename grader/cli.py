@@ -231,12 +231,12 @@ def _judged(recording: Path, read_exercise: Callable[[Path], Exercise]) -> tuple
 def _opened(path: Path | None, name: str | None) -> tuple[Exercise, Submission]:
     """Open the submission and determine its exercise from the path, the name or, if necessary, the package."""
     from grader.learner.exercise_argument import guessed, meant, open_package
-    from grader.submission.package import open_answers
+    from grader.notebook.handed_in import open_handed_in
 
     known, place = guessed(path, name)
     if known is not None and not known.package:
-        return known, open_answers(place)
-    opened = open_package(place, typed=path is not None)
+        return known, open_handed_in(place, known)
+    opened = open_package(place, known, typed=path is not None)
     return known or meant(opened.package_dir, None)[0], opened
 
 

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 from grader.classroom import archives, unpack
 from grader.errors import DiskError, MachineError, UsageError
+from grader.notebook.handed_in import open_handed_in
 from grader.submission import reader, tree
-from grader.submission.package import ANSWERS, Submission, open_answers, open_submission
+from grader.submission.package import ANSWERS, Submission
 from grader.submission.tree import shown
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ def fingerprint(found: Found, exercise: Exercise) -> str:
     content = read(found, exercise, "")
     if isinstance(content, Refused):
         return hashlib.sha256(f"refused {content.reason}".encode("utf-8", "surrogateescape")).hexdigest()
-    parts = (content.digest, content.package_dir.name, *content.rejected, *sorted(content.executable))
+    parts = (content.digest, content.package_dir.name, content.remark, *content.rejected, *sorted(content.executable))
     return hashlib.sha256("\0".join(parts).encode("utf-8", "surrogateescape")).hexdigest()
 
 
@@ -122,10 +123,10 @@ def _archive(path: Path) -> Path | None:
 
 def _open(folder: Path, exercise: Exercise) -> Submission:
     if exercise.package:
-        return open_submission(folder, exactly=True)
+        return open_handed_in(folder, exercise, exactly=True)
     for _ in range(MOST_DEEP):
         below = list(islice((entry for entry in folder.iterdir() if not entry.name.startswith((".", "__"))), 2))
         if len(below) != 1 or below[0].is_symlink() or not below[0].is_dir() or (folder / ANSWERS).exists():
             break
         folder = below[0]
-    return open_answers(folder, exactly=True)
+    return open_handed_in(folder, exercise, exactly=True)

@@ -73,6 +73,7 @@ class Order:
             rejected=content.rejected,
             digest=content.digest,
             executable=content.executable,
+            remark=content.remark,
         )
 
     def _task(
@@ -86,6 +87,7 @@ class Order:
         rejected: tuple[str, ...] = (),
         digest: str = "",
         executable: frozenset[str] = frozenset(),
+        remark: str = "",
     ) -> Task:
         return Task(
             student=found.student,
@@ -97,6 +99,7 @@ class Order:
             rejected=rejected,
             digest=digest,
             executable=executable,
+            remark=remark,
             clock=self.clock,
             seed=self.seed,
             explain=self.explain,

@@ -54,6 +54,7 @@ class Task:
     rejected: tuple[str, ...] = ()
     digest: str = ""
     executable: frozenset[str] = frozenset()
+    remark: str = ""
     clock: ClockChoice = "auto"
     seed: int | None = None
     explain: bool = True
@@ -139,6 +140,7 @@ def _submission(task: Task, files: dict[str, bytes] | None = None) -> Submission
         digest=task.digest,
         executable=task.executable,
         student=task.owner,
+        remark=task.remark,
     )
 
 

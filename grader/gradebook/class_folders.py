@@ -28,8 +28,6 @@ GRADEBOOK = "gradebook.db"
 ID = "course_id"
 """The file with the course's name in nbgrader's exchange, inside the folder of the class. Two classes that share an
 exchange need different names, or `collect` takes the submissions of both."""
-HANDED_IN = "handed-in"
-"""The folder of the submissions that were completed with files from their notebooks, inside the folder of the class."""
 
 
 @dataclass(frozen=True)
@@ -69,10 +67,6 @@ class ClassFolders:
     def submitted(self, student: str, step: str) -> Path:
         """Return the folder that a student handed in for a step."""
         return Path(self.course.format_path(self.course.submitted_directory, student, step))
-
-    def handed_in(self, student: str, step: str) -> Path:
-        """Return the folder that contains a submission together with the files from its notebook."""
-        return Path(self.course.root) / CLASS / HANDED_IN / student / step
 
     def autograded(self, student: str, step: str) -> Path:
         """Return the path of the notebook that autograde writes. The file may not exist yet."""

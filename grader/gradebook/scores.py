@@ -28,8 +28,8 @@ from grader.gradebook.confirmed import (
     unconfirmed,
     withhold_unconfirmed,
 )
-from grader.gradebook.package_from_notebook import graded_folder
 from grader.gradebook.readable import time_of
+from grader.notebook.handed_in import open_handed_in
 from grader.submission.reader import read
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.classroom.results import Result
+    from grader.exercise.model import Exercise
     from grader.gradebook.class_folders import ClassFolders
 
 
@@ -104,7 +105,7 @@ def sync(
             "copy submissions to this folder."
         )
         raise UsageError(message)
-    found, why = _put_together(folders, submissions)
+    found, why = _readable(folders, submissions)
     folders.results.parent.mkdir(exist_ok=True)
     request = Request((), folders.results, jobs=jobs, checks=checks, trusted=trusted)
     graded = grade_found(request, found, say, tell)
@@ -152,7 +153,7 @@ def compare(folders: ClassFolders, steps: Sequence[str]) -> list[Difference]:
     return differences
 
 
-def _put_together(
+def _readable(
     folders: ClassFolders, submissions: Sequence[tuple[str, str]]
 ) -> tuple[tuple[Found, ...], dict[tuple[str, str], str]]:
     """Return the submissions to grade, and the reasons why other submissions could not be read."""
@@ -163,8 +164,9 @@ def _put_together(
         try:
             if submitted.is_symlink() or submitted.parent.is_symlink():
                 _refuse_link(student)
-            graded = graded_folder(exercise, submitted, folders.handed_in(student, step))
-            found.append(Found(student, step, graded.parent.resolve() / graded.name))
+            read(time_of, submitted)  # at an invalid time, nbgrader would stop
+            _require_readable(submitted, exercise)
+            found.append(Found(student, step, submitted.parent.resolve() / submitted.name))
         except Exception as error:
             # An error in a student's files must not stop the grading of other submissions.
             if _of_the_machine(error):
@@ -172,6 +174,15 @@ def _put_together(
             why[student, step] = f"it could not be read ({_in_words(error)})"
             found.append(Found(student, step, submitted, f"The submission could not be read ({_in_words(error)})."))
     return tuple(found), why
+
+
+def _require_readable(submitted: Path, exercise: Exercise) -> None:
+    try:
+        open_handed_in(submitted, exercise)
+    except UnreadableError:
+        raise
+    except UsageError:
+        return  # there is no package: the grader gives 0 points and the reason
 
 
 def _refuse_link(student: str) -> NoReturn:
@@ -240,7 +251,7 @@ def _time_of(folder: Path) -> datetime | None:
     try:
         return read(time_of, folder)
     except UnreadableError:
-        return None  # `_put_together` has reported the error
+        return None  # `_readable` has reported the error
 
 
 def _late(folders: ClassFolders, student: str, step: str) -> None:

@@ -9,6 +9,7 @@ from grader.checks.exercises import exercise_of_folder, find_exercise
 from grader.errors import UsageError
 from grader.exercise.model import catalogue, course_folder
 from grader.learner import progress, steps, workspace
+from grader.notebook.handed_in import open_handed_in
 from grader.submission.package import open_submission
 
 if TYPE_CHECKING:
@@ -79,15 +80,17 @@ def _check_there(step: Exercise, place: Path) -> None:
         raise UsageError(message)
 
 
-def open_package(place: Path, *, typed: bool) -> Submission:
+def open_package(place: Path, exercise: Exercise | None, *, typed: bool) -> Submission:
     """Open the package in a folder. `typed` is true if the user typed a path.
+
+    If the exercise is known, the cells of the notebook next to the package complete the package.
 
     Raises:
         UsageError: the folder does not contain exactly one package. If no path was typed, the message also contains the
             command that starts the first step.
     """
     try:
-        return open_submission(place)
+        return open_submission(place) if exercise is None else open_handed_in(place, exercise)
     except UsageError as error:
         if typed:
             raise

@@ -6,11 +6,10 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import grader
-from grader.checks.outcome import Status
+from grader.checks.outcome import Finding, Outcome, Status
 from grader.common.words import a_list, count, shorten
 
 if TYPE_CHECKING:
-    from grader.checks.outcome import Outcome
     from grader.evidence.evidence import Evidence
 
 
@@ -98,10 +97,19 @@ def report_of(
         clock_why=_why_this_clock(evidence),
         seed=recording.seed if recording else None,
         confined=confined,
-        outcomes=tuple(_with_try(outcome, evidence) for outcome in outcomes),
+        outcomes=(*_remark(evidence), *(_with_try(outcome, evidence) for outcome in outcomes)),
         seconds=seconds,
         exercise_digest=evidence.exercise.digest,
     )
+
+
+def _remark(evidence: Evidence) -> tuple[Outcome, ...]:
+    """Return an outcome without points that names the notebooks whose cells were not used, or an empty tuple."""
+    if not evidence.submission.remark:
+        return ()
+    expected = f"One notebook, {evidence.exercise.id}.ipynb, next to the files that you hand in."
+    finding = Finding(Status.FAILED, evidence.submission.remark, expected)
+    return (Outcome("notebook", "submission", "The cells of the notebook are used", 0.0, 0.0, finding, advice=True),)
 
 
 PASSES = "With a fix for this cause, a copy of the submission passes the check."

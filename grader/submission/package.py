@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from grader.errors import MachineError, UnreadableError, UsageError
 from grader.submission import tree
 from grader.submission.reader import read
-from grader.submission.search import find_package, why_not_opened
+from grader.submission.search import NoPackageError, find_package, why_not_opened
 from grader.submission.tree import shown
 
 if TYPE_CHECKING:
@@ -52,6 +52,8 @@ class Submission:
     """The paths in `files` that have the executable bit."""
     student: str | None = None
     """The student, if known (when a class is graded)."""
+    remark: str = ""
+    """A sentence about notebooks whose cells were not used, or an empty string."""
 
 
 def open_submission(path: str | os.PathLike[str], *, exactly: bool = False) -> Submission:
@@ -122,7 +124,7 @@ def _answers(name: str, path: Path, exactly: bool) -> Submission:
         why = found.rejected.get(ANSWERS)
         problem = f"{shown(name)}/{ANSWERS} {why}." if why else f"There is no {ANSWERS} in {shown(name)}."
         message = f"{problem} Give the folder that contains your {ANSWERS}."
-        raise UsageError(message)
+        raise (UsageError if why else NoPackageError)(message)
     files = {ANSWERS: found.files[ANSWERS]}
     return Submission(name, path.resolve(), files, (), digest(files))
 

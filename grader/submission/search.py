@@ -25,6 +25,10 @@ MAX_NAMED = 10
 """The maximum number of names in a message."""
 
 
+class NoPackageError(UsageError):
+    """A folder contains no package, or no answers.toml if the exercise has no package."""
+
+
 @dataclass
 class _Search:
     """The results of the search. Paths are relative to the folder in which the search started."""
@@ -44,13 +48,16 @@ def find_package(root: int, name: str) -> str:
 
     `name` is the path as the user typed it.
 
-    Raises UsageError if there is no package or more than one package.
+    Raises NoPackageError if there is no package, and UsageError if there is more than one package.
     """
     search = _Search()
     _visit(search, root, ".", 0, name)
     if len(search.packages) == 1:
         return search.packages[0]
-    message = _several(search.packages, name) if search.packages else _none(search, root, name)
+    if not search.packages:
+        message = _none(search, root, name)
+        raise NoPackageError(message)
+    message = _several(search.packages, name)
     raise UsageError(message)
 
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from grader.classroom.key import grader_key
-from grader.classroom.task import Task, perform
+from grader.classroom.task import Task, perform, set_aside
 from grader.exercise.private_checks import sources_of
 
 
@@ -17,3 +17,11 @@ def test_a_submission_without_a_package_has_no_points_and_a_reason(step: str, di
     first, *others = report.outcomes
     assert (first.finding.diagnosis, first.finding.observed, report.points) == (diagnosis, reason, 0.0)
     assert {outcome.status.value for outcome in others} == {"skipped"}
+
+
+def test_the_report_names_notebooks_that_were_not_used_and_takes_no_points_for_them() -> None:
+    step, remark = "03-circle-publisher", "The cells of b.ipynb were not used."
+    task = Task("anna", "anna", sources_of({step}, None)[step], {}, remark=remark, grader=grader_key(), trusted=True)
+    first, *others = set_aside(task, "The machine failed.").report.outcomes
+    assert (first.id, first.finding.observed, first.max, first.advice) == ("notebook", remark, 0.0, True)
+    assert "notebook" not in {outcome.id for outcome in others}

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, NoReturn
 
 import pytest
 
+from grader.classroom.content import Refused, read
 from grader.errors import MachineError
 from grader.gradebook import scores
-from grader.gradebook.scores import _put_together
-from grader.tests.gradebook.test_package_from_notebook import CIRCLE, NODE, handed_in
+from grader.gradebook.scores import _readable
+from grader.tests.notebook.test_handed_in import CIRCLE, FILE, handed_in
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -37,9 +38,6 @@ class Folders:
     def submitted(self, student: str, _: str) -> Path:
         return self.root / "submitted" / student
 
-    def handed_in(self, student: str, step: str) -> Path:
-        return self.root / "together" / student / step
-
 
 def with_cell(folder: Path, source: str) -> None:
     file = folder / f"{CIRCLE.id}.ipynb"
@@ -61,10 +59,12 @@ def make(root: Path) -> Folders:
 
 def test_each_is_graded_or_reported_and_the_others_continue(tmp_path: Path) -> None:
     folders = make(tmp_path)
-    found, why = _put_together(folders, [(student, CIRCLE.id) for student in (*ODD, "zoe")])  # type: ignore[arg-type]
+    found, why = _readable(folders, [(student, CIRCLE.id) for student in (*ODD, "zoe")])  # type: ignore[arg-type]
     assert [each.student for each in found] == [*ODD, "zoe"]
     assert {each.student for each in found if each.refused} == {student for student, _ in why}
-    assert (found[-1].path / NODE).read_text() == "mine\n"
+    zoe = read(found[-1], CIRCLE, "zoe")
+    assert not isinstance(zoe, Refused)
+    assert zoe.files[FILE] == b"mine\n"
     assert "a file below a file" in {student for student, _ in why}
 
 
@@ -73,7 +73,7 @@ def test_a_link_to_the_work_of_another_student_is_reported(tmp_path: Path) -> No
     (tmp_path / "submitted").mkdir()
     handed_in(folders.submitted("zoe", ""), "mine", {"my_robot_controller/package.xml": "<package/>"})
     folders.submitted("mallory", "").symlink_to("zoe")
-    mallory, zoe = _put_together(folders, [("mallory", CIRCLE.id), ("zoe", CIRCLE.id)])[0]  # type: ignore[arg-type]
+    mallory, zoe = _readable(folders, [("mallory", CIRCLE.id), ("zoe", CIRCLE.id)])[0]  # type: ignore[arg-type]
     assert "the folder of mallory is a symbolic link" in mallory.refused
     assert not zoe.refused
 
@@ -86,6 +86,6 @@ def test_a_full_disk_of_the_grader_stops_the_run(tmp_path: Path, monkeypatch: py
         message = "full"
         raise MachineError(message) from OSError(number, "full")
 
-    monkeypatch.setattr(scores, "graded_folder", full)
+    monkeypatch.setattr(scores, "open_handed_in", full)
     with pytest.raises(MachineError):
-        _put_together(folders, [("zoe", CIRCLE.id)])  # type: ignore[arg-type]
+        _readable(folders, [("zoe", CIRCLE.id)])  # type: ignore[arg-type]
