@@ -19,10 +19,11 @@ from grader.colcon.runner import _READY, _described
 from grader.errors import GraderError, UnreadableError, UsageError
 from grader.evidence import recording_format
 from grader.exercise.model import course_folder
-from grader.gradebook.package_from_notebook import graded_folder
+from grader.notebook.handed_in import open_handed_in
 from grader.report.html_class import save_class_page
 from grader.report.json import to_json
 from grader.sandbox.process import Finished
+from grader.submission.package import write_copy
 from grader.submission.reader import read
 from grader.tests.checks.made import FILES, NODE_FILE, evidence, good
 from grader.tests.fuzz.choices import Choices
@@ -112,11 +113,11 @@ def notebooks(data: bytes) -> None:
     if data[:1] == b"j":
         data = odd_json(next(iter(TARGETS["notebooks"].seeds())), Choices(data[1:]))
     with tempfile.TemporaryDirectory() as folder:
-        submitted, together = Path(folder) / "in", Path(folder) / "out"
+        submitted = Path(folder) / "in"
         submitted.mkdir()
         (submitted / f"{STEP}.ipynb").write_bytes(data)
         try:
-            graded_folder(find_exercise(STEP), submitted, together)
+            write_copy(open_handed_in(submitted, find_exercise(STEP)), Path(folder) / "out")
         except GraderError:
             return
         graded_class(Path(folder))
