@@ -80,6 +80,8 @@ def sync(
         typer.echo(
             f"Not in the gradebook, because the notebook has no cell for these checks: {a_list(done.elsewhere)}."
         )
+    if done.maxima:
+        typer.echo(f"The maximum points of these checks have changed in the gradebook: {a_list(done.maxima)}.")
     for each in done.unconfirmed:
         which = f" {', '.join(each.checks)}" if each.checks else ""
         typer.echo(printable(f"{each.student} {each.step}{which}: 0 points, needs manual grading: {each.why}."))

@@ -28,6 +28,7 @@ from grader.gradebook.confirmed import (
     unconfirmed,
     withhold_unconfirmed,
 )
+from grader.gradebook.kernel_scores import kernel_scores
 from grader.gradebook.readable import time_of
 from grader.notebook.handed_in import open_handed_in
 from grader.submission.reader import read
@@ -53,6 +54,8 @@ class Synced:
     unjudged: tuple[str, ...]
     elsewhere: tuple[str, ...]
     """The checks with points that have a result but no cell in the notebook, and are therefore not in the gradebook."""
+    maxima: tuple[str, ...]
+    """The cells whose maximum points have changed in the gradebook, each with the old and the new points."""
     unconfirmed: tuple[Unconfirmed, ...]
     """The cells without a confirmed score, and the submissions that could not be read or written."""
 
@@ -111,11 +114,12 @@ def sync(
     graded = grade_found(request, found, say, tell)
     tally: Counter[str] = Counter()
     elsewhere: dict[str, None] = {}
+    maxima: dict[str, str] = {}
     with folders.gradebook() as gradebook:
         for result in graded:
             name = (result.student, result.report.exercise)
             try:
-                elsewhere.update(dict.fromkeys(_write(gradebook, folders, result, tally)))
+                elsewhere.update(dict.fromkeys(_write(gradebook, folders, result, tally, maxima)))
             except OperationalError:
                 raise  # for example, another program has locked the database, so no score can be written
             except (SQLAlchemyError, ValueError) as error:
@@ -128,7 +132,8 @@ def sync(
         *(Unconfirmed(student, step, (), reason) for (student, step), reason in why.items()),
     ]
     unjudged = tuple(result.student for result in graded if result.report.with_status(Status.ERROR))
-    return Synced(len(graded), tally["changed"], tally["kept"], unjudged, tuple(elsewhere), tuple(problems))
+    changed = tuple(f"{cell} ({points})" for cell, points in maxima.items())
+    return Synced(len(graded), tally["changed"], tally["kept"], unjudged, tuple(elsewhere), changed, tuple(problems))
 
 
 def compare(folders: ClassFolders, steps: Sequence[str]) -> list[Difference]:
@@ -142,7 +147,7 @@ def compare(folders: ClassFolders, steps: Sequence[str]) -> list[Difference]:
     doubts = {(each.student, each.step, check): each.why for each in doubted for check in each.checks}
     for student, step in names:
         result = kept.load(student, step)
-        by_kernel = _kernel_scores(folders.autograded(student, step)) or {}
+        by_kernel = kernel_scores(folders.autograded(student, step)) or {}
         points = {outcome.id: outcome.points for outcome in result.report.outcomes} if result else {}
         for check in dict.fromkeys([*points, *by_kernel, *(name for *of, name in doubts if of == [student, step])]):
             why = doubts.get((student, step, check), "")
@@ -214,8 +219,17 @@ def _require_assignments(gradebook: Any, steps: set[str]) -> None:  # noqa: ANN4
         raise UsageError(message)
 
 
-def _write(gradebook: Any, folders: ClassFolders, result: Result, tally: Counter[str]) -> list[str]:  # noqa: ANN401
-    """Write the scores of one submission. Return the checks with points that have no cell in the notebook."""
+def _write(
+    gradebook: Any,  # noqa: ANN401 - nbgrader's Gradebook
+    folders: ClassFolders,
+    result: Result,
+    tally: Counter[str],
+    maxima: dict[str, str],
+) -> list[str]:
+    """Write the scores of one submission. Return the checks with points that have no cell in the notebook.
+
+    If private checks change the points of a check, the maximum of its cell changes too. `maxima` collects these cells.
+    """
     student, step = result.student, result.report.exercise
     gradebook.update_or_create_student(student)
     timestamp = _time_of(folders.submitted(student, step))
@@ -233,6 +247,10 @@ def _write(gradebook: Any, folders: ClassFolders, result: Result, tally: Counter
             without_cell += [outcome.id] if outcome.max else []
             continue
         # A check that could not be judged has no points.
+        name = f"{step} {outcome.id}"
+        if grade.cell.max_score != outcome.max:
+            maxima[name] = f"{grade.cell.max_score:g} to {outcome.max:g}"
+            grade.cell.max_score = outcome.max
         changed = grade.auto_score != outcome.points
         tally["changed"] += changed
         grade.auto_score = outcome.points
@@ -240,8 +258,8 @@ def _write(gradebook: Any, folders: ClassFolders, result: Result, tally: Counter
             grade.needs_manual_grade = outcome.status is Status.ERROR
         else:
             tally["kept"] += 1
-            # If the score has changed, the person who graded by hand should review the grade.
-            grade.needs_manual_grade = grade.needs_manual_grade or changed
+            # If the score or the maximum has changed, the person who graded by hand should review the grade.
+            grade.needs_manual_grade = grade.needs_manual_grade or changed or name in maxima
     gradebook.db.commit()
     _late(folders, student, step)
     return without_cell
@@ -261,31 +279,3 @@ def _late(folders: ClassFolders, student: str, step: str) -> None:
 
     about = {"student": student, "assignment": step, "notebook": step, "db_url": folders.course.db_url}
     AssignLatePenalties(config=folders.config).preprocess(new_notebook(), {"nbgrader": about})  # type: ignore[no-untyped-call]
-
-
-def _kernel_scores(notebook: Path) -> dict[str, float | None] | None:
-    """Return the points in the output of each graded cell, or None if there is no readable autograded notebook."""
-    try:
-        return read(_scores_in, notebook)
-    except UnreadableError:
-        return None
-
-
-def _scores_in(notebook: Path) -> dict[str, float | None]:
-    from nbformat import read as read_notebook
-    from nbgrader.utils import is_grade
-
-    cells = read_notebook(notebook, as_version=4).cells  # type: ignore[no-untyped-call]
-    return {cell.metadata.nbgrader.grade_id: _kernel_score(cell) for cell in cells if is_grade(cell)}
-
-
-def _kernel_score(cell: Any) -> float | None:  # noqa: ANN401 - nbformat's NotebookNode
-    from nbgrader.utils import determine_grade
-
-    if cell.cell_type == "code" and cell.get("execution_count") is None:
-        return None  # the kernel has not run this cell, for which nbgrader would give full points
-    try:
-        score: float | None = determine_grade(cell)[0]
-    except (ValueError, AttributeError, KeyError, TypeError):
-        return None  # an output that nbgrader cannot interpret
-    return score

@@ -43,7 +43,7 @@ BEHIND_THE_DOOR = {
     ("predicted", "_may_look_around"): "trials",
     ("predicted", "predict"): "trials",
     ("rebuild", "_with_texts"): "rebuild",
-    ("scores", "_scores_in"): "scores",
+    ("kernel_scores", "_scores_in"): "kernel_scores",
     ("unpack", "_tar"): "archives",
     ("unpack", "_zip"): "archives",
     ("result", "run_of"): "tests",
