@@ -14,6 +14,7 @@ of pathlib raise an exception.
 from __future__ import annotations
 
 import os
+import re
 import stat
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -28,7 +29,7 @@ from grader.submission.search import PACKAGE_FILES
 from grader.submission.tree import shown, sort_key
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Sequence
 
 UNKNOWN = ""
 """The exercise id of a submission whose exercise cannot be determined from the names of the folders."""
@@ -241,6 +242,7 @@ def _of_student(student: str, path: Path, wanted: str | None) -> Iterator[Found]
         yield Found(student, wanted or UNKNOWN, path, refused)
     elif assigned:
         yield from (Found(student, name, path / name) for name in assigned if wanted in (None, name))
+        yield from (each for each in misnamed(student, path) if wanted in (None, each.exercise))
     elif wanted and os.path.isdir(own) and not _leads_away((path / OWN, own)):
         yield Found(student, wanted, own)
     else:
@@ -252,6 +254,46 @@ def _assignments(path: Path) -> list[str]:
     if not os.path.isdir(path) or _is_one(path):
         return []
     return [name for name in catalogue() if os.path.isdir(path / name) and not os.path.islink(path / name)]
+
+
+def misnamed(student: str, path: Path) -> Iterator[Found]:
+    """Yield the entries of a student's folder whose names are almost the name of an exercise, and are not graded.
+
+    Examples are a name with capital letters, and an archive. If the folder of the exercise also exists, the entry is
+    not needed.
+    """
+    present = _assignments(path)
+    try:
+        entries = _entries(path)
+    except UsageError:
+        return  # the error is reported when the folder is read
+    for entry in entries:
+        name = re.sub(r"[^a-z0-9]+", "-", entry.name.lower())
+        exercise = next((each for each in catalogue() if name.startswith(each)), None)
+        if exercise is not None and exercise not in present:
+            where = f"{shown(student)}/{shown(entry.name)}"
+            reason = f"{where} must be a folder with the name {exercise}. Rename or unpack it."
+            yield Found(student, exercise, entry, reason)
+
+
+def left_out(folder: Path, other_assignments: Collection[str]) -> tuple[Found, ...]:
+    """Return what nbgrader does not see in submitted/: entries that are not in a folder STUDENT/EXERCISE.
+
+    Each has the reason why it is not graded. A student with one of the other assignments needs no exercise.
+    """
+    found: list[Found] = []
+    for each in _in(folder, None, folder) if os.path.isdir(folder) and not _is_one_alone(folder) else ():
+        if each.refused:
+            found.append(each)
+        elif each.exercise == UNKNOWN and not os.path.isdir(each.path):
+            reason = f"{shown(each.path.name)} must be unpacked to a folder {shown(each.student)}/EXERCISE."
+            found.append(replace(each, refused=reason))
+        elif each.exercise == UNKNOWN:
+            almost = list(misnamed(each.student, each.path))
+            others = any(os.path.isdir(each.path / name) for name in other_assignments)
+            reason = f"{shown(each.student)} does not contain a folder with the name of an exercise."
+            found += almost or ([] if others else [replace(each, refused=reason)])
+    return tuple(found)
 
 
 def _leads_away(folders: Iterable[Path]) -> bool:

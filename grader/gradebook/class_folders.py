@@ -11,12 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from grader.checks.exercises import find_exercise
+from grader.classroom.find_submissions import UNKNOWN, left_out
 from grader.common import xdg
 from grader.errors import MachineError, UsageError
 from grader.exercise.model import catalogue, course_folder
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Collection, Iterator, Sequence
 
 CONFIG = "nbgrader_config.py"
 CLASS = "class"
@@ -80,6 +81,15 @@ class ClassFolders:
             folder.name for folder in root.glob("*") if folder.is_dir() and not folder.name.startswith(".")
         )
         return [(student, step) for step in wanted for student in students if _is_folder(root / student / step)]
+
+    def left_out(self, steps: Sequence[str], assignments: Collection[str]) -> tuple[str, ...]:
+        """Return why entries in the folder of the submissions are not graded.
+
+        `steps` selects the exercises; if it is empty, all are used. `assignments` are the names in the gradebook.
+        """
+        root = Path(self.course.root) / self.course.submitted_directory
+        found = left_out(root, [name for name in assignments if name not in catalogue()])
+        return tuple(each.refused for each in found if not steps or each.exercise in (UNKNOWN, *steps))
 
 
 def _is_folder(path: Path) -> bool:

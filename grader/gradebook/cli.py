@@ -80,6 +80,8 @@ def sync(
         typer.echo(
             f"Not in the gradebook, because the notebook has no cell for these checks: {a_list(done.elsewhere)}."
         )
+    for reason in done.left_out:
+        typer.echo(printable(f"Not graded: {reason}"))
     if done.maxima:
         typer.echo(f"The maximum points of these checks have changed in the gradebook: {a_list(done.maxima)}.")
     for each in done.unconfirmed:

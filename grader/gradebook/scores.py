@@ -54,6 +54,8 @@ class Synced:
     unjudged: tuple[str, ...]
     elsewhere: tuple[str, ...]
     """The checks with points that have a result but no cell in the notebook, and are therefore not in the gradebook."""
+    left_out: tuple[str, ...]
+    """The reasons why entries in the folder of the submissions are not graded."""
     maxima: tuple[str, ...]
     """The cells whose maximum points have changed in the gradebook, each with the old and the new points."""
     unconfirmed: tuple[Unconfirmed, ...]
@@ -100,6 +102,7 @@ def sync(
     results = Results(folders.results)
     with folders.gradebook() as gradebook:
         _require_assignments(gradebook, {step for _, step in submissions})
+        not_graded = folders.left_out(wanted, {assignment.name for assignment in gradebook.assignments})
         # Withhold scores first, so that no provisional score remains if grading is interrupted.
         withhold_unconfirmed(gradebook, results, wanted)
     if not submissions:
@@ -133,7 +136,9 @@ def sync(
     ]
     unjudged = tuple(result.student for result in graded if result.report.with_status(Status.ERROR))
     changed = tuple(f"{cell} ({points})" for cell, points in maxima.items())
-    return Synced(len(graded), tally["changed"], tally["kept"], unjudged, tuple(elsewhere), changed, tuple(problems))
+    return Synced(
+        len(graded), tally["changed"], tally["kept"], unjudged, tuple(elsewhere), not_graded, changed, tuple(problems)
+    )
 
 
 def compare(folders: ClassFolders, steps: Sequence[str]) -> list[Difference]:

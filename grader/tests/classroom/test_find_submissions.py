@@ -10,7 +10,7 @@ import pytest
 
 from grader.checks.exercises import find_exercise
 from grader.classroom.content import Refused, fingerprint, read
-from grader.classroom.find_submissions import Found, find_submissions, passed_over
+from grader.classroom.find_submissions import Found, find_submissions, left_out, passed_over
 from grader.errors import UsageError
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import zipped
@@ -174,3 +174,32 @@ def test_the_fingerprint_changes_only_with_files_that_are_read(tmp_path: Path, c
     else:
         (tmp_path / "anna" / "more.py").touch()
     assert fingerprint(found, exercise) != before
+
+
+def test_an_entry_that_is_almost_named_like_an_exercise_is_reported(tmp_path: Path) -> None:
+    for name in ("erik/02-discover-topics", "erik/03-Circle-Publisher", "anna/03-circle-publisher"):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "anna" / "03-circle-publisher (1)").mkdir()  # the right folder exists
+    found = find_submissions([tmp_path], None, tmp_path / "out")
+    assert [(each.student, each.exercise, bool(each.refused)) for each in found] == [
+        ("anna", "03-circle-publisher", False),
+        ("erik", "02-discover-topics", False),
+        ("erik", "03-circle-publisher", True),
+    ]
+    assert "erik/03-Circle-Publisher must be a folder with the name 03-circle-publisher" in found[-1].refused
+
+
+def test_what_nbgrader_does_not_see_is_listed(tmp_path: Path) -> None:
+    for name in ("anna/03-circle-publisher", "erik/03-Circle-Publisher", "gina", "hugo/homework", "ines/x"):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "fay o.zip").write_bytes(b"")
+    (tmp_path / "jon").mkdir()
+    (tmp_path / "jon" / "03-circle-publisher.zip").write_bytes(b"")
+    (tmp_path / "link").symlink_to("anna")
+    (tmp_path / ".gitkeep").write_bytes(b"")
+    listed = {each.student: each.refused for each in left_out(tmp_path, ["homework"])}
+    assert listed.keys() == {"erik", "fay o", "gina", "ines", "jon", "link"}
+    assert "must be a folder with the name 03-circle-publisher" in listed["erik"]
+    assert "must be unpacked" in listed["fay o"]
+    assert "must be a folder with the name 03-circle-publisher" in listed["jon"]
+    assert "symbolic link" in listed["link"]
