@@ -181,9 +181,9 @@ def loop_variable(evidence: Evidence) -> Cause | None:
                 # A key, such as that of min, is called before the iteration ends.
                 if isinstance(made, ast.Lambda | ast.FunctionDef) and id(made) not in keys and _uses(made, name):
                     text = (
-                        f"The function is created in a loop and uses {shorten(name)}, the loop variable. When the "
-                        "function is called, the loop has ended, and the variable has its last value. Create the "
-                        "function in a method that takes the value as an argument."
+                        f"The function is created in a loop and uses {shorten(name)}, the loop variable. When it is "
+                        "called, the loop has ended, and the variable has its last value. Create it in a method that "
+                        "takes the value as an argument."
                     )
                     return Cause("loop-variable", text, Where(module.file, made.lineno))
     return None
