@@ -12,7 +12,7 @@ from grader.exercise.model import FILE_NAME, Exercise, catalogue
 from grader.exercise.tables import read_toml
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
     from pathlib import Path
 
     from grader.exercise.private_checks import Sources
@@ -29,9 +29,9 @@ def find_exercise(name: str, course: Path | None = None) -> Exercise:
     name = f"{int(name):02}" if name.isascii() and name.isdigit() else name
     begin = [each for each in files if name and each.startswith(name)]
     if name in files:
-        return load_exercise(files[name])
+        return _load(files, name)
     if len(begin) == 1:
-        return load_exercise(files[begin[0]])
+        return _load(files, begin[0])
     guess = _nearest(name, files)
     hint = f"Did you mean {guess}? " if guess else ""
     several = f"several exercises start with {name!r}" if begin else f"there is no exercise {name!r}"
@@ -56,8 +56,17 @@ def exercise_of_folder(path: Path, course: Path | None = None) -> Exercise | Non
     files = catalogue(course)
     for parent, name in zip(reversed(parts[:-1]), reversed(parts[1:]), strict=True):
         if parent in ("exercises", "solutions") and name in files:
-            return load_exercise(files[name])
+            return _load(files, name)
     return None
+
+
+def _load(files: Mapping[str, Path], name: str) -> Exercise:
+    """Return the exercise in the folder `name` of the course. Raises UsageError, also if its id is not this name."""
+    exercise = load_exercise(files[name])
+    if exercise.id != name:
+        message = f'{files[name]}: the id is "{exercise.id}", but it must be the name of the folder, "{name}".'
+        raise UsageError(message)
+    return exercise
 
 
 def load_exercise(path: Path) -> Exercise:

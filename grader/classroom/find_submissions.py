@@ -115,12 +115,10 @@ def _one_of(alike: Sequence[Found]) -> Found:
     """
     if len(alike) == 1:
         return alike[0]
-    paths = a_list([shown(str(each.path)) for each in alike])
-    name = shown(alike[0].student)
-    return replace(
-        alike[0],
-        refused=f"{name} has {len(alike)} submissions: {paths}. Remove or rename all of these submissions but one.",
-    )
+    folder = os.path.commonpath([each.path.parent for each in alike])  # students do not need the instructor's paths
+    paths = a_list([shown(os.path.relpath(each.path, folder)) for each in alike])
+    text = f"{len(alike)} submissions: {paths}. Remove or rename all of these submissions but one."
+    return replace(alike[0], refused=f"{shown(alike[0].student)} has {text}")
 
 
 def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:

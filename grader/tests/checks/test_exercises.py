@@ -63,3 +63,11 @@ def test_the_title_of_an_exercise_with_a_mistake_is_refused_as_the_exercise_is(t
     file.write_text('schema = 2\n\n[exercise]\nid = "01-x"\n\n[[check]]\n')
     with pytest.raises(UsageError, match="title"):
         title_of(file)
+
+
+def test_an_id_that_is_not_the_name_of_the_folder_is_an_error(tmp_path: Path) -> None:
+    text = (course_folder() / "01-first-node/exercise.toml").read_text("utf-8")
+    (tmp_path / "14-new").mkdir()
+    (tmp_path / "14-new/exercise.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(UsageError, match=r'the id is "01-first-node", but it must be the name of the folder, "14-new"'):
+        find_exercise("14", tmp_path)

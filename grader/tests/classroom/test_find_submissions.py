@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from typing import TYPE_CHECKING
 
 import pytest
@@ -122,7 +121,7 @@ def test_two_submissions_of_one_student_are_a_usage_error(tmp_path: Path) -> Non
     (tmp_path / "anna.zip").touch()
     (tmp_path / "ben").mkdir()
     anna, ben = find_submissions([tmp_path], STEP, tmp_path / "grades")
-    assert re.search(r"anna has 2 submissions: .*anna and .*anna\.zip", anna.refused)
+    assert anna.refused.startswith("anna has 2 submissions: anna and anna.zip.")
     assert (ben.student, ben.refused) == ("ben", "")
 
 

@@ -190,6 +190,12 @@ NO_MARKERS = replace(BUILD, installed=tuple(path for path in BUILD.installed if 
     [
         ("`colcon build` built and installed the package.", "build", ({}, BUILD), ({}, BARE)),
         (
+            "installed none of the Python files: the folder my_robot_controller has no __init__.py.",
+            "build",
+            ({INIT: None}, BARE),
+            ({}, BARE),
+        ),
+        (
             "Each folder with Python files has a file __init__.py, which can be empty.",
             "build",
             ({INIT: None}, BARE),

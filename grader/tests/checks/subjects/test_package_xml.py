@@ -289,6 +289,12 @@ def test_a_sentence_about_package_xml_is_true(words: str, check: str, true: File
     assert words not in told(of(check, near))
 
 
+def test_only_the_check_of_the_name_says_which_three_names_are_the_same() -> None:
+    words = "package.xml, setup.py and the folder with the Python files have the name my_robot_controller."
+    assert words in told(of("package-name", {}))
+    assert words not in told(of("package-xml", {}))
+
+
 @pytest.mark.parametrize(("name", "found"), [("Twist", True), ("twist", False), ("Pose", False)])
 def test_a_class_that_is_declared_like_a_package_is_told(name: str, *, found: bool) -> None:
     added = xml("  <depend>rclpy</depend>", f"  <depend>{name}</depend>\n  <depend>rclpy</depend>")
