@@ -246,6 +246,7 @@ MISSING = xml("  <depend>geometry_msgs</depend>\n")
 COMMENT = xml("  <depend>geometry_msgs</depend>\n", "  <!-- <depend>geometry_msgs</depend> -->\n")
 PROSE = xml("  <depend>geometry_msgs</depend>\n", "  <!-- The node sends geometry_msgs. -->\n")
 ONLY_TESTS = xml("depend>rclpy</depend", "test_depend>rclpy</test_depend")
+CMAKE = xml("ament_python", "ament_cmake")
 NAMED = xml("my_robot_controller", "my_robot")
 SETUP_NAMED = setup_py('"my_robot_controller"', '"my_robot"')
 FOR_PIP = {**MISSING, **setup_py("    packages=", "    install_requires=['geometry_msgs'],\n    packages=")}
@@ -255,19 +256,14 @@ FOR_PIP = {**MISSING, **setup_py("    packages=", "    install_requires=['geomet
     ("words", "check", "true", "near"),
     [
         ("package.xml is valid.", "package-xml", {}, xml("</package>")),
-        ("The build type is ament_cmake.", "package-xml", xml("ament_python", "ament_cmake"), {}),
-        ("A Python package has the build type ament_python.", "package-xml", xml("ament_python", "ament_cmake"), {}),
+        ("The build type is ament_cmake.", "package-xml", CMAKE, {}),
+        ("A Python package has the build type ament_python.", "package-xml", CMAKE, {}),
         ("description, maintainer, license and the build type", "package-xml", xml("</package>"), {}),
-        (
-            "The build type is missing.",
-            "package-xml",
-            xml("    <build_type>ament_python</build_type>\n"),
-            xml("ament_python", "ament_cmake"),
-        ),
+        ("The build type is missing.", "package-xml", xml("    <build_type>ament_python</build_type>\n"), CMAKE),
         (
             "Without <build_type>ament_python</build_type> in <export>, colcon does not treat the folder as a Python",
             "package-xml",
-            xml("ament_python", "ament_cmake"),
+            CMAKE,
             xml("</package>"),
         ),
         ("The package name in package.xml is my_robot.", "package-name", NAMED, SETUP_NAMED),
