@@ -36,8 +36,12 @@ READ = (1, 2, 3, SCHEMA)
 
 
 def to_json(report: Report) -> str:
-    """Return the report as indented JSON that ends with a newline."""
-    return json.dumps(to_data(report), ensure_ascii=False, indent=2, allow_nan=False) + "\n"
+    """Return the report as indented JSON that ends with a newline.
+
+    Half of a surrogate pair, which a recording may contain and UTF-8 cannot encode, is written as an escape of JSON.
+    """
+    text = json.dumps(to_data(report), ensure_ascii=False, indent=2, allow_nan=False) + "\n"
+    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def to_data(report: Report) -> dict[str, Any]:

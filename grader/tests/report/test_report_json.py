@@ -66,6 +66,11 @@ def test_a_file_name_that_is_not_utf8_makes_valid_json() -> None:
     assert json.loads(text.encode())["submission"]["name"] == "caf\\udce9"
 
 
+def test_half_of_a_surrogate_pair_from_a_recording_is_an_escape() -> None:
+    text = to_json(report("passed", clock_why="odd \ud800"))
+    assert json.loads(text.encode())["clock"]["why"] == "odd \ud800"
+
+
 @pytest.mark.parametrize(
     ("text", "reported"),
     [
