@@ -231,7 +231,7 @@ def _judged(recording: Path, read_exercise: Callable[[Path], Exercise]) -> tuple
 def _opened(path: Path | None, name: str | None) -> tuple[Exercise, Submission]:
     """Open the submission and determine its exercise from the path, the name or, if necessary, the package."""
     from grader.learner.exercise_argument import guessed, meant, open_package
-    from grader.notebook.handed_in import open_handed_in
+    from grader.submission.handed_in import open_handed_in
 
     known, place = guessed(path, name)
     if known is not None and not known.package:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from grader.classroom import archives, unpack
 from grader.errors import DiskError, MachineError, UsageError
-from grader.notebook.handed_in import open_handed_in
 from grader.submission import reader, tree
+from grader.submission.handed_in import open_handed_in
 from grader.submission.package import ANSWERS, Submission
 from grader.submission.tree import shown
 

@@ -30,7 +30,7 @@ from grader.gradebook.confirmed import (
 )
 from grader.gradebook.kernel_scores import kernel_scores
 from grader.gradebook.readable import time_of
-from grader.notebook.handed_in import open_handed_in
+from grader.submission.handed_in import open_handed_in
 from grader.submission.reader import read
 
 if TYPE_CHECKING:

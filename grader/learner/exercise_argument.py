@@ -9,7 +9,7 @@ from grader.checks.exercises import exercise_of_folder, find_exercise
 from grader.errors import UsageError
 from grader.exercise.model import catalogue, course_folder
 from grader.learner import progress, steps, workspace
-from grader.notebook.handed_in import open_handed_in
+from grader.submission.handed_in import open_handed_in
 from grader.submission.package import open_submission
 
 if TYPE_CHECKING:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from grader.errors import MachineError, UsageError
 from grader.exercise.model import course_folder
 from grader.exercise.own_numbers import draw_numbers, to_toml
+from grader.exercise.starting_point import starting_point
 from grader.submission import tree
 from grader.submission.answers_toml import FILE as ANSWERS
 from grader.submission.search import IGNORE_MARKER
@@ -45,19 +46,6 @@ class Started:
     kept: Path | None = None
     lacking: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     tasks: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-
-
-def starting_point(exercise: Exercise) -> Path:
-    """Return the folder in exercises/ with the starting point of the step.
-
-    Raises:
-        MachineError: the folder is missing.
-    """
-    folder = course_folder().parent / "exercises" / exercise.id
-    if not folder.is_dir():
-        message = f"The starting point of {exercise.id} is missing ({folder}). Install the course again."
-        raise MachineError(message)
-    return folder
 
 
 def solution(exercise: Exercise) -> Path:

@@ -17,6 +17,7 @@ from grader.common.words import a_list
 from grader.errors import UsageError
 from grader.notebook import cell_files, lesson
 from grader.notebook.mode import grading
+from grader.submission import notebook_cells
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -82,15 +83,15 @@ class Cells:
 
     def _write(self, magic: str, line: str, cell: str) -> None:
         exercise = self.current()
-        path = cell_files.part_path(magic, line.strip(), exercise)
-        file, text, start = Path.cwd() / path, cell_files.ended(cell), cell_files.starting_text(exercise, path)
+        path = notebook_cells.part_path(magic, line.strip(), exercise)
+        file, text, start = Path.cwd() / path, notebook_cells.ended(cell), notebook_cells.starting_text(exercise, path)
         present = file.read_text("utf-8", "replace") if file.is_file() else None
-        if present is not None and cell_files.ended(present) == text:
+        if present is not None and notebook_cells.ended(present) == text:
             self._written[file] = text
             self._say(f"{path} already has this content.")
             return
-        worked_on = cell_files.counts(present, start) == "file"
-        if worked_on and (grading() or (start is not None and text == cell_files.ended(start))):
+        worked_on = notebook_cells.counts(present, start) == "file"
+        if worked_on and (grading() or (start is not None and text == notebook_cells.ended(start))):
             self._say(
                 f"{path} contains your work. The file stays unchanged, because this cell still contains the "
                 "starting point."

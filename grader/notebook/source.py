@@ -10,8 +10,8 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from grader.errors import UsageError
-from grader.notebook.cell_files import MAGICS, part_path
 from grader.notebook.released import Cell, to_bytes
+from grader.submission.notebook_cells import MAGICS, part_path
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -38,8 +38,6 @@ BEHIND_THE_DOOR = {
     ("judging", "_early"): "judging",
     ("clock", "first_clock"): "judging",
     ("json", "from_json"): "html_class, and our own results",
-    ("handed_in", "_started"): "handed_in",
-    ("handed_in", "_worked_on"): "handed_in",
     ("predicted", "_may_look_around"): "trials",
     ("predicted", "predict"): "trials",
     ("rebuild", "_with_texts"): "rebuild",

@@ -190,6 +190,6 @@ preset = "stop"
 """
     sources = Sources("99-test", (HEAD + SHORT).encode(), private.encode(), "mine/exercise.toml")
     checks = {check.id: check for check in sources.exercise(Path(), KINDS).checks}
-    assert (checks["eight-start"].points, checks["eight-start"].hidden) == (7.0, True)
+    assert (checks["eight-start"].points, checks["eight-start"].hidden) == (7.0, False)
     assert (checks["stop"].trial, checks["stop"].hidden, checks["stop"].needs) == ("drive", True, ("start",))
     assert not checks["eight-node-name"].hidden

@@ -19,10 +19,10 @@ from grader.colcon.runner import _READY, _described
 from grader.errors import GraderError, UnreadableError, UsageError
 from grader.evidence import recording_format
 from grader.exercise.model import course_folder
-from grader.notebook.handed_in import open_handed_in
 from grader.report.html_class import save_class_page
 from grader.report.json import to_json
 from grader.sandbox.process import Finished
+from grader.submission.handed_in import open_handed_in
 from grader.submission.package import write_copy
 from grader.submission.reader import read
 from grader.tests.checks.made import FILES, NODE_FILE, evidence, good

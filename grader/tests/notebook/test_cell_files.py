@@ -6,8 +6,9 @@ import pytest
 
 from grader.checks.exercises import find_exercise
 from grader.errors import UsageError
-from grader.learner import workspace
-from grader.notebook.cell_files import Part, begin, counts, part_path, parts_of
+from grader.exercise.starting_point import starting_point
+from grader.notebook.cell_files import begin
+from grader.submission.notebook_cells import Part, counts, part_path, parts_of
 
 CIRCLE = find_exercise("03")
 ANSWERS = find_exercise("02")
@@ -86,5 +87,5 @@ def test_only_the_notebook_of_a_solution_keeps_the_numbers_of_the_starting_point
     begin(CHALLENGES, folder)
     assert CHALLENGES.numbers
     numbers = Path(CHALLENGES.package, CHALLENGES.numbers.file)
-    given = (workspace.starting_point(CHALLENGES) / numbers).read_bytes()
+    given = (starting_point(CHALLENGES) / numbers).read_bytes()
     assert ((folder / numbers).read_bytes() == given) is kept

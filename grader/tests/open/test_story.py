@@ -186,10 +186,8 @@ def test_two_browsers_show_the_same_verdict_and_hints(begun: Course, browser: Br
     begun.save("2.0", "3.0")
     for page in (first, second):
         verdict(page, "Not passed yet")
-    shown = second.locator("#hints li").count()
     first.get_by_role("button", name="Hint").click()
-    until(lambda: second.locator("#hints li").count() == shown + 1)
-    until(lambda: first.locator("#hints li").count() == shown + 1)
+    until(lambda: 0 < first.locator("#hints li").count() == second.locator("#hints li").count())
     first.close()
     begun.save()
     verdict(second, "Passed: 100 of 100 points.")

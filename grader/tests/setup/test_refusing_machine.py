@@ -47,7 +47,7 @@ def test_on_a_disk_that_is_mounted_noexec(tmp_path: Path) -> None:
     refused(replace(course, within=within), f"{course.folder} is mounted with the option noexec", end="'")
 
 
-@pytest.mark.parametrize("room", [20 * MB, pytest.param(60 * MB, marks=[pytest.mark.exhaustive, pytest.mark.door])])
+@pytest.mark.parametrize("room", [24 * MB, pytest.param(60 * MB, marks=[pytest.mark.exhaustive, pytest.mark.door])])
 def test_on_a_full_disk(tmp_path: Path, room: int) -> None:
     course = on_a_disk(clone(tmp_path), room)
     refused(course, f"The disk is full for {course.folder}/.venv: free some space there")

@@ -12,7 +12,7 @@ from grader.classroom.content import Refused, read
 from grader.classroom.find_submissions import Found
 from grader.errors import UsageError
 from grader.exercise.model import course_folder
-from grader.notebook.handed_in import open_handed_in
+from grader.submission.handed_in import open_handed_in
 
 if TYPE_CHECKING:
     from pathlib import Path

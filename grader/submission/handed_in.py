@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 from grader.common.words import a_list
 from grader.errors import UnreadableError, UsageError
 from grader.exercise.model import catalogue
-from grader.learner.workspace import starting_point
-from grader.notebook.cell_files import Part, counts, ended, parts_of, starting_text
+from grader.exercise.starting_point import starting_point
 from grader.submission import tree
+from grader.submission.notebook_cells import Part, counts, ended, parts_of, starting_text
 from grader.submission.package import ANSWERS, Submission, digest, open_answers, open_submission
 from grader.submission.reader import read
 from grader.submission.search import NoPackageError
