@@ -13,7 +13,7 @@ from grader.classroom.content import Refused, read
 from grader.errors import MachineError
 from grader.gradebook import scores
 from grader.gradebook.scores import _readable
-from grader.tests.notebook.test_handed_in import CIRCLE, FILE, handed_in
+from grader.tests.submission.test_handed_in import CIRCLE, FILE, handed_in
 
 if TYPE_CHECKING:
     from pathlib import Path
