@@ -273,7 +273,7 @@ class SimulatedTrial(Simulation):
         sleeping = [wait for wait in timed if wait.call in ("nanosleep", "clock_nanosleep")]
         if sleeping and not self._is_ending():
             self._doubt("the node sleeps in wall time")
-        elif not sleeping and len(timed) > len(self.node.pids):
+        elif not sleeping and len(timed) > len(self.node.pids) and not self._is_ending():
             self._doubt("the node waits for wall time")
 
     def _await_leaver(self) -> None:
