@@ -65,7 +65,7 @@ class Wait:
         """The reason why a callback must not wait in this way, and the alternative."""
         if self.deadlock:
             text = (
-                f"{self._subject} waits inside a callback, so rclpy.spin cannot receive the response: a deadlock. "
+                f"{self._subject} waits inside a callback, so rclpy.spin receives no response: a deadlock. "
                 f"{self._instead}"
             )
             return Cause("waits-in-callback", text, self.where)
@@ -90,7 +90,7 @@ class Wait:
 
     @property
     def _instead(self) -> str:
-        asynchronous = f"{self.name}_async" if self.name in RESPONSES else "the method whose name ends in _async"
+        asynchronous = f"{self.name}_async" if self.name in RESPONSES else "the method that ends in _async"
         return f"Use {asynchronous}, and pass the next step to add_done_callback."
 
 

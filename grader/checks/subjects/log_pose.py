@@ -144,8 +144,8 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
         return failed(observed, expected, Cause("distance-from-zero", cause, where))
     if _is_chords(logged, numbers):
         cause = (
-            "The node adds one straight line from each logged position to the next. On a curve, the path "
-            "is longer than the straight line. Add a step each time a pose arrives."
+            "The node adds a straight line from each logged position to the next. On a curve, the path is longer. "
+            "Add a step each time a pose arrives."
         )
         return failed(observed, expected, Cause("distance-by-chords", cause, where))
     cause = (

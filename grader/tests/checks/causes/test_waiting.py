@@ -135,7 +135,7 @@ def test_a_spin_in_a_callback_has_no_method_of_the_same_name() -> None:
     source = NODE.format(init="pass", callback="self.step", step="until(self, future)", ask="pass", main="pass")
     cause = waits_in_callback(evidence(package=submission({NODE_FILE: source})))
     assert cause is not None
-    assert "Use the method whose name ends in _async" in cause.text
+    assert "Use the method that ends in _async" in cause.text
 
 
 def test_threads_are_noticed() -> None:
