@@ -144,7 +144,7 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
         return failed(observed, expected, Cause("distance-from-zero", cause, where))
     if _is_chords(logged, numbers):
         cause = (
-            "The node adds a straight line from each logged position to the next. On a curve, the path is longer. "
+            "The node adds straight lines from each logged position to the next. On a curve, the path is longer. "
             "Add a step each time a pose arrives."
         )
         return failed(observed, expected, Cause("distance-by-chords", cause, where))

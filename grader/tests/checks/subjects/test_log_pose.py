@@ -215,7 +215,7 @@ ZERO, CHORDS = (X, Y, DRIVEN * 0), WRONG["from place to place"][0](truth())
         ("The numbers never change.", LOG_POSITION, (X * 0, Y * 0, DRIVEN), (X + 1.0, Y, DRIVEN)),
         ("The distance stays 0. Each time a pose arrives, the step", LOG_DISTANCE, ZERO, (X, Y, 2.0 * DRIVEN)),
         ("Between two poses the turtle moves by the square root", LOG_DISTANCE, (X, Y, 2.0 * DRIVEN), ZERO),
-        ("The node adds a straight line from each logged position to the next.", LOG_DISTANCE, CHORDS, ZERO),
+        ("The node adds straight lines from each logged position to the next.", LOG_DISTANCE, CHORDS, ZERO),
         ("It never gets smaller.", LOG_DISTANCE, ZERO, (X, Y, DRIVEN)),
     ],
 )
