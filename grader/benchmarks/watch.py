@@ -2,8 +2,8 @@
 
     python -m grader.benchmarks.watch [--times N] [--submission FOLDER --exercise NAME --file PATH]
 
-The benchmark uses a real terminal. The time is measured from the save until the line after the verdict appears. F and
-`grader watch` are measured alternately in the same run, so that other programs slow down both.
+The benchmark runs `grader watch` in a pseudo-terminal. The time is measured from the save until the line after the
+verdict appears. F and `grader watch` are measured alternately in the same run, so that other programs slow down both.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 CHECK_S = 300
 """The time limit (s) for an instructor's cell, which builds and runs a package, sometimes in wall time."""
 SHOWN = ("stream", "display_data", "execute_result", "error", "update_display_data")
-"""The types of messages that add outputs to a notebook cell."""
+"""The types of messages that add or change outputs of a notebook cell."""
 
 
 class ConfinedKernelManager(AsyncKernelManager):

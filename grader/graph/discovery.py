@@ -210,7 +210,7 @@ def spin_until(
 ) -> bool:
     """Spin the node until `done` returns true or the timeout expires. Return False after a timeout.
 
-    With `defer_stops`, no signal interrupts a callback, so no response is lost. Use this only if no callback waits.
+    With `defer_stops`, no signal interrupts a callback, so no response is lost. A callback must not wait for long.
     """
     end = None if timeout_s is None else time.monotonic() + timeout_s
     while not done():

@@ -163,7 +163,7 @@ class Lane:
             selector.register(self._process.stdout, selectors.EVENT_READ)
             self._ready = bool(selector.select(START_S)) and self._process.stdout.read(len(READY)) == READY
         if not self._ready and not self._killed:
-            raise MachineError("pytest and rclpy could not be started. `grader doctor` shows what is missing.")  # noqa: EM101
+            raise MachineError("pytest and rclpy could not be imported. `grader doctor` shows what is missing.")  # noqa: EM101
 
     def kill(self) -> None:
         """Kill all processes of the room and of its cells."""

@@ -54,7 +54,7 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
             return still
         text = (
             f"The turtle only turned on the spot, by {trajectory.turned_rad / math.tau:.0f} full turns in total. The "
-            "error is the direction to the goal minus theta."
+            "angle to turn by is the direction to the goal minus theta."
         )
         where = evidence.code.assigned("angular", "z") or where
         return still.because(Cause("turns-on-the-spot", text, where))

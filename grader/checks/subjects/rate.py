@@ -39,7 +39,10 @@ POSES_HZ = 1.0 / FRAME_S
 """The rate at which turtlesim publishes poses: one pose per frame."""
 
 FASTEST_HZ = 40.0
-"""Simulated time advances in steps of 16 ms, so a higher rate than this appears lower than it is."""
+"""The highest rate (Hz) that can be measured in simulated time, which advances in steps of 16 ms.
+
+A node that sends one message per pose is an exception.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)

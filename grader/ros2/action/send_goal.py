@@ -93,7 +93,7 @@ def _follow(node: Any, client: Any, goal: Any, *, feedback: bool) -> None:  # no
         print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n", flush=True)
         with stops_deferred():
             finished = handle.get_result_async()
-        spin_until(node, finished.done)
+        spin_until(node, finished.done, defer_stops=True)
     except KeyboardInterrupt:
         if sent is not None:
             _cancel(node, sent)
