@@ -51,9 +51,9 @@ class GraphDrawing:
 
 
 def draw_graph(recording: Recording, name: str = "graph") -> GraphDrawing | None:
-    """Draw all nodes and topics that were ever in the graph, except for the topics that every node has.
+    """Draw the nodes and topics that were in the graph at any time, as far as they fit.
 
-    Return None if there was no node.
+    Hidden names, debug topics such as /rosout, and the nodes of tools are left out. Return None if there was no node.
     """
     nodes = sorted({node for graph in recording.graphs for node in graph.nodes})
     ends = {end: None for graph in recording.graphs for end in graph.endpoints}

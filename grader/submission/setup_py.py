@@ -181,7 +181,10 @@ def _data_files(call: Call, module: Module) -> tuple[tuple[str, tuple[str, ...]]
 
 
 def _data_file(item: ast.expr, module: Module) -> tuple[str, tuple[str, ...]]:
-    """Return one pair (folder, [files]). A part that is not constant becomes an empty string."""
+    """Return one pair (folder, files).
+
+    A folder or a file that is not constant becomes an empty string. Files that are not in a list become an empty tuple.
+    """
     if not isinstance(item, ast.Tuple | ast.List) or len(item.elts) != 2:
         return "", ()
     folder, files = item.elts

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 LOG_LINE = Subject("log line", "info")
-FORMAT = "The format of a line with its numbers in braces, such as `Hello {counter}` or `x={x:.2f}`."
+FORMAT = "The format of a line, with a replacement field for each number, such as `Hello {counter}` or `x={x:.2f}`."
 UNRECEIVED = "No messages will be received from it"
 """rclpy logs this if a subscription is not compatible with a publisher."""
 LEVELS = ("info", "warning", "warn", "error", "fatal")
@@ -39,9 +39,9 @@ LEVELS = ("info", "warning", "warn", "error", "fatal")
 
 @dataclass(frozen=True, kw_only=True)
 class LogFormat:
-    """The format of a log line with its numbers in braces, such as "Hello {counter}" or "x={x:.2f}"."""
+    """The format of a log line, with a replacement field for each number, as in "Hello {counter}" or "x={x:.2f}"."""
 
-    format: str = string("a log line with its numbers in braces", about=FORMAT)
+    format: str = string("a log line with replacement fields", about=FORMAT)
 
 
 def log_lines(evidence: Evidence, params: LogFormat) -> Finding:
@@ -140,7 +140,7 @@ def _same_words(line: str, format_: str) -> bool:
 class LogRate(Rate):
     """The parameters of the kind `rate`, but for log lines in the required format."""
 
-    format: str = string("a log line with its numbers in braces", about=FORMAT)
+    format: str = string("a log line with replacement fields", about=FORMAT)
 
 
 def log_rate(evidence: Evidence, params: LogRate) -> Finding:
@@ -153,7 +153,7 @@ def log_rate(evidence: Evidence, params: LogRate) -> Finding:
 class Counter:
     """The name of the counter in the format of a log line, and the first value of the counter."""
 
-    format: str = string("a log line with its numbers in braces", about=FORMAT)
+    format: str = string("a log line with replacement fields", about=FORMAT)
     counts: str = string("the name of a number in the format", about="The name of the counter in the format.")
     first: float = number(0.0, about="The first value of the counter.")
 

@@ -33,7 +33,7 @@ HUNDREDTH = 0.0101
 class Printed(OneCall):
     """One run of the program, and the names of the printed numbers that are compared."""
 
-    format: str = string("a line with its numbers in braces", about=FORMAT)
+    format: str = string("a line with replacement fields", about=FORMAT)
     values: tuple[str, ...] = strings(about='The numbers that are compared: "messages", "rate", "x", "y", "radius".')
 
 
