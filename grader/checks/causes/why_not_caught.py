@@ -147,13 +147,11 @@ def _called_too_early(evidence: Evidence) -> Cause | None:
         return None
     frames = recording.frames
     times = frames.t_s[frames.t_s <= from_s]
-    near = (t_s for t_s in times if any(distance_m(recording, each, t_s) <= NEAR_M for each in recording.tracks))
-    near_s = next(near, None)
-    if near_s is None:
+    if not any(distance_m(recording, each, t_s) <= NEAR_M for t_s in times for each in recording.tracks):
         return None
     text = (
-        f"The turtle was near a target at {near_s:.1f} s, but {CATCH} did not exist before {from_s:.1f} s, and no call "
-        "arrived. A request to a service that does not exist is lost. Before each call, use service_is_ready."
+        f"The turtle was near a target before {CATCH} existed, and no call arrived later. A request to a service that "
+        "does not exist is lost. Before each call, use service_is_ready."
     )
     return Cause("service-not-ready", text, sends[0].where)
 

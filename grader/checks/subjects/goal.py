@@ -100,8 +100,8 @@ def _on_the_way(evidence: Evidence, params: Goal) -> str:
     changes = sum(before * after < 0 for before, after in pairwise(turns))
     if changes >= max(SWAYS_LEAST, SWAYS * len(turns)):
         return (
-            f"The turtle sways: {changes} of {len(turns)} commands turn it in the other direction than the command "
-            "before. It turns too far between two commands, so the factor of the error may be too large."
+            "The turtle sways: many commands turn it in the opposite direction to the command before. It turns too far "
+            "between two commands, so the factor of the error may be too large."
         )
     away = np.hypot(trajectory.x - params.x_m, trajectory.y - params.y_m)
     nearest = int(away.argmin())

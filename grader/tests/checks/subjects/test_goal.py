@@ -81,7 +81,7 @@ SWAYING = tuple((1, 0.5, side * 10 * SWAY) for side in (0.5, *(1.0, -1.0) * 5))
 @pytest.mark.parametrize(
     ("parts", "words"),
     [
-        (SWAYING, "The turtle sways: 9 of 11 commands turn it in the other direction than the command before."),
+        (SWAYING, "The turtle sways: many commands turn it in the opposite direction to the command before."),
         ((ahead(1.0, 100),), "The turtle was still getting nearer to the goal at the end of the trial"),
         ((ahead(2.0), ahead(-1.0)), "The turtle came within 2.00 m of the goal at 2.0 s, and no nearer after that."),
     ],
