@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from typing import TYPE_CHECKING
 
 from grader.common.system_errors import of_the_machine
@@ -81,8 +82,8 @@ def load_exercise(path: Path) -> Exercise:
     try:
         data = file.read_bytes()
     except OSError as error:
-        if of_the_machine(error):
-            raise
+        if of_the_machine(error) or error.errno == errno.EPERM:
+            raise  # a file without read permission has EACCES; EPERM means that the machine forbids the call
         message = f"{file}: cannot be read ({error.strerror})."
         raise UsageError(message) from error
     return parse_exercise(data, name=str(file), folder=file.parent, kinds=KINDS)

@@ -21,6 +21,7 @@ from grader.tests.faults.inject import ALL, LIMIT_S, Done, Fault, environment, f
 EVERY_DAY = [
     ("class", "fork", errno.EAGAIN, 1),
     ("class", "open", errno.EMFILE, 1),
+    ("class", "open", errno.EPERM, 1),
     ("class", "mkdir", errno.ENOSPC, 1),
     ("start", "mkdir", errno.ENOSPC, 1),
     ("start", "open", errno.EPERM, 1),
