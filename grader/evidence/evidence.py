@@ -141,7 +141,10 @@ class Evidence:
 
     @cached_property
     def node_file(self) -> str | None:
-        """The node's source file: the module of the entry point, or the file named after the executable, or None."""
+        """The source file of the node or of the function that the trial calls, or None.
+
+        This is the module of the entry point or of the function, or else the file named after the executable.
+        """
         target = self.trial.calls.function or self.entry_point()
         files = self.submission.files
         if target is not None:
@@ -158,7 +161,7 @@ class Evidence:
 
     @cached_property
     def commands(self) -> tuple[Command, ...]:
-        """The commands that arrived before SIGINT."""
+        """The commands that arrived before SIGINT (see `activity.commands`)."""
         return activity.commands(self.recording)
 
     @cached_property

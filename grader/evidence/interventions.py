@@ -36,7 +36,7 @@ KEPT_S = 1.1
 
 
 def moved_by(recording: Recording, *, from_start: bool, others_removed: bool = False) -> str | None:
-    """Return the call that moved the turtle or may have influenced its movement, or None if there is no such call.
+    """Return the first call that may have moved the turtle, or None if velocity commands explain all movements.
 
     Without `others_removed`, a call that removes a turtle or sets a parameter always counts. With `others_removed`, the
     node may make such calls, but it must not remove turtle1 and spawn it at another place. With `from_start`, movements

@@ -5,12 +5,13 @@
                      instead, if the student's tests were run
     build.json       the result of the build
     tries.json       the fixes that were tested, with their results; only for instructors, since it shows solutions
-    submission.json  name, digest and paths, the version of ROS 2, and what could not be read or run
+    submission.json  name, student, digest and paths, the version of ROS 2, and what could not be read or run
     source/          the files of the submission
     exercise/        the exercise at that time: exercise.toml
     COLCON_IGNORE    so that colcon never runs the submission's setup.py
 
-trials/ID/ is missing if that trial was not completed, and build.json is missing if nothing was built.
+trials/ID/ is missing if that trial was not completed, build.json if nothing was built, and tries.json if there was no
+fix to test.
 """
 
 from __future__ import annotations
@@ -59,7 +60,7 @@ def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -
     """Write the evidence to a folder, which must be new or empty. `prefixes` are the folders with the .msg files.
 
     Raises:
-        UsageError: the folder is not empty.
+        UsageError: the path is a file, or a folder that is not empty.
         MachineError: the folder cannot be written.
     """
     check_free(folder)
@@ -170,7 +171,10 @@ def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
         }
     except (OSError, KeyError, TypeError, ValueError, AttributeError) as error:
         why = f"{type(error).__name__}: {error}"
-        message = f"{folder} is not a recording from `grader check --recording` ({why})."
+        message = (
+            f"{folder} is not a recording from `grader check --recording`, or it is damaged or from another version of "
+            f"the grader ({why})."
+        )
         raise UsageError(message) from error
     return Archived(Evidence(kept, submission, build, runs, fault, tries), ros)
 

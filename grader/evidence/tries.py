@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 Result = Literal["passes", "further", "refuted"]
-"""The result of testing a change: the check passes, it fails later for another reason, or the cause is refuted."""
+"""The result of testing a change: the check passes, it fails for another reason, or the cause is refuted."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,8 @@ class Tries:
 
     `behind` counts the causes that appeared only after other causes had been fixed.
 
-    `stopped` is the reason why some changes were not tested. `stopped` is empty if all changes were tested.
+    `stopped` is the reason why some changes could not be tested. `stopped` is empty if all changes were tested, or if
+    the caller interrupted the tests.
     """
 
     made: tuple[Try, ...] = ()

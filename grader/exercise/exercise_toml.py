@@ -10,8 +10,9 @@ The keys in `schema = 2`:
 - `[[trial]]` has id, executable, node, duration_s, start, rename, pose_every, pose_from_s, answers_after_s, targets,
   withdraws, catch_from_s and alone_s. A `[[trial]]` whose node runs in another trial has id, executable, node and
   beside. `[trial.start_pose]` has x_m, y_m and theta_rad, and `[[trial.drive]]` has from_s, linear_x_m_s and
-  angular_z_rad_s (each is one number, or the two limits of a random number). `[[trial.call]]` has at_s, service, type
-  and request (a table with fields). `[[trial.set]]` has at_s, parameter, value and `also`.
+  angular_z_rad_s (each except from_s is one number, or the two limits of a random number). `[[trial.call]]` has at_s,
+  service, type and request (a table with fields). `[[trial.set]]` has at_s, parameter, value and `also` (a table with
+  other parameters).
   `[trial.parameters]` and `[trial.params_file]` map the names of parameters to their values.
 - A `[[trial]]` without a simulator has id and one of these groups: function and `[[trial.points]]`; executable and
   `[[trial.bag]]` (both in calls_toml.py); executable, node, duration_s and `[trial.tests]` (tests_toml.py).

@@ -77,7 +77,7 @@ def syntax_of(path: str) -> Syntax | None:
 
 
 def regions(text: str, syntax: Syntax, name: str) -> list[str | Region]:
-    """Split the text into lines (with their line endings) and regions. Raises UsageError if a marker is wrong."""
+    """Split the text into lines (with line endings) and regions. Raises UsageError if a marker or block is wrong."""
     return _Reader(syntax, name).read(text)
 
 

@@ -78,13 +78,14 @@ class Scenario:
     If `anywhere` is set, the start pose is random even without a seed. With `start_limits`, it is random within these
     limits. `rename` contains remapping rules for the simulator, such as "/turtle1/pose:=/where". The pose and the
     colour of a turtle are published every `pose_every` frames. The first pose of turtle1 is published at `pose_from_s`
-    (s), as if the simulator had started late. Services respond `answers_after_s` (s) after a call. The node starts with
-    `parameters` on its command line and with `params_file` in a parameter file.
+    (s), as if the simulator had started late. The services of the simulator respond `answers_after_s` (s) after a call.
+    The node starts with `parameters` on its command line and with `params_file` in a parameter file.
 
-    The simulator adds `targets` turtles at random places, and the trial itself runs the node that announces these
-    turtles (grader/trial/target_keeper.py). If `withdraws` is set, this node removes another target after the first
-    catch. Its service exists from `catch_from_s` (s) on, or from when turtle1 has been near a target. If `alone_s` is
-    set, the trial ends early once the other turtles are gone and turtle1 has been alone for this long (s).
+    If `targets` is not 0, the simulator adds this number of turtles at random places, and the trial itself runs the
+    node that announces these turtles (grader/trial/target_keeper.py). If `withdraws` is set, this node removes another
+    target after the first catch. If `catch_from_s` is 0, its service exists from the beginning. Otherwise, its service
+    exists from this time (s) at the earliest, after turtle1 has been near a target or has stood still for a while. If
+    `alone_s` is set, the trial ends early once the other turtles are gone and turtle1 has been alone for this long (s).
     """
 
     duration_s: float

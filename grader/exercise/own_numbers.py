@@ -27,7 +27,8 @@ Value = str | float | int
 
 
 _INVISIBLE = frozenset(
-    {0x034F, 0x115F, 0x1160, 0x17B4, 0x17B5, 0x2800} | {*range(0x180B, 0x1810), *range(0xFE00, 0xFE10)}
+    {0x034F, 0x115F, 0x1160, 0x17B4, 0x17B5, 0x2800}
+    | {*range(0x180B, 0x1810), *range(0xFE00, 0xFE10), *range(0xE0100, 0xE01F0)}
 )
 """Invisible letters and marks: Default_Ignorable_Code_Point in Unicode's DerivedCoreProperties.txt,
 without the characters in UNSAFE_CATEGORIES, and the empty Braille pattern."""
@@ -84,9 +85,14 @@ def draw_numbers(spec: NumbersSpec, student: str) -> OwnNumbers:
 
 
 def to_toml(numbers: OwnNumbers) -> str:
-    """Return the text of the file. The id can be any string."""
+    """Return the text of the file. The id can be any string.
+
+    Surrogates, which TOML cannot contain, are left out of the id. The numbers do not depend on them (see `normal_id`).
+    """
     escaped = "".join(
-        char if char.isprintable() and char not in '"\\' else f"\\U{ord(char):08X}" for char in numbers.student
+        char if char.isprintable() and char not in '"\\' else f"\\U{ord(char):08X}"
+        for char in numbers.student
+        if unicodedata.category(char) != "Cs"
     )
     lines = [
         "# Your own numbers. They come from your id: do not change this file. The lesson says where to write them.",

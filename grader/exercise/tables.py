@@ -45,9 +45,9 @@ class Table:
         self.problems.append(f"{self.place}: {text}" if self.place else text)
 
     def _get(self, key: str, allowed: str, good: Callable[[object], bool], *, default: Any) -> Any:  # noqa: ANN401 (any value that `good` accepts)
-        """Return the value of the key if `good(value)` is true.
+        """Return the value of the key if `good(value)` is true, or else the default.
 
-        Otherwise, record the mistake and return the default.
+        A wrong value is recorded as a mistake. A missing key is a mistake only if the default is None.
         """
         self.known.append(key)
         if key not in self.values:

@@ -2,7 +2,7 @@
 
 The rules, in the order in which they are applied:
 
-1. `--clock simulated` or `--clock wall` sets the clock.
+1. `--clock simulated` or `--clock wall` sets the clock. Rules 2 to 4 do not apply in this case.
 2. Without these options, a trial starts in simulated time, in which the grader need not wait and other programs cannot
    disturb the trial. If the source contains a sign that the node may follow wall time, the trial starts in wall time
    instead (grader.trial.clues).
@@ -14,8 +14,8 @@ The rules, in the order in which they are applied:
    the node did not stop.
 5. If a trial in wall time fails and was disturbed by other programs or by a change of the system time, the trial is
    repeated while nothing else is graded. A busy machine can make a correct node look wrong, but it cannot make a wrong
-   node look correct, so the result of the first trial that passes counts. If none of the WALL_TRIALS trials passes, the
-   trial with the least disturbance counts.
+   node look correct, so the result of the first trial that passes counts. There are at most WALL_TRIALS trials. If none
+   of them passes, the trial with the least disturbance counts.
 """
 
 from __future__ import annotations

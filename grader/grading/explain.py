@@ -1,8 +1,8 @@
 """Prove causes: in a copy of the submission, fix the place to which a failed check points, and run the copy.
 
-Each fix that is not refuted stays in the copy while the next cause is tested. In this way, mistakes that other mistakes
-hid are also found. Like the submission itself, the copy is built and run in the sandbox. The copy always runs in
-simulated time.
+A fix stays in the copy while the next cause is tested, unless it was refuted or its test was inconclusive. In this way,
+mistakes that other mistakes hid are also found. If the submission runs in the sandbox, so does the copy. The copy runs
+only in simulated time.
 """
 
 from __future__ import annotations
@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 
 MOST_TRIES = 6
 MOST_F = 1.5
-"""The maximum time for testing the fixes of a submission, relative to the time that a build and a minimal node take."""
+"""The time for testing the fixes of a submission, relative to the time that a build and a minimal node take. After the
+first test, a test that would probably end later is not started."""
 BARE_NODE_S = 0.35
 """The time that a minimal process with one node takes to start and exit (s)."""
 ENOUGH = f"at most {MOST_TRIES} fixes are tested"
@@ -88,6 +89,7 @@ class _Explaining:
         known = {_key(outcome) for outcome in self.outcomes}
         tried: set[Key] = set()
         stopped = ""
+        tests = 0
         while True:
             target = next((each for each in current.values() if _may_be_tried(each) and _key(each) not in tried), None)
             if target is None or self.give_up():
@@ -96,9 +98,10 @@ class _Explaining:
             changed = applied(files, target.finding.fix)
             if changed is None or changed == files:
                 continue
-            if len(self.made) == MOST_TRIES or time.monotonic() - begun + longest > self.seconds:
-                stopped = ENOUGH if len(self.made) == MOST_TRIES else TOO_LONG
+            if tests == MOST_TRIES or time.monotonic() - begun + longest > self.seconds:
+                stopped = ENOUGH if tests == MOST_TRIES else TOO_LONG
                 break
+            tests += 1
             at = time.monotonic()
             copy = replace(self.evidence.submission, files=changed, digest="")
             found = {each.id: each for each in self.regrade(part_of(self.evidence.exercise, target.id), copy)}
@@ -116,9 +119,9 @@ class _Explaining:
         return Tries(tuple(self.made), len(self.behind), stopped)
 
     def _share(self, target: Outcome, found: Mapping[str, Outcome], diff: str) -> set[Key]:
-        """Record the result of a test for all other failed checks that have the same cause.
+        """Record the result of a test for the other failed checks that were judged again and have the same cause.
 
-        Return the keys of these checks.
+        Only a result that confirms the cause is recorded. Return the keys of all these checks.
         """
         same = [
             each

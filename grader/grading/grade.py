@@ -70,9 +70,12 @@ def grade(
     """Grade a submission.
 
     `tell` is called with a short message about each step. `early` is called before the build, with the outcomes of the
-    checks that are certain to fail. A fault of the machine never raises an exception: the affected outcomes have the
-    status `error`. A caller can replace `build` and `trial`: `grader watch`, for example, passes builds and trials that
-    it started in advance.
+    checks that are certain to fail. A fault of the machine in the build or in a trial raises no exception: the affected
+    outcomes have the status `error`. A caller can replace `build` and `trial`: `grader watch`, for example, passes
+    builds and trials that it started in advance.
+
+    Raises:
+        MachineError: the submission cannot be judged, because the machine is too busy or a module is missing.
     """
     turns = Turns(turns_folder(), tell)
     rebuild = Rebuild(build)
@@ -82,7 +85,7 @@ def grade(
 
 
 def can_be_explained(graded: Graded) -> bool:
-    """Return whether a failed check has a fix that can be tested. After a trial in wall time, no fix can be tested."""
+    """Return whether a failed check has a fix to test. If the first trial ran in wall time, no fix is tested."""
     report = graded.report
     return report.clock != "wall" and any(outcome.finding.fix for outcome in report.with_status(Status.FAILED))
 
@@ -166,7 +169,7 @@ class _Grading:
         return Graded(report, evidence, prefixes)
 
     def _run_all(self, certain: Early) -> None:
-        """Build the submission and run its trials. A machine failure is stored as the `fault` of the evidence."""
+        """Build the submission and run its trials. An error is stored as the `fault` of the evidence."""
         try:
             require_memory()
             self.ros = find_ros()

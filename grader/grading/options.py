@@ -29,7 +29,7 @@ class Options:
     def runs_during_build(self) -> bool:
         """Whether nodes may run from a predicted install tree while the submission is built.
 
-        Without cells, the build could change the behaviour of nodes that run at the same time. If other submissions are
-        graded at the same time, no processor is free for such nodes.
+        Without a sandbox, the build could change the behaviour of nodes that run at the same time. If other submissions
+        are graded at the same time, no processor is free for such nodes.
         """
         return self.in_cell and self.trials_at_once > 1

@@ -83,7 +83,7 @@ class Trials:
                 self._ahead.run(view.trial.id, self._predicted.package, view.trial.executable, self._predicted.tree)
 
     def run_ahead(self, views: Sequence[Evidence], tree: bytes) -> None:
-        """Start the nodes of the trials that begin in simulated time.
+        """Start the nodes of the trials whose simulators have been started and that begin in simulated time.
 
         Then call `run` to wait for the recording of a trial.
 

@@ -47,6 +47,7 @@ SPELLINGS = [
     "A\N{ZERO WIDTH SPACE}da \N{RIGHT-TO-LEFT OVERRIDE}Lovelace",
     "Ada Lovelace\N{HANGUL FILLER}\N{BRAILLE PATTERN BLANK}",
     "Ada\N{VARIATION SELECTOR-16} Lovelace\x01",
+    "Ada Lovelace\N{VARIATION SELECTOR-17}\N{VARIATION SELECTOR-256}",
 ]
 
 
@@ -68,9 +69,14 @@ def test_any_id_survives_the_file(student: str) -> None:
     try:
         student.encode()
     except UnicodeEncodeError:
-        return  # neither a file nor a terminal can contain this id
+        return  # a file cannot contain this id
     numbers = draw_numbers(SPEC, student)
     assert from_toml(SPEC, to_toml(numbers).encode()) == numbers
+
+
+def test_a_byte_of_an_id_that_is_not_utf8_is_left_out_of_the_file() -> None:
+    numbers = draw_numbers(SPEC, "ada\udce9")
+    assert from_toml(SPEC, to_toml(numbers).encode()) == replace(numbers, student="ada")
 
 
 @pytest.mark.parametrize(

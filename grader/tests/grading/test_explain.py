@@ -130,6 +130,20 @@ def test_no_more_than_some_changes_are_tried() -> None:
     assert (len(found.made), found.stopped) == (MOST_TRIES, ENOUGH)
 
 
+def test_causes_of_several_checks_do_not_change_how_many_are_tried() -> None:
+    names = [spec.id for spec in exercise().checks][: 2 * MOST_TRIES + 3]
+    lines = {name: (place + 1) // 2 + 1 for place, name in enumerate(names)}  # the first cause is that of one check
+    tested = []
+
+    def judged(text: str) -> list[Outcome]:
+        tested.append(text)
+        done = [line == RIGHT for line in text.split()]
+        return [right(name) if done[line - 1] else wrong(name, line=line) for name, line in lines.items()]
+
+    found, _ = tries("a\n" * len(names), judged)
+    assert (len(tested) - 1, found.stopped) == (MOST_TRIES, ENOUGH)
+
+
 def test_without_time_nothing_is_tried() -> None:
     found, _ = tries("a\n", lambda _: [wrong("values")], build_s=-BARE_NODE_S - 1.0)
     assert found == Tries(stopped=TOO_LONG)
