@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import os
 import resource
 import statistics
@@ -15,11 +14,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.benchmarks.cpu_group import cpu_group
+from grader.common.linux_calls import adopt_orphans
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
-
-_PR_SET_CHILD_SUBREAPER = 36
 
 
 @dataclass(frozen=True)
@@ -40,8 +38,7 @@ def cost(argv: Sequence[str], *, env: Mapping[str, str] | None = None, cwd: Path
     Raises:
         RuntimeError: the command failed.
     """
-    # Adopt orphaned processes, so that the orphans of a sandbox are also counted.
-    ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+    adopt_orphans()  # so that the orphans of a sandbox are also counted
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     # The output goes to a file, because a command that fills a pipe would wait for a reader.
     with cpu_group() as group, tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as output:

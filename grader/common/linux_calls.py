@@ -16,6 +16,8 @@ from pathlib import Path
 
 F_OFD_SETLK: int = getattr(fcntl, "F_OFD_SETLK", 37)
 """The command of fcntl(2) that locks a part of a file for an open file description. (Value: asm-generic/fcntl.h.)"""
+_PR_SET_CHILD_SUBREAPER = 36
+"""The first argument of prctl(2). (Value: linux/prctl.h.)"""
 _PIDFD_SEND_SIGNAL, _PIDFD_OPEN, _CLOSE_RANGE = 424, 434, 436
 """The numbers of the system calls, which are the same on x86-64 and on arm64."""
 
@@ -41,6 +43,16 @@ def pidfd_send_signal(pidfd: int, number: int) -> None:
         signal.pidfd_send_signal(pidfd, number)
     else:
         _call(_PIDFD_SEND_SIGNAL, pidfd, number, None, 0)
+
+
+def adopt_orphans() -> None:
+    """Let each orphan among the descendants of this process become a child of this process (prctl(2)).
+
+    Otherwise, orphans become children of the first process of the system.
+    """
+    import ctypes
+
+    ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
 
 
 def close_from(lowest: int) -> None:

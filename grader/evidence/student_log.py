@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from grader.trial.recording import LogLine, Recording
 
 FIELD = re.compile(r"\{(?P<name>[a-z_]+)(?::\.(?P<digits>\d)f)?\}")
-OUR_LOGGERS = ("turtlesim",)
 
 
 @dataclass(frozen=True)
@@ -45,9 +44,13 @@ class Line:
 
 
 def students(recording: Recording) -> tuple[LogLine, ...]:
-    """Return the lines that the submission logged before SIGINT, in the order of arrival."""
+    """Return the lines that the submission logged before SIGINT, in the order of arrival.
+
+    The logger of a node has the name of the node, with dots instead of slashes.
+    """
     until = activity.end_s(recording)
-    return tuple(line for line in recording.log if line.logger not in OUR_LOGGERS and line.t_s < until)
+    ours = {node.strip("/").replace("/", ".") for node in recording.own_nodes}
+    return tuple(line for line in recording.log if line.logger not in ours and line.t_s < until)
 
 
 def in_format(recording: Recording, text: str) -> tuple[Line, ...]:

@@ -27,9 +27,11 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from grader.common.interpreter import interpreter
+from grader.common.linux_calls import adopt_orphans
 from grader.common.system_errors import refusal
 from grader.ros import installation
 from grader.sandbox import bubblewrap
+from grader.sandbox.descendants import kill_descendants
 from grader.sandbox.limits import NODE_LIMITS, limited
 from grader.trial.inputs import Inputs
 from grader.trial.launcher import postponed
@@ -119,6 +121,9 @@ def _conduct(order: dict[str, Any], answers: IO[str], nodes: socket.socket | Non
         return
     names = ["", *order["beside"]]
     with ExitStack() as stack:
+        if nodes is None:
+            adopt_orphans()
+            stack.callback(kill_descendants, os.getpid())
         stack.enter_context(postponed())
         processes = [stack.enter_context(NodeProcess(_launcher(ros, order, nodes), NODE_LIMITS)) for _ in names]
         node = NodeGroup(processes)

@@ -19,6 +19,7 @@ from grader.common.interpreter import interpreter
 from grader.ros import installation
 from grader.sandbox import bubblewrap, system_calls
 from grader.sandbox.control_group import ControlGroup, control_group
+from grader.sandbox.descendants import kill_descendants
 from grader.sandbox.entering import HOLDER
 from grader.sandbox.holder import Holder
 from grader.sandbox.limits import MIB, NODE_LIMITS, allowed, resource_limits
@@ -116,7 +117,7 @@ class PlainConductor(ConductorProcess):
         return self._process.wait(timeout)
 
     def close(self) -> None:
-        """Kill the process group, and wait for the conductor."""
+        """Kill the conductor and all its descendants, and wait for the conductor."""
         self.kill()
         _close(self.stdin, self.stdout)
         self._process.wait()
@@ -126,6 +127,9 @@ class PlainConductor(ConductorProcess):
             os.killpg(self._process.pid, number)
 
     def _kill(self) -> None:
+        # Each node has its own process group, and may have started processes in other sessions.
+        if self._process.poll() is None:
+            kill_descendants(self._process.pid)
         self._signal(signal.SIGKILL)
 
 

@@ -52,6 +52,8 @@ _NOT_NEEDED = "rosidl_generator_py.generate_py_impl"
 _SIMULATED = "use_sim_time:=true"
 DELIVERY_S = 0.5
 """The maximum time for which a publisher is kept until its messages have been acknowledged (s)."""
+_PR_SET_PDEATHSIG = 1
+"""The first argument of prctl(2). (Value: linux/prctl.h.)"""
 _TYPES_AHEAD = (("geometry_msgs.msg", "Twist"), ("rosgraph_msgs.msg", "Clock"), ("turtlesim.msg", "Pose"))
 
 
@@ -194,7 +196,11 @@ def _frames_of_others(trace: types.TracebackType | None) -> types.TracebackType 
 
 
 def main() -> None:
-    """Import rclpy, wait for the start command, and then run the node in this process."""
+    """Import rclpy, wait for the start command, and then run the node in this process.
+
+    Without a cell, a node must not outlive a conductor that was killed: it would drive the turtle of another trial.
+    """
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
     sys.path.pop(0)
     run(import_ahead())
 

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from rclpy.qos import TopicEndpointInfo
 
 OWN_NAMESPACE = "/_grader"
-OWN_NODES = ("/turtlesim", f"{OWN_NAMESPACE}/recorder")
-NAMESAKE = " (not the simulator)"
+NAMESAKE = " (of the submission)"
 """This suffix is added to the name of a student's node if one of the grader's nodes has the same name."""
 NAMELESS = "_NODE_NAME_UNKNOWN_"
 """The name that ROS 2 reports for a node whose endpoints were discovered before the node itself."""
@@ -73,6 +72,8 @@ class Recorder(Node):
         self.dropped = 0
         self.graph_dropped = 0
         self.follows_services = False
+        self.own_nodes: tuple[str, ...] = (self.get_fully_qualified_name(),)
+        """The full names of the grader's nodes. The trial adds the names of its other nodes."""
         self._offers: set[Offer] = set()
         self._judged = frozenset(judged)
         self._subscribed: Counter[str] = Counter()
@@ -143,7 +144,7 @@ class Recorder(Node):
         """Store the services that other nodes offer now."""
         for name, space in self.get_node_names_and_namespaces():
             node = f"{space.rstrip('/')}/{name}"
-            if node in OWN_NODES or len(self._offers) >= MOST_SERVICES:
+            if node in self.own_nodes or len(self._offers) >= MOST_SERVICES:
                 continue
             for service, types in self.get_service_names_and_types_by_node(name, space)[:MOST_SERVICES]:
                 if not service.startswith(f"{node}/") or not types[0].startswith(OF_EVERY_NODE):
@@ -160,7 +161,7 @@ class Recorder(Node):
         shown += [topic for beside, topic in topics if beside][:MOST_TOPICS]
         endpoints: set[Endpoint] = set()
         left_out = len(topics) - len(shown)
-        nodes = sorted(self.nodes(), key=lambda name: (name not in OWN_NODES, name))
+        nodes = sorted(self.nodes(), key=lambda name: (name not in self.own_nodes, name))
         if len(self._endpoints_before) > 4 * MOST_TOPICS:
             self._endpoints_before.clear()
         for topic in shown:
@@ -217,9 +218,8 @@ class Recorder(Node):
             ours = _participant(info) == self._participant
             if ours and node == own_name:
                 continue
-            result.add(
-                Endpoint(kind, node if ours or node not in OWN_NODES else node + NAMESAKE, topic, info.topic_type)
-            )
+            shown = node + NAMESAKE if node in self.own_nodes and not ours else node
+            result.add(Endpoint(kind, shown, topic, info.topic_type))
         return result
 
     def _own_participant(self) -> bytes:

@@ -93,11 +93,11 @@ class Simulation:
         leave_out_events(self.recorder)
         leave_out_events(self.turtlesim)  # before there are other turtles, which can be removed
         self.keeper = TargetKeeper(self.turtlesim, inputs, self._calls.answered) if inputs.targets else None
-        self._nodes: tuple[Node, ...] = (self.turtlesim, self.recorder)
-        self._nodes += (self.keeper,) if self.keeper is not None else ()
+        self._nodes: tuple[Node, ...] = tuple(filter(None, (self.turtlesim, self.recorder, self.keeper)))
+        self.recorder.own_nodes = tuple(each.get_fully_qualified_name() for each in self._nodes)
         self.executor = SingleThreadedExecutor()
-        for node_of_ours in self._nodes:
-            self.executor.add_node(node_of_ours)
+        for each in self._nodes:
+            self.executor.add_node(each)
         self.frames: list[tuple[float, float, float, float, float, float, bool]] = []
         self.doubts: list[str] = []
         self.stalls: list[tuple[float, float]] = []
@@ -241,7 +241,7 @@ class Simulation:
     @property
     def own_nodes(self) -> tuple[str, ...]:
         """The names of the grader's nodes that are visible in a recording."""
-        return tuple(node.get_fully_qualified_name() for node in self._nodes if node is not self.recorder)
+        return tuple(name for name in self.recorder.own_nodes if name != self.recorder.get_fully_qualified_name())
 
     def all_nodes_found(self) -> bool:
         """Return whether the graph has a node for each process."""

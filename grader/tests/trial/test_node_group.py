@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import io
 import tarfile
+from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.evidence import activity, student_log
 from grader.evidence.trajectory import trajectory_of
 from grader.ros.installation import find_ros
 from grader.ros.underlay import with_turtlesim
+from grader.tests.waiting import until_gone
 from grader.trial.inputs import Inputs
 from grader.trial.recording import Pose, Recording
 from grader.trial.recording_json import from_json, to_json
 from grader.trial.target_places import Target, draw_targets
-from grader.trial.trial import Plan, Trial
+from grader.trial.trial import OverwhelmedError, Plan, Trial
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 PACKAGE = "my_package"
 START = Pose(5.544445, 5.544445, 0.0)
@@ -56,6 +62,16 @@ def drive():
     exit(0)
 node.create_timer(0.5, drive)
 """
+LEAVES_A_CHILD = """
+import subprocess
+child = subprocess.Popen(["sleep", "300"], start_new_session=True, stdout=subprocess.DEVNULL)
+print(child.pid, flush=True)
+"""
+KILLS_THE_CONDUCTOR = """
+import os, pathlib
+pathlib.Path("{pid}").write_text(str(os.getpid()))
+os.kill(os.getppid(), 9)
+"""
 LEAVES_SLOWLY = LEAVES.replace("    exit", "    __import__('subprocess').run(['sleep', '2'])\n    exit")
 CATCHER = """
 client = node.create_client(Kill, "/catch")
@@ -65,8 +81,13 @@ def hear(msg):
         client.call_async(Kill.Request(name=name))
 node.create_subscription(String, "/targets", hear, 10)
 """
-
-
+SAYS_AND_ASKS = """
+def ask():
+    node.get_logger().info("before the call")
+    client.call_async(Kill.Request(name="nobody"))
+    timer.cancel()
+timer = node.create_timer(1.0, ask)
+"""
 DRIVES = """
 from geometry_msgs.msg import Twist, Vector3
 publisher = node.create_publisher(Twist, "/turtle1/cmd_vel", 10)
@@ -74,7 +95,7 @@ node.create_timer(0.1, lambda: publisher.publish(Twist(linear=Vector3(x=0.5))))
 """
 
 
-def trial_of(inputs: Inputs, duration_s: float = 4.0, **bodies: str) -> Recording:
+def trial_of(inputs: Inputs, duration_s: float = 4.0, *, in_cell: bool = True, **bodies: str) -> Recording:
     """Return the recording of one trial in which a node with each of these bodies runs."""
     stream = io.BytesIO()
     with tarfile.open(fileobj=stream, mode="w|") as tar:
@@ -85,7 +106,7 @@ def trial_of(inputs: Inputs, duration_s: float = 4.0, **bodies: str) -> Recordin
             tar.addfile(member, io.BytesIO(source))
     first, *others = bodies
     plan = Plan("simulated", START, None, duration_s, inputs=inputs, beside=tuple(others))
-    with Trial(plan, with_turtlesim(find_ros()), in_cell=True) as trial:
+    with Trial(plan, with_turtlesim(find_ros()), in_cell=in_cell) as trial:
         return trial.run(PACKAGE, first, stream.getvalue())
 
 
@@ -126,6 +147,21 @@ def test_the_trial_plays_the_node_that_announces_and_removes_targets() -> None:
     assert recording.sigint_t_s < 3.0  # turtle1 has been alone for long enough
 
 
+def test_a_node_with_the_name_of_the_trials_own_node_keeps_its_endpoints() -> None:
+    targets = draw_targets(1, START, 1)
+    recording = trial_of(Inputs(targets=targets), 1.5, spawner=CATCHER)
+    assert activity.nodes(recording) == ("/spawner",)
+    assert [end.topic for end in activity.endpoints(recording, "subscription")] == ["/targets"]
+    assert not activity.endpoints(recording, "publisher")  # the trial's own node is the publisher of /targets
+
+
+def test_a_warning_of_the_node_that_removes_targets_is_not_a_line_of_the_submission() -> None:
+    targets = draw_targets(1, START, 1)
+    recording = trial_of(Inputs(targets=targets), 2.5, catcher=f"{CATCHER}\n{SAYS_AND_ASKS}")
+    assert {line.logger for line in recording.log} == {"turtlesim", "catcher", "spawner"}
+    assert [line.text for line in student_log.students(recording)] == ["before the call"]
+
+
 def test_after_the_first_catch_the_trial_withdraws_another_target() -> None:
     targets = draw_targets(3, START, 1)
     names = [target.name for target in targets]
@@ -155,3 +191,16 @@ def test_the_last_command_of_a_node_arrives_and_moves_the_turtle() -> None:
 def test_the_clock_stands_still_while_a_node_that_has_left_exits() -> None:
     recording = trial_of(Inputs(), 10.0, leaves=LEAVES_SLOWLY)
     assert (recording.end.by, len(recording.commands)) == ("itself", 1)
+
+
+def test_a_child_in_a_session_of_its_own_ends_with_a_trial_without_a_sandbox() -> None:
+    recording = trial_of(Inputs(), 1.0, in_cell=False, leaves=LEAVES_A_CHILD)
+    assert recording.end.by == "SIGINT"
+    until_gone(int(recording.stdout.text.split()[0]))
+
+
+def test_a_node_ends_with_its_conductor_without_a_sandbox(tmp_path: Path) -> None:
+    pid = tmp_path / "pid"
+    with pytest.raises(OverwhelmedError):
+        trial_of(Inputs(), 1.0, in_cell=False, kills=KILLS_THE_CONDUCTOR.replace("{pid}", str(pid)))
+    until_gone(int(pid.read_text("ascii")))

@@ -15,11 +15,12 @@ from grader.trial.recording import Pose
 from grader.trial.trial import Plan, Trial
 
 
+@pytest.mark.parametrize("start", ["sleep 300", "setsid sleep 300"], ids=["in its session", "in another session"])
 def test_the_end_of_a_trial_is_the_end_of_a_child_that_does_not_die_with_its_parent(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, start: str
 ) -> None:
     said = tmp_path / "pid"
-    replace_conductor(monkeypatch, f"sleep 300 & echo $! > {said}.new; mv {said}.new {said}; wait")
+    replace_conductor(monkeypatch, f"{start} & echo $! > {said}.new; mv {said}.new {said}; wait")
     trial = Trial(Plan("simulated", Pose(5.5, 5.5, 0.0), None, 1.0), find_ros(), in_cell=False)
     trial.start()
     until(said.exists)
