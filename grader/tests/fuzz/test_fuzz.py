@@ -8,6 +8,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
+from grader.tests.fuzz import runs
 from grader.tests.fuzz.runs import Tally, table
 from grader.tests.fuzz.targets import TARGETS
 from grader.tests.no_ros import without_ros
@@ -60,9 +61,37 @@ def test_the_runs_of_a_target_add_up(tmp_path: Path) -> None:
     for day, executions in (("24", 1000), ("25", 234)):
         run = f'{{"wall_s": 90.0, "cpu_s": 30.0, "executions": {executions}}}'
         (tmp_path / f"install-tree/runs/2026-11-{day}T07-00-00.json").write_text(run)
+    tally = Tally(tmp_path / "names")
     for _ in range(3):
-        Tally(tmp_path / "names").count()
+        tally.count()
     lines = table(tmp_path, ["install tree", "names", "reports"]).splitlines()[2:]
     assert lines[0] == "| `install tree` | 2 | 3.0 | 1.0 | 1,234 |"
     assert lines[1].startswith("| `names` | 1 | 0.0 |")
     assert lines[2] == "| `reports` | 0 | 0.0 | 0.0 | 0 |"
+
+
+def test_a_run_that_cannot_be_read_is_left_out_and_named(tmp_path: Path) -> None:
+    folder = tmp_path / "names/runs"
+    folder.mkdir(parents=True)
+    for hour, text in enumerate(("", "[]", '{"wall_s": 1.0}', '{"wall_s": 60.0, "cpu_s": 60.0, "executions": 5}')):
+        (folder / f"{hour}.json").write_text(text)
+    first, *more = table(tmp_path, ["names"]).splitlines()[2:]
+    assert first == "| `names` | 1 | 1.0 | 1.0 | 5 |"
+    assert more == ["", "Left out, because they cannot be read:", *(f"- {folder / name}.json" for name in "012")]
+
+
+def test_a_run_that_is_killed_while_it_is_written_keeps_its_earlier_numbers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(runs, "EVERY_S", 0.0)
+    tally = Tally(tmp_path / "names")
+    tally.count()
+
+    def killed(path: Path, _: str) -> None:
+        path.open("w").close()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("pathlib.Path.write_text", killed)
+    with pytest.raises(KeyboardInterrupt):
+        tally.count()
+    assert table(tmp_path, ["names"]).splitlines()[2:] == ["| `names` | 1 | 0.0 | 0.0 | 1 |"]
