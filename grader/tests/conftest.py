@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.ros import installation, underlay
+from grader.tests.descriptors import descriptors
 from grader.tests.domains import default_domain
 from grader.tests.gradings import gradings_of
 from grader.tests.in_ros import InRos
@@ -30,6 +31,9 @@ os.environ["GRADER_ROS2_DAEMON"] = "0"
 collect_ignore = ["cases", "mistakes", "unusual", "hostile"]
 """Folders with submissions. Some of these folders contain tests of their own."""
 
+
+MOST_LEFT_OPEN = 20
+"""The number of descriptors that a test may leave open, for example those of fixtures that later tests use, too."""
 
 LONGEST = (
     *("gradebook/test_forged_scores.py", "gradebook/test_term.py", "test_current_folder.py", "test_mistakes.py"),
@@ -78,6 +82,15 @@ def _no_blocked_signals() -> Iterator[None]:
     yield
     left = signal.pthread_sigmask(signal.SIG_SETMASK, ())
     assert not left, f"this test leaves signals blocked: {left}"
+
+
+@pytest.fixture(autouse=True)
+def _no_open_files() -> Iterator[None]:
+    """Check that no test leaves many descriptors open. pexpect needs descriptors below 1024 (see select(2))."""
+    before = descriptors()
+    yield
+    left = len(descriptors() - before)
+    assert left <= MOST_LEFT_OPEN, f"this test leaves {left} descriptors open"
 
 
 @pytest.fixture(scope="session")

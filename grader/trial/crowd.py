@@ -62,6 +62,12 @@ class Stalls:
         """The time for which the simulator and the node have waited for a processor so far (s), summed over all
         threads."""
 
+    def close(self) -> None:
+        """Close the files of the threads. After that, `look` must not be called."""
+        for threads in self._parts:
+            if threads is not None:
+                threads.close()
+
     def look(self, now_s: float) -> tuple[float, float] | None:
         """Return the stall since the last call, or None if there was none.
 

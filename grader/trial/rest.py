@@ -123,7 +123,11 @@ class Threads:
         self._files: dict[int, tuple[int, int]] = {}
         self._main = self._open(pid, "stat")
         self._count = b""
-        self._refresh()
+        try:
+            self._refresh()
+        except (GoneError, OSError):
+            self.close()
+            raise
 
     def close(self) -> None:
         """Close the files of the threads."""
@@ -236,7 +240,11 @@ class Threads:
             self._names[tid] = name
             if self._wanted(name):
                 stat = self._open(tid, "stat")
-                self._files[tid] = (stat, self._open(tid, "schedstat"))
+                try:
+                    self._files[tid] = (stat, self._open(tid, "schedstat"))
+                except (GoneError, OSError):
+                    os.close(stat)
+                    raise
         except (FileNotFoundError, ProcessLookupError, GoneError):
             self._names.pop(tid, None)
 

@@ -61,6 +61,7 @@ class WallTrial(Simulation):
                 self.follow_graph()
                 self.recorder.snapshot()
         stopped_s = self.now()
+        watch.close()
         worked_s = self.node.worked_s(self._begun, time.monotonic())
         others_s = others.worked_s(but_s=worked_s)
         self._crowded = is_crowded(watch.waited_s, others_s, of_s=stopped_s)

@@ -6,7 +6,7 @@ Some tests that need exact numbers use invented numbers.
 from __future__ import annotations
 
 import os
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -74,10 +74,10 @@ def test_what_simulator_and_node_work_is_not_that_of_others(monkeypatch: pytest.
 
 def test_a_node_that_shares_its_processor_waits_and_is_observed_waiting() -> None:
     with program(WORK_S) as node, program(3600.0) as rival:
-        watch = Stalls(node.pid)
-        begin(rival)
-        work(node)
-        watch.look(1.0)
+        with closing(Stalls(node.pid)) as watch:
+            begin(rival)
+            work(node)
+            watch.look(1.0)
         assert watch.waited_s >= WORK_S / 5
 
 
@@ -127,22 +127,23 @@ Counts = tuple[tuple[float, float], tuple[float, float], float]
     ],
 )
 def test_a_stall_is_what_the_machine_owes(counts: Counts, monkeypatch: pytest.MonkeyPatch, *, stall: bool) -> None:
-    assert looked(counts, monkeypatch).look(0.1) == ((0.0, 0.1) if stall else None)
+    with looked(counts, monkeypatch) as watch:
+        assert watch.look(0.1) == ((0.0, 0.1) if stall else None)
 
 
-def looked(counts: Counts, monkeypatch: pytest.MonkeyPatch) -> Stalls:
+def looked(counts: Counts, monkeypatch: pytest.MonkeyPatch) -> closing[Stalls]:
     """Return a Stalls object that will find these counts when it next measures."""
     node, simulator, stolen_s = counts
     times = iter([(0.0, 0.0), (0.0, 0.0), node, simulator])
     stolen = iter([0.0, 0.0, stolen_s])
     monkeypatch.setattr(crowd, "_times", lambda _: next(times))
     monkeypatch.setattr(crowd, "_stolen_s", lambda: next(stolen))
-    return Stalls(os.getpid())
+    return closing(Stalls(os.getpid()))
 
 
 def test_what_the_simulator_works_beyond_its_own_share_is_the_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
-    watch = looked(((0.01, 0.0), (0.08, 0.0), 0.0), monkeypatch)
-    watch.look(0.1)
+    with looked(((0.01, 0.0), (0.08, 0.0), 0.0), monkeypatch) as watch:
+        watch.look(0.1)
     assert watch.worked_for_node_s(0.0, 0.1) == pytest.approx(0.08 - crowd.SIMULATOR * 0.1)
     assert watch.worked_for_node_s(0.1, 0.2) == 0.0
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import closing
 from typing import cast
 
 import pytest
@@ -91,8 +92,8 @@ def test_whoever_only_wakes_and_sleeps_ends_it_by_time() -> None:
 )
 def test_threads_that_wake_each_other_are_no_loop(code: str, several: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(patience, "TICK_CPU_S", 0.1)
-    with python(code) as process:
-        node = TickPatience(Threads(process.pid), time.monotonic())
+    with python(code) as process, closing(Threads(process.pid)) as threads:
+        node = TickPatience(threads, time.monotonic())
         while not node.ended(time.monotonic()):
             time.sleep(0.001)
         assert node.several_worked() == several

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import os
+from contextlib import closing
+
 import pytest
 
+from grader.tests.descriptors import descriptors
 from grader.tests.trial.program import python
 from grader.trial.rest import GoneError, Threads, receives
 
@@ -16,17 +20,15 @@ def until_asleep(threads: Threads) -> None:
 
 
 def test_a_process_that_waits_rests_and_two_looks_are_equal() -> None:
-    with python(WAITS_ON_A_LINE) as process:
-        threads = Threads(process.pid)
+    with python(WAITS_ON_A_LINE) as process, closing(Threads(process.pid)) as threads:
         until_asleep(threads)
         assert threads.look() == threads.look()
 
 
 def test_a_process_that_ran_between_two_looks_shows_it_though_it_sleeps_in_both() -> None:
-    with python(WAITS_ON_A_LINE + "sys.stdin.readline()") as process:
+    with python(WAITS_ON_A_LINE + "sys.stdin.readline()") as process, closing(Threads(process.pid)) as threads:
         assert process.stdin is not None
         assert process.stdout is not None
-        threads = Threads(process.pid)
         until_asleep(threads)
         before, runs = threads.look(), threads.runs()
         assert runs == before.runs
@@ -40,8 +42,7 @@ def test_a_process_that_ran_between_two_looks_shows_it_though_it_sleeps_in_both(
 
 
 def test_a_busy_process_does_not_rest() -> None:
-    with python("print('ready', flush=True)\nwhile True: pass") as process:
-        threads = Threads(process.pid)
+    with python("print('ready', flush=True)\nwhile True: pass") as process, closing(Threads(process.pid)) as threads:
         assert not any(threads.look().asleep for _ in range(100))
         assert not threads.main_asleep()
 
@@ -49,7 +50,9 @@ def test_a_busy_process_does_not_rest() -> None:
 def test_a_second_thread_counts() -> None:
     busy = "import threading, sys\ndef work():\n while True: pass\nthreading.Thread(target=work, daemon=True).start()\n"
     with python(busy + "print('ready', flush=True)\nsys.stdin.readline()") as process:
-        assert not any(Threads(process.pid).look().asleep for _ in range(100))
+        for _ in range(100):
+            with closing(Threads(process.pid)) as threads:
+                assert not threads.look().asleep
 
 
 @pytest.mark.parametrize(
@@ -64,8 +67,7 @@ def test_a_second_thread_counts() -> None:
     ],
 )
 def test_what_a_thread_waits_for_is_reported(wait: str, call: str, timed: bool) -> None:
-    with python(f"print('ready', flush=True)\n{wait}") as process:
-        threads = Threads(process.pid)
+    with python(f"print('ready', flush=True)\n{wait}") as process, closing(Threads(process.pid)) as threads:
         until_asleep(threads)
         (main,) = (each for each in threads.waits() if each.tid == process.pid)
         assert (main.call.removeprefix("p").removesuffix("6"), main.timed) == (call.removeprefix("p"), timed)
@@ -78,8 +80,7 @@ def test_threads_of_fast_dds_are_left_out_but_never_the_main_thread() -> None:
         "named = threading.Event()\nthreading.Thread(target=work, daemon=True).start()\nnamed.wait()\n"
         f"{named}\nprint('ready', flush=True)\nsys.stdin.readline()"
     )
-    with python(code) as process:
-        threads = Threads(process.pid)
+    with python(code) as process, closing(Threads(process.pid)) as threads:
         until_asleep(threads)
         assert len(threads.look().runs) == 2
         assert [wait.tid for wait in threads.waits()] == [process.pid]
@@ -94,15 +95,13 @@ def test_messages_come_through_the_threads_of_fast_dds_but_not_through_its_timer
 
 def test_a_name_of_a_thread_need_not_be_text() -> None:
     code = "open('/proc/self/comm', 'wb').write(b'\\xff) R (')\nprint('ready', flush=True)\ninput()"
-    with python(code) as process:
-        threads = Threads(process.pid)
+    with python(code) as process, closing(Threads(process.pid)) as threads:
         until_asleep(threads)
         assert [wait.tid for wait in threads.waits()] == [process.pid]
 
 
 def test_the_end_of_a_process_is_reported() -> None:
-    with python(WAITS_ON_A_LINE) as process:
-        threads = Threads(process.pid)
+    with python(WAITS_ON_A_LINE) as process, closing(Threads(process.pid)) as threads:
         before = threads.runs()
         assert before
         process.kill()
@@ -110,3 +109,13 @@ def test_the_end_of_a_process_is_reported() -> None:
         assert threads.runs() == ()
         with pytest.raises(GoneError):
             threads.look()
+
+
+def test_the_files_of_a_process_that_has_ended_are_closed() -> None:
+    with python(WAITS_ON_A_LINE) as process:
+        process.kill()
+        os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)  # the process is a zombie until it is waited for
+        before = descriptors()
+        with pytest.raises(GoneError):
+            Threads(process.pid)
+        assert descriptors() == before
