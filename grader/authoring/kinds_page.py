@@ -44,7 +44,10 @@ STAGES = {
         "These checks read the submission's files, and do not build or run the submission.",
     ),
     "build": ("Judged from the build", "These checks read what `colcon build` printed and installed."),
-    "trial": ("Judged from the trial", "These checks read the recording of a trial: messages, trajectory, graph, log."),
+    "trial": (
+        "Judged from the trial",
+        "These checks read the recording of a trial (messages, trajectory, graph, log), or results of calls or tests.",
+    ),
 }
 HEAD = """\
 # Kinds of checks

@@ -108,7 +108,8 @@ def merge(public: Mapping[str, Any], private: Mapping[str, Any], name: str) -> d
         raise UsageError(message)
     unknown = [key for key in private if key not in ALLOWED]
     if unknown or private.get("schema") != SCHEMA:
-        mistake = f'unknown key "{unknown[0]}"' if unknown else f"schema is {private.get('schema')!r}, not {SCHEMA}"
+        schema = f"schema is {private['schema']!r}, not {SCHEMA}" if "schema" in private else "schema is missing"
+        mistake = f'unknown key "{unknown[0]}"' if unknown else schema
         message = f"{name}: {mistake}. A file of private checks may contain {a_list(ALLOWED)}."
         raise UsageError(message)
     trials = _laid_over(list(public.get("trial", [])), _tables(private, "trial", name))

@@ -1,8 +1,8 @@
 """Judging: check the files of a submission, then its build, then its trials, as soon as each of them is available.
 
 Judging reads files that a student wrote, so it runs in a child process (submission/reader.py). If the child process
-exceeds its limits, the submission is considered the cause: every check fails with the diagnosis `unreadable`, and
-nothing more is read.
+exceeds its limits, the submission is considered the cause, and nothing more is read: each check fails with the
+diagnosis `unreadable`, or is skipped because it needs such a check.
 """
 
 from __future__ import annotations

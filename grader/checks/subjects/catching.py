@@ -259,7 +259,8 @@ WITHIN_REACH = Kind(
     "The node catches a target only from nearby",
     WithinReach,
     within_reach,
-    about="When turtle1 is near enough to a target, and only then, the node calls the service that removes the target.",
+    about="The node calls the service that removes a target, but only when turtle1 is near enough to this target, and "
+    "not again and again.",
 )
 WAITS_FOR_POSE = Kind(
     "waits_for_pose",

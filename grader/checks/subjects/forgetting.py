@@ -64,6 +64,6 @@ FORGETS = Kind(
     "The node forgets targets that are no longer announced",
     Forgets,
     forgets,
-    about="The node does not drive to the target that the trial withdraws (`withdraws`), and does not call the service "
-    "for this target.",
+    about="Once the topic no longer contains the target that the trial withdraws (`withdraws`), the node does not call "
+    "the service for this target.",
 )

@@ -192,5 +192,5 @@ ASSERTS = Kind(
     "Every test asserts something",
     NoParams,
     asserts,
-    about="Every test function has an assert, or calls a function that has one.",
+    about="Every test function has an assert, or calls a function that has one, and no assert is always true.",
 )

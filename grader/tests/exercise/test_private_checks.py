@@ -99,6 +99,7 @@ def test_both_files_are_part_of_the_digest() -> None:
     ("private", "said"),
     [
         ("schema = 3", "schema is 3"),
+        ("[[check]]\nid = 'rate'\npoints = 1", "schema is missing"),
         ("schema = 1\n[scenario]\nduration_s = 9", "schema 1 is no longer supported: move"),
         ("schema = 2\n[exercise]\nid = 'x'", 'unknown key "exercise"'),
         ("schema = 2\n[[check]]\nid = 'x'\nkind = 'circel'\npoints = 1", 'Did you mean "circle"'),
