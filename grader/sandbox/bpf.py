@@ -7,7 +7,7 @@ import struct
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
 Line = tuple[int, int, int, int]
 """A struct sock_filter: an operation, how many instructions to skip if it is true, how many if it is false, and a
@@ -34,6 +34,19 @@ def begin() -> list[Line]:
 def refusing(numbers: Iterable[int], error: int) -> list[Line]:
     """Return the instructions that make these system calls fail with this error number."""
     return [line for number in numbers for line in ((EQUAL, 0, 1, number), (RETURN, 0, 0, ERRNO | error))]
+
+
+def refusing_options(
+    number: int, index: int, options: Sequence[int], error: int, *, level: int | None = None
+) -> list[Line]:
+    """Return the instructions that make this system call fail if the argument with this index is one of the options.
+
+    With `level`, the call fails only if the argument before the option has this value.
+    """
+    lines = [] if level is None else [(LOAD, 0, 0, argument(index - 1)), (EQUAL, 1, 0, level), (RETURN, 0, 0, ALLOW)]
+    refused = [(EQUAL, len(options) - at, 0, option) for at, option in enumerate(options)]
+    lines += [(LOAD, 0, 0, argument(index)), *refused, (RETURN, 0, 0, ALLOW), (RETURN, 0, 0, ERRNO | error)]
+    return [(EQUAL, 0, len(lines), number), *lines]
 
 
 def packed(lines: Iterable[Line]) -> bytes:

@@ -13,7 +13,7 @@ import os
 import platform
 
 from grader.sandbox import bpf
-from grader.sandbox.system_calls import DENIED
+from grader.sandbox.system_calls import DENIED, FCNTL, PRCTL, SET_LEASE, SET_SECCOMP
 
 # System call numbers for x86-64, as in system_calls.py.
 FORBIDDEN = {
@@ -69,6 +69,10 @@ def program() -> bytes:
     lines += bpf.refusing((_CLONE3, _OPENAT2), errno.ENOSYS)
     # On a file that is open for reading only, ioctl can make it immutable, or type commands into a terminal.
     lines += bpf.refusing((_IOCTL,), errno.ENOTTY)
+    # A lease on a file of this user makes all other programs that open the file wait.
+    lines += bpf.refusing_options(FCNTL, 1, (SET_LEASE,), errno.EPERM)
+    # The filters of all processes share a limit of the machine.
+    lines += bpf.refusing_options(PRCTL, 0, (SET_SECCOMP,), errno.EPERM)
     for number, flags in ((_OPEN, 1), (_OPENAT, 2)):
         lines += _only_without(number, flags, _WRITING, denied)
     # Threads are allowed, since they belong to this process and share its limits.

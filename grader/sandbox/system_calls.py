@@ -12,6 +12,7 @@ from __future__ import annotations
 import errno
 import os
 import platform
+import socket
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -41,7 +42,7 @@ DENIED = {
     "resources that one cell could use up for others": {
         "inotify_init": 253, "inotify_init1": 294, "inotify_add_watch": 254, "inotify_rm_watch": 255,
         "io_setup": 206, "io_destroy": 207, "io_getevents": 208, "io_submit": 209, "io_cancel": 210,
-        "io_pgetevents": 333, "sync": 162, "syncfs": 306,
+        "io_pgetevents": 333, "sync": 162, "syncfs": 306, "seccomp": 317,
     },
     "memory that counts towards no limit": {
         "memfd_create": 319, "memfd_secret": 447, "shmget": 29, "shmat": 30, "shmctl": 31, "semget": 64, "msgget": 68,
@@ -54,16 +55,24 @@ DENIED = {
         "setdomainname": 171, "iopl": 172, "ioperm": 173, "vhangup": 153,
     },
 }  # fmt: skip
-_MMAP, _SOCKET, _SOCKETPAIR, _CLONE, _CLONE3, _FCNTL = 9, 41, 53, 56, 435, 72
+_MMAP, _SOCKET, _SOCKETPAIR, _SETSOCKOPT, _CLONE, _CLONE3, FCNTL, PRCTL = 9, 41, 53, 54, 56, 435, 72, 157
 _SHARED_MEMORY = 0x21
 """MAP_SHARED | MAP_ANONYMOUS of mmap(2). The combination of the two flags is forbidden.
 
 After a process has emptied its page tables with madvise, such memory counts towards neither a tmpfs nor a process.
 """
-_SET_PIPE_SIZE = 1031
-"""F_SETPIPE_SZ of fcntl(2).
+SET_LEASE, _SET_PIPE_SIZE = 1024, 1031
+"""F_SETLEASE and F_SETPIPE_SZ of fcntl(2), which are forbidden.
 
-This call is forbidden, because a user may have only 64 pipes of 1 MiB. Further pipes are small.
+While a process has a lease on a file of its user, all other programs that open the file wait for 45 s. A user may have
+only 64 pipes of 1 MiB. Further pipes are small.
+"""
+SET_SECCOMP = 22
+_FILTERS_OF_SOCKETS = (26, 50, 51, 52)
+"""PR_SET_SECCOMP of prctl(2), and SO_ATTACH_FILTER, _BPF, _REUSEPORT_CBPF and _REUSEPORT_EBPF of socket(7).
+
+These options are forbidden. All filters of a machine share a limit on compiled programs (bpf_jit_limit), which about
+3,000 long filters use up. After that, a cell could not install the filter in this module.
 """
 # AF_UNIX, AF_INET, AF_INET6, and AF_NETLINK for listing interfaces. AF_VSOCK would reach the host of a virtual machine.
 _NETLINK = 16
@@ -105,8 +114,9 @@ def program() -> bytes:
     lines += [(bpf.EQUAL, 0, 1, _CLONE3), (bpf.RETURN, 0, 0, absent)]
     lines += [(bpf.EQUAL, 0, 4, _CLONE), (bpf.LOAD, 0, 0, bpf.argument(0))]
     lines += [(bpf.ANY_BIT, 0, 1, _NEW_NAMESPACE), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
-    lines += [(bpf.EQUAL, 0, 4, _FCNTL), (bpf.LOAD, 0, 0, bpf.argument(1))]
-    lines += [(bpf.EQUAL, 0, 1, _SET_PIPE_SIZE), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
+    lines += bpf.refusing_options(PRCTL, 0, (SET_SECCOMP,), errno.EPERM)
+    lines += bpf.refusing_options(_SETSOCKOPT, 2, _FILTERS_OF_SOCKETS, errno.EPERM, level=socket.SOL_SOCKET)
+    lines += bpf.refusing_options(FCNTL, 1, (SET_LEASE, _SET_PIPE_SIZE), errno.EPERM)
     lines += [(bpf.EQUAL, 0, 5, _MMAP), (bpf.LOAD, 0, 0, bpf.argument(3)), (bpf.AND, 0, 0, _SHARED_MEMORY)]
     lines += [(bpf.EQUAL, 0, 1, _SHARED_MEMORY), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
     sockets = _usual_socket()

@@ -71,7 +71,7 @@ class Host:
         if interfaces is not None:
             shutil.copytree(interfaces, scratch / "cache/grader" / interfaces.name, symlinks=True)
         source = (ROOT / "grader/sandbox/usage.py").read_text("utf-8")
-        (scratch / "shims/usage.py").write_text(source + "\n\ndef exceeded(*_):\n    return None\n")
+        (scratch / "shims/usage.py").write_text(source + "\n\ndef exceeded(*_, **__):\n    return None\n")
         # The interpreter belongs to the user who grades, as one that the user has installed.
         shutil.copy2(Path(sys.executable).resolve(), scratch / "interpreter")
         _program(scratch / "shims/bwrap", "exit 1")
