@@ -13,7 +13,7 @@ import os
 import platform
 
 from grader.sandbox import bpf
-from grader.sandbox.system_calls import DENIED, FCNTL, PRCTL, SET_LEASE, SET_SECCOMP
+from grader.sandbox.system_calls import DENIED, FCNTL, FLUSHES, NOTIFY, PRCTL, SET_LEASE, SET_SECCOMP
 
 # System call numbers for x86-64, as in system_calls.py.
 FORBIDDEN = {
@@ -26,6 +26,7 @@ FORBIDDEN = {
         "pidfd_open": 434, "pidfd_send_signal": 424,
     },
     "locks": {"flock": 73},
+    "flushes of disks": FLUSHES,
     "the share of the processors": {
         "setpriority": 141, "ioprio_set": 251, "sched_setparam": 142, "sched_setscheduler": 144, "sched_setattr": 314,
     },
@@ -70,7 +71,7 @@ def program() -> bytes:
     # On a file that is open for reading only, ioctl can make it immutable, or type commands into a terminal.
     lines += bpf.refusing((_IOCTL,), errno.ENOTTY)
     # A lease on a file of this user makes all other programs that open the file wait.
-    lines += bpf.refusing_options(FCNTL, 1, (SET_LEASE,), errno.EPERM)
+    lines += bpf.refusing_options(FCNTL, 1, (SET_LEASE, NOTIFY), errno.EPERM)
     # The filters of all processes share a limit of the machine.
     lines += bpf.refusing_options(PRCTL, 0, (SET_SECCOMP,), errno.EPERM)
     for number, flags in ((_OPEN, 1), (_OPENAT, 2)):

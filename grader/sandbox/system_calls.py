@@ -50,29 +50,33 @@ DENIED = {
     },
     "the machine": {
         "reboot": 169, "kexec_load": 246, "kexec_file_load": 320, "init_module": 175, "finit_module": 313,
-        "delete_module": 176, "swapon": 167, "swapoff": 168, "acct": 163, "quotactl": 179, "syslog": 103,
-        "settimeofday": 164, "clock_settime": 227, "clock_adjtime": 305, "adjtimex": 159, "sethostname": 170,
-        "setdomainname": 171, "iopl": 172, "ioperm": 173, "vhangup": 153,
+        "delete_module": 176, "swapon": 167, "swapoff": 168, "acct": 163, "quotactl": 179, "quotactl_fd": 443,
+        "syslog": 103, "settimeofday": 164, "clock_settime": 227, "clock_adjtime": 305, "adjtimex": 159,
+        "sethostname": 170, "setdomainname": 171, "iopl": 172, "ioperm": 173, "vhangup": 153,
     },
 }  # fmt: skip
+FLUSHES = {"fsync": 74, "fdatasync": 75}
+"""In a cell, these calls do nothing and succeed. The disks of a cell are in memory. For a file of the machine, even one
+that is open for reading only, these calls would flush a disk of the machine."""
 _MMAP, _SOCKET, _SOCKETPAIR, _SETSOCKOPT, _CLONE, _CLONE3, FCNTL, PRCTL = 9, 41, 53, 54, 56, 435, 72, 157
 _SHARED_MEMORY = 0x21
 """MAP_SHARED | MAP_ANONYMOUS of mmap(2). The combination of the two flags is forbidden.
 
 After a process has emptied its page tables with madvise, such memory counts towards neither a tmpfs nor a process.
 """
-SET_LEASE, _SET_PIPE_SIZE = 1024, 1031
-"""F_SETLEASE and F_SETPIPE_SZ of fcntl(2), which are forbidden.
+SET_LEASE, NOTIFY, _SET_PIPE_SIZE = 1024, 1026, 1031
+"""F_SETLEASE, F_NOTIFY and F_SETPIPE_SZ of fcntl(2), which are forbidden.
 
-While a process has a lease on a file of its user, all other programs that open the file wait for 45 s. A user may have
-only 64 pipes of 1 MiB. Further pipes are small.
+While a process has a lease on a file of its user, all other programs that open the file wait for 45 s. F_NOTIFY reports
+the use of folders that other cells can read, too. A user may have only 64 pipes of 1 MiB. Further pipes are small.
 """
 SET_SECCOMP = 22
-_FILTERS_OF_SOCKETS = (26, 50, 51, 52)
-"""PR_SET_SECCOMP of prctl(2), and SO_ATTACH_FILTER, _BPF, _REUSEPORT_CBPF and _REUSEPORT_EBPF of socket(7).
+_OF_SOCKETS = (26, 50, 51, 52, 60)
+"""PR_SET_SECCOMP of prctl(2). Of socket(7): SO_ATTACH_FILTER, _BPF, _REUSEPORT_CBPF and _REUSEPORT_EBPF, SO_ZEROCOPY.
 
 These options are forbidden. All filters of a machine share a limit on compiled programs (bpf_jit_limit), which about
-3,000 long filters use up. After that, a cell could not install the filter in this module.
+3,000 long filters use up. After that, a cell could not install the filter in this module. SO_ZEROCOPY locks memory,
+which the kernel counts per user.
 """
 # AF_UNIX, AF_INET, AF_INET6, and AF_NETLINK for listing interfaces. AF_VSOCK would reach the host of a virtual machine.
 _NETLINK = 16
@@ -110,13 +114,14 @@ def program() -> bytes:
     absent = bpf.ERRNO | errno.ENOSYS
     lines = bpf.begin()
     lines += bpf.refusing(sorted(number for group in DENIED.values() for number in group.values()), errno.EPERM)
+    lines += bpf.refusing(sorted(FLUSHES.values()), 0)
     # The flags of clone3 are in memory, which a filter cannot read. The C library falls back to clone.
     lines += [(bpf.EQUAL, 0, 1, _CLONE3), (bpf.RETURN, 0, 0, absent)]
     lines += [(bpf.EQUAL, 0, 4, _CLONE), (bpf.LOAD, 0, 0, bpf.argument(0))]
     lines += [(bpf.ANY_BIT, 0, 1, _NEW_NAMESPACE), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
     lines += bpf.refusing_options(PRCTL, 0, (SET_SECCOMP,), errno.EPERM)
-    lines += bpf.refusing_options(_SETSOCKOPT, 2, _FILTERS_OF_SOCKETS, errno.EPERM, level=socket.SOL_SOCKET)
-    lines += bpf.refusing_options(FCNTL, 1, (SET_LEASE, _SET_PIPE_SIZE), errno.EPERM)
+    lines += bpf.refusing_options(_SETSOCKOPT, 2, _OF_SOCKETS, errno.EPERM, level=socket.SOL_SOCKET)
+    lines += bpf.refusing_options(FCNTL, 1, (SET_LEASE, NOTIFY, _SET_PIPE_SIZE), errno.EPERM)
     lines += [(bpf.EQUAL, 0, 5, _MMAP), (bpf.LOAD, 0, 0, bpf.argument(3)), (bpf.AND, 0, 0, _SHARED_MEMORY)]
     lines += [(bpf.EQUAL, 0, 1, _SHARED_MEMORY), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
     sockets = _usual_socket()

@@ -56,6 +56,7 @@ FORBIDDEN: dict[str, Callable[[Path], object]] = {
     "a date": lambda file: os.utime(file),
     "a lock": lambda file: fcntl.flock(file.open(), fcntl.LOCK_EX),
     "a lease": lambda file: fcntl.fcntl(file.open(), fcntl.F_SETLEASE, fcntl.F_RDLCK),
+    "a flush": lambda file: os.fsync(file.open().fileno()),
     "a mark": lambda file: fcntl.ioctl(file.open(), FS_IOC_SETFLAGS, struct.pack("i", FS_NODUMP_FL)),
     "a place before others": lambda _: os.setpriority(os.PRIO_PROCESS, 0, -5),
 }
