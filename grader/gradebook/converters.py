@@ -54,8 +54,10 @@ class _Copying(BaseConverter):  # type: ignore[misc, unused-ignore]
         source = Path(self._format_source(assignment_id, student_id))
         for each in copy_of(source, Path(self._format_dest(assignment_id, student_id)), notebooks=False):
             self.log.warning("Not copied from %s: %s", source, each)
-        # nbgrader would print the names of unknown notebooks to the terminal without escaping them.
-        self.notebooks: list[str] = [notebook for notebook in self.notebooks if notebook.isprintable()]
+        # nbgrader would print the names of unknown notebooks to the terminal without escaping them. If the name of the
+        # student is a pattern such as "*", nbgrader also finds the notebooks of other students.
+        found = [each for each in map(Path, self.notebooks) if each.parent == source and each.name.isprintable()]
+        self.notebooks: list[str] = list(map(str, found))
 
 
 class BoundedAutograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore]

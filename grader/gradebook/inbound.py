@@ -13,6 +13,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pathlib import Path
 
+WILDCARDS = frozenset("*?[")
+"""The special characters of `glob`. nbgrader looks for notebooks with a pattern that contains the names of folders."""
+
 
 def why_not(folder: Path, student: str, *, owned: bool) -> str:
     """Return the reason why a folder in the exchange cannot be the submission of a student, or an empty string.
@@ -22,6 +25,8 @@ def why_not(folder: Path, student: str, *, owned: bool) -> str:
     """
     if not folder.name.isprintable():
         return "the name has control characters"
+    if WILDCARDS.intersection(folder.name):
+        return "nbgrader would use the name as a pattern for the names of other students"
     try:
         about = folder.lstat()
     except OSError as error:

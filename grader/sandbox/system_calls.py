@@ -58,7 +58,9 @@ DENIED = {
 FLUSHES = {"fsync": 74, "fdatasync": 75}
 """In a cell, these calls do nothing and succeed. The disks of a cell are in memory. For a file of the machine, even one
 that is open for reading only, these calls would flush a disk of the machine."""
-_MMAP, _SOCKET, _SOCKETPAIR, _SETSOCKOPT, _CLONE, _CLONE3, FCNTL, PRCTL = 9, 41, 53, 54, 56, 435, 72, 157
+_MMAP, _SOCKET, _SOCKETPAIR, _SETSOCKOPT, _CLONE, _CLONE3, FCNTL, PRCTL, PRLIMIT = 9, 41, 53, 54, 56, 435, 72, 157, 302
+_OWN = 0
+"""The process id with which prlimit(2) sets the limits of the calling process. The limits of other processes stay."""
 _SHARED_MEMORY = 0x21
 """MAP_SHARED | MAP_ANONYMOUS of mmap(2). The combination of the two flags is forbidden.
 
@@ -119,6 +121,9 @@ def program() -> bytes:
     lines += [(bpf.EQUAL, 0, 1, _CLONE3), (bpf.RETURN, 0, 0, absent)]
     lines += [(bpf.EQUAL, 0, 4, _CLONE), (bpf.LOAD, 0, 0, bpf.argument(0))]
     lines += [(bpf.ANY_BIT, 0, 1, _NEW_NAMESPACE), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
+    # The process that makes the calls of a submission must keep its own limits (trial/cell_calls.py).
+    lines += [(bpf.EQUAL, 0, 4, PRLIMIT), (bpf.LOAD, 0, 0, bpf.argument(0)), (bpf.EQUAL, 1, 0, _OWN)]
+    lines += [(bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
     lines += bpf.refusing_options(PRCTL, 0, (SET_SECCOMP,), errno.EPERM)
     lines += bpf.refusing_options(_SETSOCKOPT, 2, _OF_SOCKETS, errno.EPERM, level=socket.SOL_SOCKET)
     lines += bpf.refusing_options(FCNTL, 1, (SET_LEASE, NOTIFY, _SET_PIPE_SIZE), errno.EPERM)

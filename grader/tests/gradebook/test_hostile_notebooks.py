@@ -163,7 +163,7 @@ def hostile(tmp_path_factory: pytest.TempPathFactory) -> Hostile:
     (inbound / f"mallory+{HOMEWORK}+when I had time").mkdir()
     (inbound / f"mallory+{HOMEWORK}+{LATER}").symlink_to(f"anna+{HOMEWORK}+{FIRST}")
     (inbound / f"nobody+{HOMEWORK}+{LATER}").symlink_to("nowhere")
-    for student in ("..", ".hidden", TITLE):
+    for student in ("..", ".hidden", TITLE, "?nna"):
         shutil.copytree(inbound / f"anna+{HOMEWORK}+{FIRST}", inbound / f"{student}+{HOMEWORK}+{FIRST}")
     collected = term.run("collect", HOMEWORK)
     # An instructor may also add submissions without nbgrader's exchange.
@@ -248,6 +248,7 @@ BESIDE: dict[str, Callable[[Path, Path], object]] = {
     "copied": twice,
     "newer": of_version(99),
     "picture": with_a_picture,
+    "*": lambda _, __: None,
 }
 """Maps a student to what is wrong with the student's folder in submitted/."""
 
@@ -274,7 +275,8 @@ def test_collect_takes_only_regular_files_of_the_submission(hostile: Hostile) ->
 
 def test_autograde_continues_after_submissions_that_attack_it(hostile: Hostile) -> None:
     full = {name for name, score in hostile.scores.items() if score == 1.0}
-    assert full == {"anna", "beside", "copied", "links", "newer", "picture"}
+    assert full == {"*", "anna", "beside", "copied", "links", "newer", "picture"}
+    assert "for student '*'" not in hostile.graded
     assert TITLE not in hostile.graded
     for student in ("never", "deep", "blocks"):
         assert f"error processing assignment '{HOMEWORK}' for student '{student}'" in hostile.graded

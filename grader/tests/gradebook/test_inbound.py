@@ -42,3 +42,10 @@ def test_a_folder_of_another_account_is_not_a_students_submission(
         f"it does not belong to {student}, but to the user {owner}" if refused else ""
     )
     assert why_not(folder, student, owned=False) == ""
+
+
+@pytest.mark.parametrize("student", ["*", "ann?", "[ab]nna"])
+def test_a_name_that_is_a_pattern_is_not_collected(tmp_path: Path, student: str) -> None:
+    folder = tmp_path / f"{student}+step+now"
+    folder.mkdir()
+    assert "as a pattern for the names of other students" in why_not(folder, student, owned=False)
