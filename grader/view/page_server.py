@@ -134,7 +134,7 @@ class _Page:
                     self._holding = False
                     self._controls.let_go(self)
                     continue
-                with suppress(ValueError, TypeError, KeyError, AttributeError):
+                with suppress(ValueError, TypeError, KeyError, AttributeError, RecursionError):
                     await self._hear(json.loads(text) if len(text) <= _LARGEST else {})
         except (WebSocketDisconnect, KeyError):
             pass

@@ -95,6 +95,15 @@ def test_a_name_that_is_not_utf8_does_not_end_the_view(fresh: World) -> None:
     assert not any("Traceback" in line for line in fresh.running[0].lines)
 
 
+def test_a_message_of_brackets_does_not_end_a_connection(fresh: World) -> None:
+    fresh.start(VIEW, "Spawning turtle")
+    with linked(fresh) as link:
+        link.send("[" * 9000)
+        for _ in range(50):
+            message(link, lambda news: news["kind"] == "frame")
+    assert not any("Traceback" in line for line in fresh.running[0].lines)
+
+
 def test_a_graph_that_is_too_large_is_not_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(page_graph, "render", lambda *_: pytest.fail("Graphviz was started"))
     names = tuple(f"/node{number}" for number in range(50))
