@@ -41,7 +41,7 @@ MEANINGS = {
     "ImportError": "That name cannot be imported from this module. Check the name letter by letter.",
     "IndentationError": "All lines of a block must have the same indentation.",
     "IndexError": "The sequence, such as a list or a string, has no item with this index.",
-    "InvalidNodeNameException": "A node name may contain only letters, digits and underscores.",
+    "InvalidNodeNameException": "A node name has only letters, digits and underscores. It does not begin with a digit.",
     "InvalidTopicNameException": "A topic name may contain only letters, digits, underscores and slashes.",
     "InvalidParameterTypeException": "A parameter has the type of its default value: 2 is an integer, 2.0 is a float.",
     "KeyError": "The dictionary has no such key.",

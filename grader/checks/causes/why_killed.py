@@ -30,8 +30,8 @@ def why_killed(evidence: Evidence, track: Track, service: str) -> Cause:
             continue
         if call.service == KILL and call.request.get("name") == track.turtle:
             text = (
-                f"{KILL} was called for {name}, but {service} was not. Call {KILL} only in the callback of {service}, "
-                "with the name in its request."
+                f"{KILL} was called for {name}, but {service} had not been. Call {KILL} only in the callback of "
+                f"{service}, with the name in its request."
             )
         elif call.service == RESET:
             text = f"{RESET} was called, which removes all turtles except turtle1."

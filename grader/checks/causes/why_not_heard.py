@@ -95,6 +95,13 @@ def _not_called(events: NodeEvents, run: NodeRun, code: TestCode, right: Behavio
     """Return the reason why the callback of the timer has never run."""
     if events.clock_s is None:
         return Cause("bench-not-spun", NOT_SPUN, _place(code, run, "add_node"))
+    if events.clock_s >= LATEST_S:
+        text = (
+            "A pose arrived, but the callback of the node's timer has not run. The node's clock follows the system "
+            f"time. Set its parameter use_sim_time to True, advance the clock in steps of {right.period_s:g} s, and "
+            "spin after each step."
+        )
+        return Cause("bench-clock-stands", text, _place(code, run, OVERRIDE))
     text = (
         f"A pose arrived when the node's clock showed {events.clock_s:g} s, but the callback of its timer has not run. "
         f"The clock was not advanced by a whole period. Advance it in steps of {right.period_s:g} s, and spin after "

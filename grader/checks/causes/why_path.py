@@ -8,19 +8,27 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.common.words import number as shown
+from grader.evidence import activity
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
     from grader.submission.where import Where
+    from grader.trial.recording import Command
 
 CHANGE = "The commands change. A circle needs the same command all the time."
 AT_ONCE_S = 0.05
 """If a second command follows within this time (s), the first command has no effect."""
 
 
+def all_commands(evidence: Evidence) -> tuple[Command, ...]:
+    """Return the commands before SIGINT, even if all of them arrived in the initial period (`activity.START_S`)."""
+    until = activity.end_s(evidence.recording)
+    return tuple(command for command in evidence.recording.commands if command.t_s < until)
+
+
 def steady_command(evidence: Evidence) -> tuple[float, float] | None:
     """Return linear.x (m/s) and angular.z (rad/s) if these are the same in all commands, else None."""
-    found = {(command.linear[0], command.angular[2]) for command in evidence.commands}
+    found = {(command.linear[0], command.angular[2]) for command in all_commands(evidence)}
     return next(iter(found)) if len(found) == 1 else None
 
 
@@ -44,7 +52,7 @@ def why_elsewhere(evidence: Evidence) -> Cause:
     """Return the reason why a circle has the right size but is in the wrong place."""
     steady = steady_command(evidence)
     if steady is None:
-        first, last = evidence.commands[0], evidence.commands[-1]
+        first, *_, last = all_commands(evidence)
         text = CHANGE
         if (first.linear, first.angular) != (last.linear, last.angular):
             text = (
@@ -83,7 +91,11 @@ def all_zero(evidence: Evidence) -> str:
 
 
 def line_of_values(evidence: Evidence) -> Where | None:
-    """Return the line that sets angular.z (or linear.x, if only linear.x changes), a line that publishes, or None."""
+    """Return the line that sets an angular field (or linear.x, if only linear fields change).
+
+    If there is no such line, return a line that sets linear.x, creates a Twist or publishes, or the node's file, or
+    None.
+    """
     code = evidence.code
     if len({command.angular for command in evidence.commands}) == 1 < len({each.linear for each in evidence.commands}):
         return code.assigned("linear", "x") or evidence.place("Twist", "publish")

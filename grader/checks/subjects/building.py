@@ -123,8 +123,12 @@ def _broken(evidence: Evidence) -> Finding:
     if missing is not None:
         cause = "data_files in setup.py lists a file that does not exist in the package."
         diagnosis: Diagnosis = "package-xml-missing" if missing["file"] == "package.xml" else "data-file-missing"
-        last = missing["file"].rpartition("/")[2]
-        if last == setup.name != evidence.exercise.package:
+        last = missing["file"].rstrip("/").rpartition("/")[2]
+        if _is_folder(evidence, missing["file"]):
+            cause = (
+                f"data_files in setup.py lists {shorten(missing['file'])}, which is a folder. List its files instead."
+            )
+        elif last == setup.name != evidence.exercise.package:
             cause += f" The name of the file comes from the package name {shorten(last)}."
             where = Where("setup.py", setup.name_line)
         marker = missing["file"].startswith("resource/")
@@ -133,6 +137,10 @@ def _broken(evidence: Evidence) -> Finding:
     other = _other_type(evidence)
     why = Cause("build-failed", OTHER_TYPE, other) if other is not None else Cause("build-failed", where=where)
     return failed(f"`colcon build` failed{message}.", EXPECTED, why)
+
+
+def _is_folder(evidence: Evidence, path: str) -> bool:
+    return any(file.startswith(f"{path.rstrip('/')}/") for file in evidence.submission.files)
 
 
 def _line_of(evidence: Evidence, *patterns: str) -> Where | None:

@@ -63,7 +63,10 @@ class WithinReach:
 
 
 def catches(evidence: Evidence, params: Catches) -> Finding:
-    """All targets were removed before SIGINT, and turtle1 moved only by driving."""
+    """At least `turtles` targets appeared, all were caught before SIGINT, and turtle1 moved only by driving.
+
+    A target that the trial itself removed need not be caught.
+    """
     recording = evidence.recording
     expected = f"All targets are caught within {recording.duration_s:g} s, and turtle1 moves only by driving."
     tracks = recording.tracks
@@ -136,7 +139,7 @@ def _without_driving(evidence: Evidence) -> tuple[str, str] | None:
 
 
 def nearest_first(evidence: Evidence, _: NoParams) -> Finding:
-    """After each catch, the next target is the target that was nearest to turtle1 at that time."""
+    """At the start and after each catch, the next caught target is the one that was nearest to turtle1 at that time."""
     recording = evidence.recording
     expected = "The next target is always the one nearest to turtle1."
     gone = caught(recording)
@@ -214,7 +217,8 @@ def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
         return failed(f"The node never called {params.service}.", expected, why_unasked(evidence, params.service))
     unseen = _uncaught(recording, caught(recording), params.service)
     if unseen is not None:
-        observed = f"{shorten(unseen.turtle)} was removed, but the recording has no call to {params.service} for it."
+        name = shorten(unseen.turtle)
+        observed = f"{name} was removed, but the recording has no earlier call to {params.service} for it."
         text = "Did the node remove it without this call, or make more calls than a recording can hold?"
         return failed(observed, expected, Cause("catch-again", text, where))
     return passed(f"Each time the node called {params.service}, the target was near.")
@@ -251,7 +255,7 @@ NEAREST_FIRST = Kind(
     "The nearest target is caught first",
     NoParams,
     nearest_first,
-    about="After each catch, turtle1 drives to the turtle that is nearest at that moment.",
+    about="At the start and after each catch, turtle1 drives to the turtle that is nearest at that moment.",
 )
 WITHIN_REACH = Kind(
     "within_reach",

@@ -16,6 +16,7 @@ from grader.checks.subjects.path import CircleParams, expected_centre, not_drive
 from grader.checks.subjects.standstill import ZEROS, no_standstill
 from grader.checks.tolerance import Band
 from grader.common.lazy import np
+from grader.common.words import number as shown
 from grader.evidence.circle_fit import Circle, fit_circle
 from grader.evidence.trajectory import RESTS_M, STRAIGHT_RAD
 
@@ -59,7 +60,7 @@ class Lobe:
 
 
 def lobes_of(trajectory: Trajectory) -> list[Lobe]:
-    """Split the trajectory where it changes from left turns to right turns or vice versa."""
+    """Return the parts in which the trajectory bends to one side by more than SMALL_RAD, in order."""
     side = np.where(
         trajectory.steps > RESTS_M, np.sign(np.where(np.abs(trajectory.turn) > STRAIGHT_RAD, trajectory.turn, 0.0)), 0.0
     )
@@ -77,8 +78,8 @@ def lobes_of(trajectory: Trajectory) -> list[Lobe]:
 def eight(evidence: Evidence, params: Eight) -> Finding:
     """The turtle drives a figure eight."""
     expected = (
-        f"The turtle drives a figure eight: a full circle of radius {params.radius_m:.1f} m to one side, then a full "
-        "circle to the other side."
+        f"The turtle drives a figure eight: a full circle of radius {shown(params.radius_m)} m to one side, then a "
+        "full circle to the other side."
     )
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
     trajectory = evidence.trajectory
@@ -108,7 +109,7 @@ def eight(evidence: Evidence, params: Eight) -> Finding:
     further = _drives_on(evidence, lobes, expected)
     if further is not None:
         return further
-    return passed(f"The turtle drove a figure eight with radius {params.radius_m:.1f} m.", near_edge=near)
+    return passed(f"The turtle drove a figure eight with radius {shown(params.radius_m)} m.", near_edge=near)
 
 
 def _why_wall(evidence: Evidence, params: Eight) -> str:
@@ -128,7 +129,7 @@ def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: boo
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
     recording = evidence.recording
     subject = f"The {name} lobe, to the {lobe.side},"
-    wanted = f"Both lobes have a radius of {params.radius_m:.1f} m and turn by 360 degrees."
+    wanted = f"Both lobes have a radius of {shown(params.radius_m)} m and turn by 360 degrees."
     round_ = Band.at_most(params.residual_m)
     if lobe.circle is None or not round_.holds(lobe.circle.rms):
         off = lobe.circle.rms if lobe.circle is not None else math.inf

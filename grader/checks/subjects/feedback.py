@@ -56,7 +56,7 @@ def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
         return no_goal(evidence, expected)
     goals = [goal for goal in sent if _ended_s(evidence, goal) - goal.t_s >= LONG * params.period_s]
     if not goals:
-        observed = f"No goal lasted {LONG * params.period_s:g} s, so no line was required."
+        observed = f"No goal lasted {LONG * params.period_s:g} s, so the log lines could not be judged."
         return failed(observed, expected, Cause("feedback-not-logged", "", evidence.place("send_goal_async")))
     lines = student_log.in_format(evidence.recording, params.format)
     told = [

@@ -225,6 +225,9 @@ def _at(recording: Recording, t_s: float, values: Floats) -> float:
 
 
 def _is_chords(logged: list[Line], numbers: list[float]) -> bool:
+    """Return whether the distance grows by the straight lines between the positions in the lines, if there are any."""
+    if not logged[0].numbers.keys() >= {"x", "y"}:
+        return False
     steps = np.hypot(np.diff([line.numbers["x"] for line in logged]), np.diff([line.numbers["y"] for line in logged]))
     return bool(np.allclose(np.diff(numbers), steps, atol=0.03)) and any(numbers)
 

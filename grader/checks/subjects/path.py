@@ -10,6 +10,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed, ended_early
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_path import (
+    all_commands,
     all_zero,
     line_of_values,
     radius_of_commands,
@@ -26,7 +27,7 @@ from grader.checks.tolerance import Band
 from grader.common.words import count, shorten
 from grader.common.words import number as shown
 from grader.evidence import activity
-from grader.evidence.interventions import moved_by
+from grader.evidence.interventions import ALWAYS, moved_by
 from grader.evidence.trajectory import driven_from
 
 if TYPE_CHECKING:
@@ -46,14 +47,14 @@ LIVES_S = 1.0
 LATE_S = 3.0
 """If the first command arrives later than this (s), the delay may be the reason why the turtle drives too little."""
 POLYGON_SHARE = 0.6
-"""If more than this fraction of the trajectory is straight, the message describes sides and corners."""
+"""If more than this fraction of the trajectory is straight, the message describes a line, or sides and corners."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class CircleParams:
     """A circle that the turtle must drive.
 
-    The circle's centre is `radius_m` to the left of the start pose (or to the right if clockwise).
+    The circle's centre is `radius_m` to the left of the pose before the first command (or to the right if clockwise).
 
     `residual_m` is the largest allowed root mean square distance between the trajectory and the fitted circle. `turns`
     is the smallest allowed number of turns.
@@ -89,7 +90,7 @@ def circle(evidence: Evidence, params: CircleParams) -> Finding:
     """The turtle drives the circle: it is round, with the right direction, size, place and number of turns."""
     turns = "1 turn" if params.turns == 1.0 else f"{params.turns:g} turns"
     expected = (
-        f"The turtle drives a circle of radius {params.radius_m:.1f} m, {params.direction}, for at least {turns}."
+        f"The turtle drives a circle of radius {shown(params.radius_m)} m, {params.direction}, for at least {turns}."
     )
     moved = moved_otherwise(evidence, expected)
     if moved is not None:
@@ -99,14 +100,15 @@ def circle(evidence: Evidence, params: CircleParams) -> Finding:
 
 
 def moved_otherwise(evidence: Evidence, expected: str, *, from_start: bool = False) -> Finding | None:
-    """Return a failed finding if something other than velocity commands moved the turtle, else None.
+    """Return a failed finding if a call moved the turtle or may have changed its movement, else None.
 
     With `from_start`, movements before the first command also count.
     """
     means = moved_by(evidence.recording, from_start=from_start)
     if means is None:
         return None
-    observed = f"Something other than a velocity command moved the turtle: {shorten(means)}."
+    did = "may have changed the turtle's movement" if means in ALWAYS else "moved the turtle"
+    observed = f"Something other than a velocity command {did}: {shorten(means)}."
     cause = "Drive the turtle only with velocity commands."
     return failed(observed, expected, Cause("intervention", cause, evidence.place("create_client", "ActionClient")))
 
@@ -225,19 +227,16 @@ def _too_short(evidence: Evidence, trajectory: Trajectory, turns: float, expecte
         return crash_finding(evidence, crash, observed, expected)
     if early:
         return failed(observed, expected, Cause("ended-early", early, evidence.place("publish")), near_edge=near_edge)
-    if evidence.commands[0].t_s > LATE_S:
-        observed = (
-            f"The turtle drove {turns:.2f} of a turn; the first command arrived at {evidence.commands[0].t_s:.1f} s."
-        )
+    commands = all_commands(evidence)
+    if commands[0].t_s > LATE_S:
+        observed = f"The turtle drove {turns:.2f} of a turn; the first command arrived at {commands[0].t_s:.1f} s."
         text = "A turtle that starts late has less time for the circle."
         why = Cause("late-start", text, evidence.place("sleep", "publish"))
     elif trajectory.rests:
         observed = f"The turtle drove {turns:.2f} of a turn, with {count(trajectory.rests, 'stop')} on the way."
         why = Cause("stops-and-goes", "The turtle stops when no command arrives for 1 s.")
-    elif activity.end_s(evidence.recording) - evidence.commands[-1].t_s > LIVES_S:
-        observed = (
-            f"The turtle drove {turns:.2f} of a turn; the last command arrived at {evidence.commands[-1].t_s:.1f} s."
-        )
+    elif activity.end_s(evidence.recording) - commands[-1].t_s > LIVES_S:
+        observed = f"The turtle drove {turns:.2f} of a turn; the last command arrived at {commands[-1].t_s:.1f} s."
         why = Cause("stopped-early", "The turtle stops when no command arrives for 1 s.", cancelled(evidence))
     else:
         speed = steady_command(evidence)
@@ -269,8 +268,8 @@ def no_wall(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def requested_circle(evidence: Evidence, params: CircleParams) -> Requested:
-    """Return the required circle, placed relative to the turtle's start position."""
-    centre = expected_centre(evidence.recording.start, params)
+    """Return the required circle, placed relative to the turtle's pose before the first command."""
+    centre = expected_centre(driven_from(evidence.recording), params)
     return Requested(f"radius {params.radius_m:.2f} m", ((centre, params.radius_m),), fits=True)
 
 

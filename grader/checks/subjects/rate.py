@@ -23,6 +23,7 @@ from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.requested import Interval, Requested
 from grader.checks.tolerance import Band
 from grader.common.words import count
+from grader.common.words import number as shown
 from grader.evidence import activity
 from grader.turtlesim.turtle import FRAME_S
 
@@ -86,7 +87,7 @@ def rate(evidence: Evidence, params: Rate) -> Finding:
 def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured) -> Finding:
     """Commands or log lines arrive at the required rate: on average and in each interval, until the end."""
     period = 1.0 / params.rate_hz
-    expected = f"One {what.noun} every {period:.2f} s ({params.rate_hz:.1f} Hz)."
+    expected = f"One {what.noun} every {period:.2f} s ({shown(params.rate_hz)} Hz)."
     if len(measured.arrivals) < FEWEST:
         return _few(evidence, params, what, measured, f"{expected[:-1]} until Ctrl-C.")
     if measured.trusted < TRUSTED:
@@ -131,7 +132,7 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
         )
     if not measured.rest_s <= params.max_interval_s:
         return _stopped(evidence, what, measured, expected, near_edge=near)
-    return passed(f"{what.plural} arrive every {period:.2f} s ({params.rate_hz:.1f} Hz).", near_edge=near)
+    return passed(f"{what.plural} arrive every {period:.2f} s ({shown(params.rate_hz)} Hz).", near_edge=near)
 
 
 def _follows_poses(evidence: Evidence, mean_hz: float) -> bool:

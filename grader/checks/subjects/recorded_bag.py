@@ -116,7 +116,8 @@ class CircleInBag(InBag):
 def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:
     """The poses in the bag make the required number of turns on a circle with the required radius and speed."""
     poses, where = evidence.bag(params.bag).poses.get(params.topic, Poses()), Where(params.bag)
-    expected = f"The poses show at least {params.turns:g} turn on a circle with a radius of {params.radius_m:g} m."
+    turns = "1 turn" if params.turns == 1.0 else f"{params.turns:g} turns"
+    expected = f"The poses show at least {turns} on a circle with a radius of {params.radius_m:g} m."
     x, y = np.array(poses.x), np.array(poses.y)
     if len(x) < 2:
         return failed(

@@ -18,6 +18,7 @@ from grader.checks.subjects.standstill import ZEROS, no_standstill, silent_while
 from grader.checks.tolerance import Band
 from grader.common.lazy import np
 from grader.common.words import count
+from grader.common.words import number as shown
 from grader.evidence.trajectory import RESTS_M, STRAIGHT_RAD
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ def _heading(trajectory: Trajectory, begin: int, end: int) -> float:
 def square(evidence: Evidence, params: Square) -> Finding:
     """The turtle drives a square."""
     expected = (
-        f"The turtle drives four straight sides of {params.side_m:.1f} m, and turns by 90 degrees on the spot after "
+        f"The turtle drives four straight sides of {shown(params.side_m)} m, and turns by 90 degrees on the spot after "
         "each side."
     )
     where = evidence.place("publish")
@@ -161,7 +162,7 @@ def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -
     further = _drives_on(evidence, params, sides, sign, expected)
     if further is not None:
         return further
-    observed = f"The turtle drove a square with sides of {params.side_m:.1f} m."
+    observed = f"The turtle drove a square with sides of {shown(params.side_m)} m."
     return passed(observed, near_edge=near or closed.near(gap))
 
 

@@ -53,7 +53,7 @@ def star(evidence: Evidence, params: Star) -> Finding:
     where, trajectory = evidence.place("publish"), evidence.trajectory
     others = [name for name in evidence.recording.interventions if name in (MOVING | ALWAYS) - {BY_GOALS}]
     if others:
-        observed = f"Something other than commands and goals moved the turtle: {others[0]}."
+        observed = f"Something other than commands and goals may have moved the turtle: {others[0]}."
         return failed(observed, expected, Cause("intervention", "", evidence.place("create_client")))
     if not (trajectory.finite and trajectory.length_m > MOVED_M):
         crash = crash_of(evidence)

@@ -30,7 +30,7 @@ class Stop:
 def stop(evidence: Evidence, params: Stop) -> Finding:
     """The node runs until SIGINT and exits soon after it. The exit code and any traceback do not matter."""
     end = evidence.recording.end
-    expected = f"The node runs until Ctrl-C and then stops within {params.within_s:.0f} s."
+    expected = f"The node runs until Ctrl-C and then stops within {params.within_s:g} s."
     if end.by == "itself" or end.out_of is not None:
         return _too_early(evidence, expected)
     limit = Band.at_most(params.within_s)
@@ -48,7 +48,8 @@ def stop(evidence: Evidence, params: Stop) -> Finding:
 def _too_early(evidence: Evidence, expected: str) -> Finding:
     crash = crash_of(evidence)
     if crash is not None:
-        return crash_finding(evidence, crash, end_observed(evidence), expected)
+        observed = end_observed(evidence) or f"After Ctrl-C, the node was stopped by force: {crash.observed}."
+        return crash_finding(evidence, crash, observed, expected)
     why = why_ended(evidence)
     return failed(end_observed(evidence), expected, why)
 

@@ -38,6 +38,16 @@ def points(shape: Line | Ring) -> list[tuple[float, float]]:
     return [(round(x, 6), round(y, 6)) for x, y in shape.points]
 
 
+def test_a_circle_is_drawn_beside_the_pose_from_which_the_turtle_drove() -> None:
+    driven = recording(every(0.5, 2.0, 1.0), Pose(4.0, 5.0, 0.0))
+    assert requested_shapes(evidence(driven))[0] == (Ring("expected", (4.0, 7.0), 2.0),)
+    late = recording([], Pose(4.0, 5.0, 0.0))
+    frames = replace(late.frames, x=late.frames.x + 2.0)
+    commands = recording(every(0.5, 2.0, 1.0)).commands
+    moved = replace(late, frames=frames, commands=commands, interventions=("teleport_absolute",))
+    assert requested_shapes(evidence(moved))[0] == (Ring("expected", (6.0, 7.0), 2.0),)
+
+
 def test_the_lobes_of_a_figure_eight_are_left_and_right_of_the_start() -> None:
     shapes, reported = requested_shapes(in_challenge("eight", AHEAD))
     centres = [number for ring in shapes if isinstance(ring, Ring) for number in ring.centre]

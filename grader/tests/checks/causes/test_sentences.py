@@ -32,7 +32,7 @@ def cause(line: str, error: str) -> str:
     ("words", "true", "near", "error"),
     [
         ("has no item with this index", "x = [1][1]", None, "IndexError: list index out of range"),
-        ("A node name may contain only letters", "x = 1", None, "InvalidNodeNameException: Invalid node name"),
+        ("A node name has only letters, digits", "x = 1", None, "InvalidNodeNameException: Invalid node name"),
         ("ROS 2 was used before rclpy.init or after", "x = 1", None, "NotInitializedException: no context"),
         (
             "belongs to rospy, the library of ROS 1",

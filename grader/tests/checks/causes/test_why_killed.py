@@ -10,8 +10,8 @@ from grader.trial.observed import Call, Track
 
 FAR = Track("far", ((0.0, 9.0, 5.5, 0.0),), 5.0)
 KILLED = (
-    "/kill was called for far, but /catch was not. Call /kill only in the callback of /catch, with the name in its "
-    "request."
+    "/kill was called for far, but /catch had not been. Call /kill only in the callback of /catch, with the name in "
+    "its request."
 )
 ONLY = "Remove a target only in the callback of /catch."
 

@@ -132,6 +132,13 @@ def test_each_sign_of_an_empty_list_is_known(message: str) -> None:
     assert cause(message, RIGHT).startswith("bench-not-heard")
 
 
+def test_a_bench_that_leaves_the_time_of_day_is_not_shown_a_time() -> None:
+    text = cause(NONE, OF_DAY, WITHOUT_CLOCK)
+    assert text.startswith("bench-clock-stands test/test_it.py: A pose arrived, but the callback of the node's timer")
+    assert "The node's clock follows the system time. Set its parameter use_sim_time to True" in text
+    assert "follows the system time" not in cause(NONE, STOOD, WITHOUT_CLOCK)
+
+
 def test_a_bench_in_wall_time_may_use_the_time_of_day() -> None:
     assert cause(NONE, replace(RIGHT, clock_s=LATEST_S), WITHOUT_CLOCK).startswith("bench-not-heard")
     assert cause(VALUE, replace(RIGHT, clock_s=LATEST_S), WITHOUT_CLOCK) == ""

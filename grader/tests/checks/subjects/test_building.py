@@ -79,6 +79,19 @@ def test_each_fault_of_the_build(files: Files, build: Build, diagnosis: str, whe
     assert (found.status, found.diagnosis, str(found.where)) == (Status.FAILED, diagnosis, where)
 
 
+@pytest.mark.parametrize(
+    ("files", "cause"),
+    [
+        ({}, "data_files in setup.py lists a file that does not exist in the package."),
+        ({"launch/a.py": ""}, "data_files in setup.py lists launch, which is a folder. List its files instead."),
+    ],
+)
+def test_a_folder_in_data_files_is_told_from_a_missing_file(files: Files, cause: str) -> None:
+    log = "error: can't copy 'launch': doesn't exist or not a regular file\n"
+    found = of("build", files, replace(NOTHING, exit_code=1, log=log))
+    assert (found.diagnosis, found.cause) == ("data-file-missing", cause)
+
+
 def test_the_last_words_of_a_failed_build_are_shown() -> None:
     found = of("build", build=replace(NOTHING, exit_code=1, log="warning: x\nerror: no such option\nfailed\n"))
     assert found.observed == "`colcon build` failed: error: no such option."

@@ -28,6 +28,11 @@ def eight(*parts: tuple[int, float, float], start: Pose | None = None, **values:
     return found(EIGHT, evidence(recording(legs(*parts), start)), radius_m=1.0, **values)
 
 
+def test_the_requested_radius_of_the_lobes_is_not_rounded() -> None:
+    wide = found(EIGHT, evidence(recording(legs(lobe(1, 1.25), lobe(-1, 1.25)))), radius_m=1.25)
+    assert wide.observed == "The turtle drove a figure eight with radius 1.25 m."
+
+
 def test_an_eight_is_one_wherever_it_begins_and_however_it_is_turned() -> None:
     for start in (None, Pose(4.0, 6.5, 2.2)):
         assert eight(lobe(1), lobe(-1), start=start).observed == "The turtle drove a figure eight with radius 1.0 m."

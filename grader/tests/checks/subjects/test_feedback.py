@@ -103,7 +103,7 @@ def test_degrees_are_told_if_all_lines_are_in_degrees(factor: float, *, is_told:
     ("words", "true", "near"),
     [
         ("No goal arrived at /turtle1/rotate_absolute.", None, (0.0, 0.9)),
-        ("No goal lasted 1 s, so no line was required.", (0.0, 0.9), (0.0, 3.0)),
+        ("No goal lasted 1 s, so the log lines could not be judged.", (0.0, 0.9), (0.0, 3.0)),
     ],
 )
 def test_a_goal_that_is_too_short_for_a_line_is_told(

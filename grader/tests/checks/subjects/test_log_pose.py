@@ -136,6 +136,12 @@ def test_one_wrong_line_is_enough() -> None:
     assert position((x, y, driven_m)).diagnosis == "wrong-position"
 
 
+def test_a_line_with_nothing_but_the_distance_is_compared() -> None:
+    log = tuple(replace(line, text=f"driven {2.0 * float(line.text[-4:]):.2f}") for line in logged(truth()).log)
+    wrong = found(LOG_DISTANCE, evidence(recording(WAY, log=log), PACKAGE), format="driven {distance:.2f}")
+    assert wrong.diagnosis == "wrong-distance"
+
+
 def test_too_few_lines_are_not_compared() -> None:
     trial = logged(truth())
     for kind in (LOG_POSITION, LOG_DISTANCE):

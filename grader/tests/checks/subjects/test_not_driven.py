@@ -29,9 +29,9 @@ def test_a_target_that_the_node_removed_itself_is_not_caught(name: str) -> None:
 
 def test_a_call_that_is_not_in_the_recording_was_perhaps_made_from_afar() -> None:
     finding = found(WITHIN_REACH, given(calls=CALLS[:1]), service="/catch", reach_m=0.5)
-    assert finding.observed == "far was removed, but the recording has no call to /catch for it."
+    assert finding.observed == "far was removed, but the recording has no earlier call to /catch for it."
     assert finding.cause == "Did the node remove it without this call, or make more calls than a recording can hold?"
-    assert "no call" not in found(WITHIN_REACH, given(), service="/catch", reach_m=0.5).observed
+    assert "no earlier call" not in found(WITHIN_REACH, given(), service="/catch", reach_m=0.5).observed
 
 
 def test_a_target_that_moved_is_not_caught() -> None:

@@ -122,6 +122,30 @@ def test_two_turns_may_be_requested() -> None:
     assert short.expected == "The turtle drives a circle of radius 2.0 m, counter-clockwise, for at least 2 turns."
 
 
+def test_a_call_that_does_not_move_the_turtle_is_not_said_to_move_it() -> None:
+    found = finding("circle", evidence(replace(SHAPES["good"](), interventions=("set_parameters",))))
+    observed = "Something other than a velocity command may have changed the turtle's movement: set_parameters."
+    assert (found.diagnosis, found.observed) == ("intervention", observed)
+
+
+@pytest.mark.parametrize(
+    ("angular", "diagnosis", "words"),
+    [
+        (1.0, "stopped-early", "The turtle drove 0.16 of a turn; the last command arrived at 0.1 s."),
+        (1.5, "wrong-radius", "The radius is linear.x divided by angular.z: 2.0 / 1.5 = 1.333 m."),
+    ],
+)
+def test_a_single_command_at_the_very_start_is_explained(angular: float, diagnosis: str, words: str) -> None:
+    found = finding("circle", evidence(recording([(0.1, 2.0, angular)])))
+    assert found.diagnosis == diagnosis
+    assert words in told(found)
+
+
+def test_the_requested_radius_is_not_rounded() -> None:
+    found = found_by(CIRCLE, evidence(SHAPES["good"]()), radius_m=1.25)
+    assert found.expected == "The turtle drives a circle of radius 1.25 m, counter-clockwise, for at least 1 turn."
+
+
 def test_commands_that_differ_ask_for_no_size() -> None:
     commands = [(t_s, 5.0 + t_s, 1.0) for t_s, _, _ in every(0.5, 0.0, 0.0)]
     found = finding("circle", evidence(recording(commands)))

@@ -222,6 +222,13 @@ def test_what_was_only_sent_before_the_two_sides_found_each_other_is_as_if_it_ha
     assert finding("topic", evidence(recording([(0.0, 2.0, 1.0), (0.5, 2.0, 1.0)]))).status is Status.PASSED
 
 
+def test_the_requested_rate_is_not_rounded() -> None:
+    limits = {"min_interval_s": 3.0, "max_interval_s": 5.0, "first_within_s": 5.0}
+    slow = recording(every(4.0, 2.0, 1.0, until_s=20.0), duration_s=20.0, sigint_t_s=20.0)
+    observed = found_by(RATE, evidence(slow), rate_hz=0.25, **limits).observed
+    assert observed == "Commands arrive every 4.00 s (0.25 Hz)."
+
+
 EVEN, UNEVEN = every(0.5, 2.0, 1.0), uneven()
 
 

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.checks.outcome import Status
+from grader.checks.subjects.recorded_bag import CIRCLE
 from grader.tests import made_bag
 from grader.tests.checks.bag_step import judged
+from grader.tests.checks.made import evidence, found, submission
 from grader.tests.checks.told import told
 
 if TYPE_CHECKING:
@@ -76,6 +78,12 @@ def test_a_sentence_about_the_circle_is_true(
 ) -> None:
     assert words in told(judged("bag-circle", files=bag_of(true, tmp_path)))
     assert words not in told(judged("bag-circle", files=bag_of(near, tmp_path)))
+
+
+@pytest.mark.parametrize(("turns", "words"), [(1.0, "at least 1 turn on"), (2.0, "at least 2 turns on")])
+def test_the_requested_number_of_turns_is_told(turns: float, words: str, tmp_path: Path) -> None:
+    given = evidence(package=submission(dict(bag_of(WHOLE, tmp_path))))
+    assert words in told(found(CIRCLE, given, bag="circle_bag", radius_m=3.0, turns=turns))
 
 
 def test_the_type_of_the_topic_is_told(tmp_path: Path) -> None:

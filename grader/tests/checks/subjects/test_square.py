@@ -41,6 +41,11 @@ def square(parts: list[Leg], start: Pose | None = None, **values: str) -> Findin
     return found(SQUARE, evidence(recording(legs(*parts), start)), side_m=2.0, **values)
 
 
+def test_the_requested_length_of_a_side_is_not_rounded() -> None:
+    small = found(SQUARE, evidence(recording(legs(*round_((1.25,) * 4)))), side_m=1.25)
+    assert small.observed == "The turtle drove a square with sides of 1.25 m."
+
+
 @pytest.mark.parametrize(
     "parts",
     [

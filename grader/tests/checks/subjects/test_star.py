@@ -52,7 +52,9 @@ def test_a_star_is_measured(commands: list[tuple[float, float, float]], diagnosi
 
 def test_a_star_may_be_turned_by_goals_and_not_by_teleports() -> None:
     trial = given(commands=star(), interventions=("rotate_absolute", "teleport_absolute"))
-    assert found(STAR, trial, side_m=2.0, heading_deg=0.0).diagnosis == "intervention"
+    finding = found(STAR, trial, side_m=2.0, heading_deg=0.0)
+    assert finding.diagnosis == "intervention"
+    assert finding.observed == "Something other than commands and goals may have moved the turtle: teleport_absolute."
 
 
 def test_a_star_needs_its_first_heading() -> None:

@@ -60,6 +60,7 @@ GREEDY = replace(HANGS, end=replace(HANGS.end, out_of="memory"))
         ("The node may still be waiting for something after Ctrl-C", SLOW, HANGS),
         ("The node ignored Ctrl-C: it had to be killed.", HANGS, GREEDY),
         ("The node ignored Ctrl-C: only SIGTERM ended it.", TERMINATED, HANGS),
+        ("After Ctrl-C, the node was stopped by force: it used all the memory that a node may use.", GREEDY, HANGS),
     ],
 )
 def test_a_sentence_about_the_stop_is_true(words: str, true: Recording, near: Recording) -> None:
