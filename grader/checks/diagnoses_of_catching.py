@@ -10,11 +10,11 @@ if TYPE_CHECKING:
 OF_CATCHING: dict[str, dict[Diagnosis, str]] = {
     "Spawning and catching": {
         "target-count": "the number of spawned turtles is wrong",
-        "target-name": "a spawned turtle has the wrong name",
-        "target-place": "a turtle is spawned outside the field, or all turtles are spawned in the same place",
+        "target-name": "a spawned turtle has the wrong name, or a turtle is caught under a wrong name",
+        "target-place": "a turtle is spawned too near the edge, or the places of the turtles are not random",
         "target-unannounced": "an existing turtle is not announced",
         "target-format": "the names in an announcement are separated by something other than spaces",
-        "still-announced": "a turtle that was caught, or never existed, is announced",
+        "still-announced": "a turtle that does not exist yet, no longer exists or never existed is announced",
         "silent-when-empty": "no message is published when no turtle is left",
         "not-killed": "a turtle that was caught is not removed",
         "killed-uncaught": "a turtle is removed although nobody caught it",

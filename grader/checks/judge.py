@@ -61,10 +61,10 @@ class Judgement:
 def judge(evidence: Evidence) -> tuple[Outcome, ...]:
     """Return the outcome of every check, in the order of the exercise.
 
-    A check is skipped if a check that it needs did not pass, except advice. The message of the skipped check contains
-    the title of the first check that did not pass, unless that check is hidden. If the machine could not produce the
-    evidence for a check (`evidence.fault`), the status of that check and of every check that needs it is `error`. If
-    the evidence cannot be read because of the submission, the check fails.
+    A check is skipped if it needs a check that did not pass. Advice never blocks another check. The message of the
+    skipped check contains the title of the first check that did not pass, unless that check is hidden. If the machine
+    could not produce the evidence for a check (`evidence.fault`), the status of that check and of every check that
+    needs it is `error`. If the evidence cannot be read because of the submission, the check fails.
     """
     return judge_so_far(evidence, {}).outcomes
 

@@ -47,7 +47,8 @@ class Requested:
 def first_heading(evidence: Evidence) -> Pose:
     """Return the turtle's start position with the heading of its first movement.
 
-    The turtle may turn before it drives. If it never drives, its start pose is returned.
+    The turtle may turn before it drives. If it never drives, or if its trajectory contains NaN or infinity, its start
+    pose is returned.
     """
     start, trajectory = evidence.recording.start, evidence.trajectory
     if not trajectory.finite:

@@ -12,8 +12,8 @@ NEAR = 0.2
 class Band:
     """The values from `low` to `high`. `low_width` and `high_width` are the widths of the tolerance at these edges.
 
-    If an edge is None, there is no limit on that side. NaN is never inside a band: every comparison with NaN is False,
-    so the methods check that a value is inside, and not that it is outside.
+    If an edge is None, there is no limit on that side. NaN is never inside a band: every comparison with NaN except !=
+    is False, so the methods check that a value is inside, and not that it is outside.
     """
 
     low: float | None

@@ -197,7 +197,7 @@ def _function_named(value: ast.expr, module: Module) -> str:
 
 
 def _in_callbacks(modules: Iterable[Module]) -> Iterator[tuple[Module, Function]]:
-    """Yield the lambdas and functions that are passed as arguments or stored, and all functions that these call."""
+    """Yield the lambdas and functions that are stored or passed on (not to a thread), and the functions they call."""
     functions: dict[str, list[tuple[Module, Function]]] = {}
     waiting: list[tuple[Module, Function]] = []
     passed: set[str] = set()

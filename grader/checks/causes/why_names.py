@@ -251,7 +251,7 @@ def _bound(scene: CrashScene) -> set[str]:
 
 
 def why_unbound(scene: CrashScene) -> Cause:
-    """Return the cause of an UnboundLocalError: the function assigns the name later, or the name is an attribute."""
+    """Return the cause of an UnboundLocalError, for example that the function assigns the name on a later line."""
     match = UNBOUND.search(scene.crash.message)
     name = match["name"] if match is not None else ""
     own = scene.own_class

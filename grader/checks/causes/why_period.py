@@ -124,7 +124,7 @@ def _period_cause(cause: Cause, period: float, rate_hz: float) -> Cause:
 
 
 def _right_period(timer: Call, rate_hz: float) -> tuple[Edit, ...]:
-    """Return the edit that corrects the timer's period, or no edit if the period in the source is not a constant."""
+    """Return the edit that writes the right period into the source, or no edit if the call has no argument for it."""
     node = written(timer.argument(0, "timer_period_sec"), timer.module.names)
     if node is None:
         return ()

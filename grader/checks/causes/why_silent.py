@@ -82,7 +82,7 @@ def _nothing_to_spin(evidence: Evidence) -> Cause | None:
 
 
 def _stuck(evidence: Evidence) -> Cause | None:
-    """Return the cause if a loop or wait in __init__, or a wait in a callback, may never end. Otherwise return None."""
+    """Return the cause if a loop or spin in __init__, or a wait for a service or response, may never end, else None."""
     for module, method in methods_of(evidence):
         for node in inside(method):
             where = Where(module.file, getattr(node, "lineno", None))

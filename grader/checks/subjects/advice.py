@@ -49,7 +49,7 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def _sending_loop(evidence: Evidence) -> Where | None:
-    """Return a loop that publishes or logs and then waits, or None."""
+    """Return an endless loop that calls `publish` or `info`, and also `sleep`, or None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.While) and ast.unparse(node.test) in ALWAYS:

@@ -47,7 +47,10 @@ class Announces:
 
 
 def announces(evidence: Evidence, params: Announces) -> Finding:
-    """Each message on the topic contains the names of all remaining turtles, and no other names."""
+    """Each message on the topic contains the names of all remaining turtles, and no other names.
+
+    The messages arrive at the required rate, until the end.
+    """
     expected = (
         f"Every {params.period_s:g} s, the node publishes the names of all remaining targets, separated by spaces."
     )
@@ -98,7 +101,8 @@ def _has_targets(evidence: Evidence, gap_s: float, begin_s: float, most: Band) -
 def _wrong_names(evidence: Evidence, message: Announcement, heard: list[Announcement], expected: str) -> Finding | None:
     """Return a failed finding if the message does not contain exactly the names of the existing turtles, else None.
 
-    The message may or may not contain the name of a turtle that appeared or disappeared at most LATE_S before it.
+    The message may or may not contain the name of a turtle that appeared or disappeared at most LATE_S before it or
+    AT_ONCE_S after it, that was caught, or that the node has asked turtlesim to remove.
     """
     tracks = evidence.recording.tracks
     from_s, to_s = message.t_s - LATE_S, message.t_s
@@ -135,7 +139,7 @@ def _wrong_names(evidence: Evidence, message: Announcement, heard: list[Announce
 
 
 def _not_there(evidence: Evidence, message: Announcement, strange: list[str], expected: str) -> Finding:
-    """Return the finding about a message with the name of a turtle that does not exist yet, or no longer exists."""
+    """Return the finding about the name of a turtle that does not exist yet, no longer exists or never existed."""
     at = f"The message at {message.t_s:.1f} s"
     begin_s = {track.turtle: track.rows[0][0] for track in evidence.recording.tracks}.get(strange[0])
     where = evidence.place("publish")

@@ -34,7 +34,7 @@ FEW = 5
 SAME_ARC = 0.02
 """Two frames are on the same arc if their turns per metre differ by at most this fraction."""
 MOST_ROOM_M = 2.5
-"""The radius (m) of a circle that is certain to fit on either side of a random start."""
+"""A random start can always be found that has room for a circle of this radius (m) on either side."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -45,7 +45,12 @@ class BagAnswer:
         about="The quantity: the number of messages on the topic, the time (s) from the first message to the last one, "
         "the rate (Hz) of the messages, or the radius (m) of the circle on which the poses lie.",
     )
-    tolerance_percent: float = number(2.0, at_least=0, at_most=100, about="The maximum error in the answer.")
+    tolerance_percent: float = number(
+        2.0,
+        at_least=0,
+        at_most=100,
+        about="The maximum error in the answer. A value with a unit may also be rounded to two decimal places.",
+    )
 
 
 def bag_answer(evidence: Evidence, params: BagAnswer) -> Finding:

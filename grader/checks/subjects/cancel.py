@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grader.trial.observed import Call, Goal
 
 SAME_TIME_S = 0.1
-"""If a goal begins or ends within this time (s) of a call, the goal can be active or inactive when the call arrives."""
+"""If a goal begins or succeeds within this time (s) of a call, it can be active or inactive when the call arrives."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,7 +162,7 @@ def _always_true(evidence: Evidence) -> bool:
 
 
 def _is_active(goals: list[Goal], t_s: float) -> bool | None:
-    """Return whether a goal is active at this time (s), or None if a goal begins or ends at the same time."""
+    """Return whether a goal is active at this time (s), or None if a goal begins or succeeds at about the same time."""
     for goal in goals:
         ended_s = goal.ended_s if goal.status == "succeeded" else None
         if any(each_s is not None and abs(each_s - t_s) < SAME_TIME_S for each_s in (goal.t_s, ended_s)):

@@ -185,13 +185,16 @@ def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
 
 
 def _is_top_level(module: Module, call: ast.Call) -> bool:
-    """Return whether this is a call to rclpy.init or rclpy.spin outside any function."""
+    """Return whether this is a call to rclpy.init or rclpy.spin in a statement at the top level of the file.
+
+    Calls inside statements with a block, such as if and try, do not count.
+    """
     top = [node for node in module.body if isinstance(node, ast.Expr | ast.Assign)]
     return dotted(call.func) in ("rclpy.init", "rclpy.spin") and any(call in ast.walk(node) for node in top)
 
 
 def early(evidence: Evidence, _: NoParams) -> Finding | None:
-    """Return a failed finding if a syntax error in the module shows that the node cannot run, else None."""
+    """Return a failed finding if Python cannot read the module of the entry point in setup.py, else None."""
     setup, files = evidence.setup_py, evidence.submission.files
     point = setup.entry_point(evidence.trial.executable) if setup is not None else None
     file = module_file(point.target.partition(":")[0], files) if point is not None and point.target else None

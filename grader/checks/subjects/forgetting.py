@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 REACTS_S = 0.3
-"""A node that has received an announcement may call the service for a withdrawn target for this time (s)."""
+"""How long (s) after the first announcement without a target's name the node may still call the service for this
+target."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,7 +32,7 @@ class Forgets:
 
 
 def forgets(evidence: Evidence, params: Forgets) -> Finding:
-    """The node never called the service for a target that was no longer announced."""
+    """Later than REACTS_S after the topic first lacks a withdrawn target, the node does not call the service for it."""
     recording = evidence.recording
     expected = f"The node forgets a target that {params.topic} no longer contains, and does not drive to it."
     topic = [

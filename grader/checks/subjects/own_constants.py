@@ -96,7 +96,7 @@ def _assignments(module: Module) -> Iterator[tuple[ast.expr, ast.expr]]:
 
 
 def _uses(module: Module, name: str) -> bool:
-    """Return whether the module reads a variable or an attribute with this name, or mentions the name in a string."""
+    """Return whether the module reads a variable or an attribute with this name, or contains the name as a string."""
     for node in module.nodes:
         match node:
             case (

@@ -79,7 +79,7 @@ class Dependencies:
 
 
 def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
-    """package.xml declares these packages and, if required, all imported packages as <depend> or <exec_depend>."""
+    """package.xml declares these packages (and imported ROS 2 packages, if required) as <depend> or <exec_depend>."""
     manifest = evidence.manifest
     imported = _imported(evidence) if params.imports == "declared" else {}
     needed = tuple(dict.fromkeys((*params.packages, *imported)))

@@ -49,7 +49,7 @@ class CallsService:
 
 
 def calls_service(evidence: Evidence, params: CallsService) -> Finding:
-    """The node called the simulator service with these fields."""
+    """The node called the simulator service with these fields and, if required, after the response from `after`."""
     request = ", ".join(f"{name}={_value(value)}" for name, value in params.fields)
     after = params.after.strip()
     expected = f"The node calls {params.service} with {request}."

@@ -103,7 +103,11 @@ class Catches:
 
     broken: str = string("the id of a broken node", about="The `id` of the `[[trial.tests.broken]]`.")
     does: str = string("a description", about="A description of the broken node, such as: a node that turns right.")
-    cause: str = string("a reason", about="The text that the student reads if all tests pass on the broken node.")
+    cause: str = string(
+        "a reason",
+        about="The text that the student reads if all tests pass on the broken node, unless the grader finds a "
+        "mistake in the tests.",
+    )
 
 
 def catches(evidence: Evidence, params: Catches) -> Finding:
@@ -158,7 +162,14 @@ def _hung(expected: str, code: TestCode, run: NodeRun | None) -> Finding:
     return failed(observed, expected, Cause("test-hangs", text, where))
 
 
-FOUND = Kind("tests_found", "trial", "pytest finds tests", NoParams, found, about="pytest finds at least one test.")
+FOUND = Kind(
+    "tests_found",
+    "trial",
+    "pytest finds tests",
+    NoParams,
+    found,
+    about="pytest finds at least one test, or at least a test file that cannot be imported.",
+)
 PASS = Kind(
     "tests_pass",
     "trial",

@@ -27,7 +27,7 @@ SAME_GROUP = (
 
 
 def never_waits(evidence: Evidence, _: NoParams) -> Finding:
-    """No callback waits for a response, for a server or for time to pass."""
+    """No callback waits for a server or for time to pass, or for a response that no other thread receives."""
     waits = waits_in_callbacks(evidence)
     finding = _certain(evidence, waits)
     if finding is not None:
