@@ -74,7 +74,7 @@ def load_exercise(path: Path) -> Exercise:
     """Return the exercise that the file `path` defines. If `path` is a folder, its file exercise.toml is read.
 
     Raises UsageError, which says why the file cannot be read, or lists every problem in it: the key, its value, and the
-    allowed values.
+    allowed values. Raises OSError if the machine is at fault, for example because of a read error.
     """
     from grader.checks.kinds import KINDS  # imported here because few commands need it
 

@@ -57,19 +57,20 @@ shown by a test instead of a case. [diagnoses.py](diagnoses.py) contains the ids
 
 To add a mistake:
 
-1. Make a folder `grader/tests/mistakes/NNN-name/` with a new number. Put the submission and a file `expected.toml` into
-   it. The keys of that file are the fields of `Case` in [case.py](../tests/case.py).
-2. If no id fits, add one to [diagnoses.py](diagnoses.py). The code that recognizes the mistake belongs in the module
-   of its subject.
+1. Make a folder `grader/tests/mistakes/NNN-name/` with a new number. Put a file `expected.toml` into it. The keys of
+   that file are the fields of `Case` in [case.py](../tests/case.py). The submission is a base, such as the solution of
+   a step, with the files in the folder and the edits in `expected.toml`.
+2. If no id fits, add one to [diagnoses.py](diagnoses.py) and [diagnosis.py](diagnosis.py). The code that recognizes the
+   mistake belongs in the module of its subject or cause.
 3. Run the case:
 
 ```text
 python -m pytest -m "" grader/tests/test_mistakes.py -k NNN
 ```
 
-A message has at most 60 words: what was observed, what was expected, and where. It never contains a line of the
-solution. Tests check these rules. A false diagnosis is worse than none. In `expected.toml`, list under `never`
-what the report must not contain.
+A message has at most 60 words: what was observed, what was expected, and the cause. Nearly every message also names a
+file. A message never contains a line of the solution. Tests check these rules. A false diagnosis is worse than none. In
+`expected.toml`, list under `never` what the report must not contain.
 """
 
 

@@ -82,7 +82,7 @@ def no_entry_point(evidence: Evidence) -> Finding:
 
 
 def _is_another(evidence: Evidence, name: str) -> bool:
-    """Return whether an executable is not the executable of the exercise under another name."""
+    """Return whether an executable has the right name, or is another node, in a module of its own name."""
     executable = evidence.trial.executable
     has_file = any(path.rpartition("/")[2] == f"{executable}.py" for path in evidence.submission.files)
     module = evidence.built.entry_points.get(name, "").partition(":")[0].strip()

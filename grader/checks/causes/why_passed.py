@@ -112,7 +112,7 @@ def _is_no_number(given: ast.expr, scene: CrashScene) -> bool:
 
 
 def _attribute(scene: CrashScene, call: Call) -> Cause | None:
-    """Return the cause if a number or string is passed where the function expects an object, else None."""
+    """Return the cause if a number or string and an object are passed in the wrong order, else None."""
     match = OF_A_VALUE.search(scene.crash.message)
     for node in scene.on_line:
         if match is not None and isinstance(node, ast.Attribute) and node.attr == match["name"]:

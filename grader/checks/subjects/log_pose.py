@@ -97,10 +97,11 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
 def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
     """Every line shows the distance that the turtle has driven since the start."""
     recording, frames = evidence.recording, evidence.recording.frames
-    logged = [line for line in _trusted(recording, params.format) if line.t_s >= evidence.trial.scenario.pose_from_s]
+    from_s = evidence.trial.scenario.pose_from_s
+    logged = [line for line in _trusted(recording, params.format) if line.t_s >= from_s]
     expected = "The distance is the length of the path that the turtle has driven, in metres. It never gets smaller."
     if len(logged) < FEWEST:
-        return _too_few(evidence, params.format)
+        return _too_few(evidence, params.format, from_s)
     x, y = np.append(recording.start.x, frames.x), np.append(recording.start.y, frames.y)
     driven = np.cumsum(np.hypot(np.diff(x), np.diff(y)))
 
@@ -202,8 +203,8 @@ def _trusted(recording: Recording, format_: str) -> list[Line]:
     return [line for line in student_log.in_format(recording, format_) if not recording.stalled(line.t_s)]
 
 
-def _too_few(evidence: Evidence, text_: str) -> Finding:
-    if len(student_log.in_format(evidence.recording, text_)) >= FEWEST:
+def _too_few(evidence: Evidence, text_: str, from_s: float = 0.0) -> Finding:
+    if sum(line.t_s >= from_s for line in student_log.in_format(evidence.recording, text_)) >= FEWEST:
         return too_busy()
     expected = f"The log has at least {FEWEST} lines in this format."
     where = evidence.place("info")

@@ -44,7 +44,8 @@ class CallsService:
     after: str = string(
         "the full name of a service",
         default=" ",
-        about=("A service that the node must call first. Without this key, the order of the calls does not matter."),
+        about="A service that the node must call, and that must respond, before this call. Without this key, the order "
+        "of the calls does not matter.",
     )
 
 

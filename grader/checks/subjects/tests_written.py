@@ -192,5 +192,6 @@ ASSERTS = Kind(
     "Every test asserts something",
     NoParams,
     asserts,
-    about="Every test function has an assert, or calls a function that has one, and no assert is always true.",
+    about="Every test function asserts something, or uses a function or fixture that does. No assert tests a tuple, "
+    "which is always true.",
 )

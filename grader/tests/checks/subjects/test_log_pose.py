@@ -152,6 +152,13 @@ def test_too_few_lines_are_not_compared() -> None:
         assert enough.status is Status.PASSED
 
 
+def test_lines_before_the_first_pose_do_not_mean_that_the_machine_was_busy() -> None:
+    made = evidence(recording(WAY, log=logged(truth()).log[:4]), PACKAGE)
+    late = replace(made.trial, scenario=replace(made.trial.scenario, pose_from_s=3.5))
+    given = replace(made, exercise=replace(made.exercise, trials=(late, *made.exercise.trials[1:])))
+    assert found(LOG_DISTANCE, given, format=FORMAT).diagnosis == "too-few-log-lines"
+
+
 def test_what_is_off_by_less_than_the_tolerance_is_right() -> None:
     x, y, driven_m = truth()
     assert position((x + 0.01, y, driven_m)).status is Status.PASSED
