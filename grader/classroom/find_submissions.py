@@ -29,7 +29,7 @@ from grader.submission.search import PACKAGE_FILES
 from grader.submission.tree import shown, sort_key
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Sequence
+    from collections.abc import Collection, Iterator, Sequence
 
 UNKNOWN = ""
 """The exercise id of a submission whose exercise cannot be determined from the names of the folders."""
@@ -37,8 +37,8 @@ OWN = "exercises"
 """The folder of a clone that contains the student's work."""
 _OF_PROGRAMS = (".git", ".github", ".gitlab", ".idea", ".ipynb_checkpoints", ".venv", ".vscode", "__MACOSX")
 """Folders that programs create next to submissions."""
-_OF_THE_COURSE = ("course", "docs", "grader", "solutions")
-"""The other folders of a clone."""
+_OF_THE_COURSE = (OWN, "course", "docs", "grader", "solutions")
+"""The folders of a clone."""
 
 
 @dataclass(frozen=True)
@@ -201,8 +201,14 @@ def _is_one_alone(folder: Path) -> bool:
         return True
     if not os.path.isdir(folder / OWN):
         return False
-    others = (entry for entry in _entries(folder) if entry.name not in (OWN, *_OF_THE_COURSE))
-    return os.path.exists(folder / ".git") or all(_student(entry) is None for entry in others)
+    others = [each for each in _entries(folder) if each.name not in _OF_THE_COURSE and _student(each) is not None]
+    # A class can be in a git repository, too, and a student can choose the name of the folder `exercises`.
+    return not others or (os.path.exists(folder / ".git") and not any(map(_is_handed_in, others)))
+
+
+def _is_handed_in(entry: Path) -> bool:
+    """Return whether an entry next to the folder `exercises` is an archive, or a folder with a package in it."""
+    return not os.path.isdir(entry) or _is_one(entry) or any(any(entry.glob(f"*/{name}")) for name in PACKAGE_FILES)
 
 
 def _student(entry: Path) -> str | None:
@@ -241,7 +247,7 @@ def _of_student(student: str, path: Path, wanted: str | None) -> Iterator[Found]
     elif assigned:
         yield from (Found(student, name, path / name) for name in assigned if wanted in (None, name))
         yield from (each for each in misnamed(student, path) if wanted in (None, each.exercise))
-    elif wanted and os.path.isdir(own) and not _leads_away((path / OWN, own)):
+    elif wanted and os.path.isdir(own) and not any(map(os.path.islink, (path / OWN, own))):
         yield Found(student, wanted, own)
     else:
         yield Found(student, wanted or UNKNOWN, path)
@@ -292,7 +298,3 @@ def left_out(folder: Path, other_assignments: Collection[str]) -> tuple[Found, .
             reason = f"{shown(each.student)} does not contain a folder with the name of an exercise."
             found += almost or ([] if others else [replace(each, refused=reason)])
     return tuple(found)
-
-
-def _leads_away(folders: Iterable[Path]) -> bool:
-    return any(os.path.islink(folder) for folder in folders)

@@ -65,8 +65,11 @@ def test_a_folder_of_clones(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.parametrize("in_git", [False, True])
 @pytest.mark.parametrize("name", ["exercises", "setup.py", "package.xml"])
-def test_no_name_of_a_students_folder_hides_the_class(tmp_path: Path, name: str) -> None:
+def test_no_name_of_a_students_folder_hides_the_class(tmp_path: Path, name: str, *, in_git: bool) -> None:
+    if in_git:
+        (tmp_path / ".git").mkdir()
     for student in ("anna", "ben", name):
         copy_solution(STEP, tmp_path / student / "my_robot_controller")
     assert [student for student, *_ in names(tmp_path, STEP)] == sorted(["anna", "ben", name])
