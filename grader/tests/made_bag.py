@@ -7,7 +7,7 @@ import shutil
 import struct
 from typing import TYPE_CHECKING
 
-from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
 from grader.evidence.bag import write_bag
 from grader.ros.installation import find_ros
@@ -58,3 +58,15 @@ def record_sqlite(folder: Path) -> None:
     with Writer(folder, version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
         connection = writer.add_connection("/turtle1/cmd_vel", "geometry_msgs/msg/Twist", typestore=store)
         writer.write(connection, 0, commands(0.1)[0].data)
+
+
+def record_compressed(folder: Path) -> None:
+    """Write a bag with commands, each of which is compressed."""
+    shutil.rmtree(folder, ignore_errors=True)
+    store = jazzy_types()
+    writer = Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP)
+    writer.set_compression(CompressionMode.MESSAGE, CompressionFormat.ZSTD)
+    with writer:
+        connection = writer.add_connection("/turtle1/cmd_vel", "geometry_msgs/msg/Twist", typestore=store)
+        for message in commands(1.0):
+            writer.write(connection, round(message.t_s * 1e9), message.data)

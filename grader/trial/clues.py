@@ -45,6 +45,8 @@ _NAMES = {
 }
 _CLOCKS = {"Clock", "ROSClock"}
 """The names of clock classes. A clock that the program creates itself does not follow /clock."""
+_UNWATCHED = "EventsExecutor"
+"""The executor of rclpy.experimental. With this executor, the clock of a trial in simulated time could not start."""
 _TIMELESS = {"threading.Lock", "threading.RLock", "threading.local", "threading.current_thread", "threading.get_ident"}
 """Names from `threading` that are not clues, because none of them waits for time to pass."""
 MOST_NODES = 30
@@ -86,6 +88,8 @@ def _clues(path: str, tree: ast.Module) -> Iterator[Clue]:
             yield Clue(modules[node.id], path, node.lineno)
         elif isinstance(node, ast.Call) and getattr(node.func, "attr", getattr(node.func, "id", "")) in _CLOCKS:
             yield Clue("a clock of its own", path, node.lineno)
+        elif isinstance(node, ast.Call) and getattr(node.func, "attr", getattr(node.func, "id", "")) == _UNWATCHED:
+            yield Clue(_UNWATCHED, path, node.lineno)
         elif isinstance(node, ast.Constant) and node.value == "use_sim_time":
             yield Clue("use_sim_time", path, node.lineno)
 

@@ -62,6 +62,17 @@ PACKAGE = re.compile(
 """Matches the names of imported ROS 2 packages: interface packages, and packages that Python nodes often use.
 
 The list is fixed, so that a report is the same on every machine. Jazzy has no package turtlesim_msgs."""
+NOT_IN_COURSE = frozenset(
+    {
+        *("ament_copyright", "ament_flake8", "ament_pep257", "cv_bridge", "example_interfaces", "image_geometry"),
+        *("launch", "launch_pytest", "launch_ros", "launch_testing", "launch_testing_ros", "laser_geometry"),
+        *("message_filters", "osrf_pycommon", "python_qt_binding", "ros2action", "ros2bag", "ros2cli", "ros2launch"),
+        *("ros2node", "ros2param", "ros2pkg", "ros2run", "ros2service", "ros2topic", "rosbag2_py", "rosidl_runtime_py"),
+        *("rqt_gui", "rqt_gui_py", "sensor_msgs_py", "tf2_geometry_msgs", "tf2_kdl", "tf2_msgs", "tf2_py"),
+        *("tf2_ros", "tf2_sensor_msgs", "tf_transformations"),
+    }
+)
+"""Python modules of packages for Jazzy that a full ROS 2 can have, but that the course does not install."""
 ROS_1 = frozenset({"rospy", "roslib", "tf", "catkin", "roscpp", "rosbag", "actionlib"})
 """Modules that exist only in ROS 1."""
 

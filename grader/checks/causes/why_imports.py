@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 NOT_HERE = {
     "tkinter": "tkinter is Python's module for graphical windows.",
     "_tkinter": "tkinter is Python's module for graphical windows.",
-    "example_interfaces": "example_interfaces is a package of ROS 2.",
 }
 """Maps a module to a sentence about it. A correct program may import the module, but the grader does not have it."""
 NO_MODULE = re.compile(r"No module named '(?P<name>[\w.]+)'")
@@ -42,10 +41,9 @@ def _no_module(scene: CrashScene, name: str) -> Cause:
             "Newer ROS 2 distributions have these messages in turtlesim_msgs. In Jazzy, these messages are in "
             "turtlesim.",
         ).fixed_by(at(scene.crash.where, "turtlesim_msgs", "turtlesim"))
-    if name in NOT_HERE:
-        return Cause(
-            "module-missing", f"{NOT_HERE[name]} This grader does not have {name}, so it cannot run this node."
-        )
+    about = NOT_HERE.get(name) or (f"{name} is a package of ROS 2." if name in ros_names.NOT_IN_COURSE else None)
+    if about is not None:
+        return Cause("module-missing", f"{about} This grader does not have {name}, so it cannot run this node.")
     files = scene.evidence.submission.files
     if f"{top}.py" in files:
         text = f"{top}.py is next to setup.py, so it is not installed. Move it to the folder with the other modules."

@@ -65,11 +65,10 @@ def readable(evidence: Evidence, params: InBag) -> Finding:
         cause = (
             "The default storage format of ROS 2 Jazzy is MCAP. Record without the options -s and --compression-mode."
         )
-        return failed(
-            f"{params.bag} contains {shorten(bag.detail)} but no .mcap file.",
-            expected,
-            Cause("bag-storage", cause, where),
-        )
+        observed = f"{params.bag} contains {shorten(bag.detail)} but no .mcap file."
+        if bag.detail.endswith(".mcap"):
+            observed = f"The messages in {shorten(bag.detail)} are compressed."
+        return failed(observed, expected, Cause("bag-storage", cause, where))
     if bag.problem:
         cause = "Delete the folder, and record again."
         return failed(f"{params.bag} cannot be read: {bag.detail}.", expected, Cause("bag-damaged", cause, where))

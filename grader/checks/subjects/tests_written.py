@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.chance import is_seeded
 from grader.checks.causes.weak_tests import always_true, timed_loop, why_without_assert, without_assert
 from grader.checks.kind import Kind, NoParams, strings
 from grader.checks.outcome import Finding, failed, passed
@@ -118,11 +119,13 @@ class Steady:
     """The names of functions that make a test depend on chance or on the speed of the machine."""
 
     names: tuple[str, ...] = strings(about="Functions that wait for a fixed time, such as `sleep`.")
-    random: tuple[str, ...] = strings(about="Functions that return a different result each time, such as `randint`.")
+    random: tuple[str, ...] = strings(
+        about="Functions that return a different result each time, such as `randint`, unless there is a fixed seed."
+    )
 
 
 def steady(evidence: Evidence, params: Steady) -> Finding:
-    """The tests neither sleep nor loop for a fixed time, and do not use random numbers."""
+    """The tests neither sleep nor loop for a fixed time, and use random numbers only with a fixed seed."""
     code = code_of(evidence)
     expected = "The tests behave the same in every run, even on a slow computer."
     use = _first_use(code, frozenset(params.names))
@@ -134,8 +137,8 @@ def steady(evidence: Evidence, params: Steady) -> Finding:
     if loop is not None:
         return failed("The tests contain a loop that runs for a fixed time.", expected, loop)
     use = _first_use(code, frozenset(params.random))
-    if use is not None:
-        cause = "A failure that occurs only sometimes is hard to reproduce. Choose the values yourself."
+    if use is not None and not is_seeded(code, params.random):
+        cause = "A failure that occurs only sometimes is hard to reproduce. Choose the values yourself, or use a seed."
         observed = f"The tests use {shorten(use.written, 60)}."
         return failed(observed, expected, Cause("by-chance", cause, use.where))
     return passed(expected)
@@ -184,7 +187,7 @@ STEADY = Kind(
     Steady,
     steady,
     about="The test files use none of the given functions, not even under another name, and contain no loop that runs "
-    "for a fixed time.",
+    "for a fixed time. Random numbers with a fixed seed are allowed.",
 )
 ASSERTS = Kind(
     "tests_assert",

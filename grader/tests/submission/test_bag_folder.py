@@ -79,6 +79,8 @@ def test_too_many_messages_are_not_read() -> None:
         ({"other/x_0.mcap": b""}, "elsewhere"),
         ({STORED: FILES[STORED]}, "unfinished"),
         ({"circle_bag/circle_bag_0.db3": b"", "circle_bag/metadata.yaml": b""}, "storage"),
+        ({STORED: FILES[STORED], "circle_bag/metadata.yaml": b"  compression_mode: MESSAGE\n"}, "storage"),
+        ({STORED: FILES[STORED], "circle_bag/metadata.yaml": b"  compression_mode: ''\n"}, ""),
         ({"circle_bag/metadata.yaml": b""}, "damaged"),
     ],
 )

@@ -41,6 +41,8 @@ def test_a_node_with_a_timer_gives_no_clue() -> None:
         ("Node('draw_circle', use_global_arguments=False)", "use_global_arguments"),
         ("now = rclpy.clock.Clock().now()", "a clock of its own"),
         ("Parameter('use_sim_time', value=False)", "use_sim_time"),
+        ("rclpy.experimental.EventsExecutor().spin()", "EventsExecutor"),
+        ("executor = EventsExecutor()", "EventsExecutor"),
         ("from select import select\nselect([], [], [], 0.5)", "select.select"),
     ],
 )

@@ -44,6 +44,11 @@ HELPER = {"my_robot_controller/helper.py": "", "my_robot_controller/unhelper.py"
             "module-missing",
             "tkinter is Python's module for graphical windows. This grader does not have tkinter, so it",
         ),
+        (
+            "No module named 'rosidl_runtime_py'",
+            "module-missing",
+            "rosidl_runtime_py is a package of ROS 2. This grader does not have rosidl_runtime_py, so it cannot run",
+        ),
         ("No module named 'tkinter.mesages'", "module-missing", "No installed package has a module tkinter.mesages."),
         ("DLL load failed", "crash", "That name cannot be imported from this module."),
     ],

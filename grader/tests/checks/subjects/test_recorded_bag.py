@@ -106,6 +106,7 @@ def test_the_type_of_the_topic_is_told(tmp_path: Path) -> None:
             {"circle_bag.mcap": None, "circle_bag_0.db3": b"x"},
             {"circle_bag.mcap": None},
         ),
+        ("The messages in circle_bag.mcap are compressed.", {"metadata.yaml": b"  compression_mode: message\n"}, {}),
         (
             "The folder circle_bag next to package.xml contains a bag with at least one message.",
             {"metadata.yaml": None},

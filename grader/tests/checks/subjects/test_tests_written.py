@@ -88,7 +88,7 @@ def about_steadiness(source: str) -> str:
         ("The tests use sleep.", NAP, CHANCE),
         ("On a slow computer, the sleep may be too short. Spin until the message arrives, or set", NAP, CHANCE),
         ("The tests use randint.", CHANCE, NAP),
-        ("A failure that occurs only sometimes is hard to reproduce. Choose the values yourself.", CHANCE, NAP),
+        ("A failure that occurs only sometimes is hard to reproduce. Choose the values yourself, or", CHANCE, NAP),
         (
             "The tests contain a loop that runs for a fixed time.",
             f"def test_it():\n    {LOOP.replace(chr(10), chr(10) + '    ')}",
@@ -99,6 +99,27 @@ def about_steadiness(source: str) -> str:
 def test_a_sentence_about_steady_tests_is_true(words: str, true: str, near: str) -> None:
     assert words in about_steadiness(true)
     assert words not in about_steadiness(near)
+
+
+@pytest.mark.parametrize(
+    ("source", "passes"),
+    [
+        ("import random\nrandom.seed(7)\nx = random.randint(1, 2)\n", True),
+        ("import random\nrandom.seed()\nx = random.randint(1, 2)\n", False),
+        ("import random, time\nrandom.seed(time.time())\nx = random.randint(1, 2)\n", False),
+        ("import random\ndice = random.Random(7)\nx = dice.randint(1, 2)\n", True),
+        ("import random\ndice = random.Random(x=None)\nx = dice.randint(1, 2)\n", False),
+        ("import random\ndice = random.Random(7)\nx = dice.randint(1, 2) + random.randint(1, 2)\n", False),
+        ("from random import Random, randint\ndice = Random(7)\nx = dice.randint(1, 2) + randint(1, 2)\n", False),
+        ("import numpy as np\ndef test_it(seed):\n    x = np.random.RandomState(seed).randint(1, 2)\n", True),
+        ("import numpy as np\nnp.random.RandomState(7)\nx = np.random.randint(1, 2)\n", False),
+        ("from numpy import random as r\nr.default_rng(7)\nx = r.randint(1, 2)\n", False),
+        ("from numpy.random import default_rng\nx = default_rng(seed=7).randint(1, 2)\n", True),
+    ],
+)
+def test_random_numbers_with_a_fixed_seed_are_the_same_in_every_run(source: str, *, passes: bool) -> None:
+    finding = found(STEADY, given(source), names=("sleep",), random=("randint",))
+    assert (finding.status is Status.PASSED) is passes
 
 
 @pytest.mark.parametrize(("source", "passes"), [(ASSERT, True), (NAP, False)])
