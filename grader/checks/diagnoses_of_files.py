@@ -9,8 +9,17 @@ if TYPE_CHECKING:
 
 OF_FILES: dict[str, dict[Diagnosis, str]] = {
     "The submission": {
-        "no-package": "there is no package, or there are several",
-        "no-answers-file": "there is no answers.toml, or there are several",
+        "no-package": "there is no package",
+        "several-packages": "there are several packages",
+        "no-answers-file": "there is no answers.toml",
+        "several-submissions": "the student handed in several submissions for the exercise",
+        "similar-names": "the names of two submissions differ only in their spelling, for example in capital letters",
+        "exercise-missing": "the student's folder contains no folder for the exercise",
+        "submission-name": "the submission is hidden, or its name is almost the name of the exercise",
+        "submission-link": "the submission is a symbolic link",
+        "archive-damaged": "the archive is damaged, is not a .zip or .tar.gz, or contains a path that is not valid",
+        "archive-format": "the archive has a format, a compression or a password that the grader does not support",
+        "submission-too-large": "the submission is too large or too deeply nested to be read",
     },
     "package.xml": {
         "package-xml-missing": "the package has no package.xml",

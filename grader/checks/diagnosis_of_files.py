@@ -7,7 +7,16 @@ from typing import Literal
 DiagnosisOfFiles = Literal[
     # The submission
     "no-package",
+    "several-packages",
     "no-answers-file",
+    "several-submissions",
+    "similar-names",
+    "exercise-missing",
+    "submission-name",
+    "submission-link",
+    "archive-damaged",
+    "archive-format",
+    "submission-too-large",
     # package.xml
     "package-xml-missing",
     "xml-malformed",

@@ -12,7 +12,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.classroom.unpack import Member, NotUnpackedError, read_archive
+from grader.classroom.unpack import (
+    ArchiveFormatError,
+    DamagedArchiveError,
+    LargeArchiveError,
+    Member,
+    read_archive,
+)
 from grader.errors import DiskError, TooLargeError
 from grader.submission import reader
 from grader.submission.tree import shown
@@ -45,7 +51,7 @@ def unpacked(archive: Path) -> Iterator[Path]:
     """
     if not archive.name.lower().endswith(ENDINGS):
         message = "is not a supported archive: hand in a .zip or a .tar.gz"
-        raise NotUnpackedError(message)
+        raise ArchiveFormatError(message)
     members = _read(archive)
     with tempfile.TemporaryDirectory(prefix="grader-unpacked-") as named:
         folder = Path(os.path.realpath(named))
@@ -59,7 +65,7 @@ def _read(archive: Path) -> tuple[Member, ...]:
         return reader.read(read_archive, archive)
     except TooLargeError as error:
         message = f"could not be unpacked within {reader.CPU_S} s and {reader.MEMORY // 1024**3} GiB of memory"
-        raise NotUnpackedError(message) from error
+        raise LargeArchiveError(message) from error
 
 
 def _write_all(members: Iterable[Member], folder: Path) -> None:
@@ -74,10 +80,10 @@ def _write_all(members: Iterable[Member], folder: Path) -> None:
             )
             raise DiskError(message) from error
         message = f"is damaged, or contains a file name that the disk does not accept ({error.strerror})"
-        raise NotUnpackedError(message) from error
+        raise DamagedArchiveError(message) from error
     except ValueError as error:  # a NUL in a name
         message = f"is damaged, or contains a file name that the disk does not accept ({error})"
-        raise NotUnpackedError(message) from error
+        raise DamagedArchiveError(message) from error
 
 
 def _write(member: Member, folder: Path) -> None:
@@ -90,4 +96,4 @@ def _write(member: Member, folder: Path) -> None:
             target.chmod(0o755 if member.executable else 0o644)
     except (FileExistsError, NotADirectoryError, IsADirectoryError) as error:
         message = f"contains {shown('/'.join(member.parts))} both as a file and as a folder"
-        raise NotUnpackedError(message) from error
+        raise DamagedArchiveError(message) from error

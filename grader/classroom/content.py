@@ -4,38 +4,29 @@ from __future__ import annotations
 
 import hashlib
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING
 
 from grader.classroom import archives, unpack
-from grader.errors import DiskError, MachineError, UsageError
+from grader.classroom.refused import Refused
+from grader.errors import DiskError, MachineError, TooLargeError, UsageError
 from grader.submission import reader, tree
 from grader.submission.handed_in import open_handed_in
 from grader.submission.package import ANSWERS, Submission
+from grader.submission.search import NoPackageError, SeveralPackagesError
 from grader.submission.tree import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from grader.classroom.find_submissions import Found
+    from grader.checks.diagnosis import Diagnosis
+    from grader.classroom.found import Found
     from grader.exercise.model import Exercise
 
 MOST_DEEP = 4
 """answers.toml may be inside up to this many nested folders, if each of them contains nothing but the next one."""
-
-
-@dataclass(frozen=True)
-class Refused:
-    """A submission that cannot be graded. `reason` is a text for the student.
-
-    `of_the_machine` is True if the machine failed while reading the submission. Even then, other submissions are
-    graded.
-    """
-
-    reason: str
-    of_the_machine: bool = False
 
 
 def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused:
@@ -45,24 +36,33 @@ def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused
         DiskError: the disk for temporary files failed.
     """
     if found.refused:
-        return Refused(found.refused)
+        return found.refused
     try:
         with _folder(found) as folder:
             try:
                 opened = reader.read(_open, folder, exercise)
             except UsageError as error:
                 # Students read this, so it must not contain a path of this machine.
-                return Refused(str(error).replace(shown(str(folder)), shown(found.name)))
+                reason = str(error).replace(shown(str(folder)), shown(found.name))
+                return Refused(reason, _diagnosis(error, exercise))
     except unpack.NotUnpackedError as error:
-        return Refused(f"{shown(found.path.name)} {error}.")
+        return Refused(f"{shown(found.path.name)} {error}.", error.diagnosis)
     except DiskError:
         raise
     except MachineError as error:
-        return Refused(str(error), of_the_machine=True)
+        return Refused(str(error), None)
     except (OSError, ValueError) as error:
         detail = error.strerror if isinstance(error, OSError) else str(error)
-        return Refused(f"{shown(found.path.name)} could not be read ({detail}).")
+        return Refused(f"{shown(found.path.name)} could not be read ({detail}).", "unreadable")
     return replace(opened, name=found.name, student=student)
+
+
+def _diagnosis(error: UsageError, exercise: Exercise) -> Diagnosis:
+    if isinstance(error, NoPackageError):
+        return "no-package" if exercise.package else "no-answers-file"
+    if isinstance(error, SeveralPackagesError):
+        return "several-packages"
+    return "submission-too-large" if isinstance(error, TooLargeError) else "unreadable"
 
 
 def fingerprint(found: Found, exercise: Exercise) -> str:

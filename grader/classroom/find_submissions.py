@@ -16,12 +16,15 @@ from __future__ import annotations
 import os
 import re
 import stat
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.checks.exercises import find_exercise
 from grader.classroom import archives
+from grader.classroom.duplicates import without_duplicates
+from grader.classroom.found import UNKNOWN, Found
+from grader.classroom.refused import Refused
 from grader.common.words import a_list
 from grader.errors import UsageError
 from grader.exercise.model import catalogue
@@ -31,32 +34,12 @@ from grader.submission.tree import shown, sort_key
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
 
-UNKNOWN = ""
-"""The exercise id of a submission whose exercise cannot be determined from the names of the folders."""
 OWN = "exercises"
 """The folder of a clone that contains the student's work."""
 _OF_PROGRAMS = (".git", ".github", ".gitlab", ".idea", ".ipynb_checkpoints", ".venv", ".vscode", "__MACOSX")
 """Folders that programs create next to submissions."""
 _OF_THE_COURSE = (OWN, "course", "docs", "grader", "solutions")
 """The folders of a clone."""
-
-
-@dataclass(frozen=True)
-class Found:
-    """A folder or an archive that a student handed in for an exercise."""
-
-    student: str
-    exercise: str
-    path: Path
-    """An absolute path in which all links have been resolved. If the path contains a link when the submission is read,
-    a student has replaced a folder with this link, so the submission is not graded."""
-    refused: str = ""
-    """The reason why the submission cannot be graded, if the reason is already known."""
-
-    @property
-    def name(self) -> str:
-        """The name of the submission in reports and messages."""
-        return self.student
 
 
 def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Path) -> tuple[Found, ...]:
@@ -73,10 +56,7 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
             "folder or archive (.zip, .tar.gz) per student."
         )
         raise UsageError(message)
-    alike: dict[tuple[str, str], list[Found]] = {}
-    for each in _of_known_exercises(found):
-        alike.setdefault((each.student, each.exercise), []).append(each)
-    submissions = (_one_of(each) for each in alike.values())
+    submissions = without_duplicates(_of_known_exercises(found))
     return tuple(sorted(submissions, key=lambda each: (sort_key(each.student), each.exercise)))
 
 
@@ -101,24 +81,8 @@ def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
             )
             raise UsageError(message)
         for exercise in known:
-            yield replace(
-                each,
-                exercise=exercise,
-                refused=each.refused or f"{shown(each.student)} does not contain a folder {exercise}.",
-            )
-
-
-def _one_of(alike: Sequence[Found]) -> Found:
-    """Return a student's only submission for an exercise.
-
-    If the student handed in several submissions, return one of them with the reason why none of them is graded.
-    """
-    if len(alike) == 1:
-        return alike[0]
-    folder = os.path.commonpath([each.path.parent for each in alike])  # students do not need the instructor's paths
-    paths = a_list([shown(os.path.relpath(each.path, folder)) for each in alike])
-    text = f"{len(alike)} submissions: {paths}. Remove or rename all of these submissions but one."
-    return replace(alike[0], refused=f"{shown(alike[0].student)} has {text}")
+            missing = Refused(f"{shown(each.student)} does not contain a folder {exercise}.", "exercise-missing")
+            yield replace(each, exercise=exercise, refused=each.refused or missing)
 
 
 def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:
@@ -224,26 +188,28 @@ def _student(entry: Path) -> str | None:
     return archives.stem(entry.name) if stat.S_ISREG(mode) else None
 
 
-def _why_not_graded(entry: Path) -> str:
-    """Return the reason why a link, a hidden folder or a hidden archive is not graded, or "" for any other entry."""
+def _why_not_graded(entry: Path) -> Refused | None:
+    """Return the reason why a link, a hidden folder or a hidden archive is not graded, or None for any other entry."""
     # macOS stores the properties of a file x in a file ._x, for example on a USB stick.
     of_macos = entry.name.startswith("._") and os.path.isfile(entry) and os.path.isfile(entry.with_name(entry.name[2:]))
     if entry.name in _OF_PROGRAMS or (of_macos and not os.path.islink(entry)):
-        return ""
+        return None
     if os.path.islink(entry):
-        return f"{shown(entry.name)} is a symbolic link. The grader does not follow links to submissions."
+        link = f"{shown(entry.name)} is a symbolic link. The grader does not follow links to submissions."
+        return Refused(link, "submission-link")
     is_archive = os.path.isfile(entry) and entry.name.lower().endswith(archives.EVERY_ENDING)
     if entry.name.startswith(".") and (os.path.isdir(entry) or is_archive):
-        return f"{shown(entry.name)} is hidden, because its name begins with a dot. Rename it."
-    return ""
+        hidden = f"{shown(entry.name)} is hidden, because its name begins with a dot. Rename it."
+        return Refused(hidden, "submission-name")
+    return None
 
 
 def _of_student(student: str, path: Path, wanted: str | None) -> Iterator[Found]:
     assigned = _assignments(path)
     own = path / OWN / (wanted or UNKNOWN)
     if assigned and wanted not in (None, *assigned):
-        refused = f"{shown(student)} contains {a_list(assigned)}, but no folder {wanted}."
-        yield Found(student, wanted or UNKNOWN, path, refused)
+        reason = f"{shown(student)} contains {a_list(assigned)}, but no folder {wanted}."
+        yield Found(student, wanted or UNKNOWN, path, Refused(reason, "exercise-missing"))
     elif assigned:
         yield from (Found(student, name, path / name) for name in assigned if wanted in (None, name))
         yield from (each for each in misnamed(student, path) if wanted in (None, each.exercise))
@@ -277,7 +243,7 @@ def misnamed(student: str, path: Path) -> Iterator[Found]:
         if exercise is not None and exercise not in present:
             where = f"{shown(student)}/{shown(entry.name)}"
             reason = f"{where} must be a folder with the name {exercise}. Rename or unpack it."
-            yield Found(student, exercise, entry, reason)
+            yield Found(student, exercise, entry, Refused(reason, "submission-name"))
 
 
 def left_out(folder: Path, other_assignments: Collection[str]) -> tuple[Found, ...]:
@@ -291,10 +257,11 @@ def left_out(folder: Path, other_assignments: Collection[str]) -> tuple[Found, .
             found.append(each)
         elif each.exercise == UNKNOWN and not os.path.isdir(each.path):
             reason = f"{shown(each.path.name)} must be unpacked to a folder {shown(each.student)}/EXERCISE."
-            found.append(replace(each, refused=reason))
+            found.append(replace(each, refused=Refused(reason, "submission-name")))
         elif each.exercise == UNKNOWN:
             almost = list(misnamed(each.student, each.path))
             others = any(os.path.isdir(each.path / name) for name in other_assignments)
             reason = f"{shown(each.student)} does not contain a folder with the name of an exercise."
-            found += almost or ([] if others else [replace(each, refused=reason)])
+            missing = replace(each, refused=Refused(reason, "exercise-missing"))
+            found += almost or ([] if others else [missing])
     return tuple(found)

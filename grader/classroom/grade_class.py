@@ -15,6 +15,7 @@ from grader.classroom.progress_display import screen, summary
 from grader.classroom.roster import read_owners
 from grader.common.words import a_list, count
 from grader.errors import MachineError, UsageError
+from grader.exercise.own_numbers import normal_id
 from grader.ros import underlay
 from grader.ros.installation import find_ros
 from grader.sandbox import bubblewrap
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.classroom.engine import Engine
-    from grader.classroom.find_submissions import Found
+    from grader.classroom.found import Found
     from grader.classroom.order import Todo
     from grader.classroom.results import Result
     from grader.grading.clock import ClockChoice
@@ -90,7 +91,7 @@ def grade_found(
         say(_reported(kept, todo))
         if beside:
             say(f"Ignored, because these are not submissions: {a_list(beside)}.")
-        unlisted = [shown_name(each.student) for each in found if roster and each.student not in roster]
+        unlisted = [shown_name(each.student) for each in found if roster and normal_id(each.student) not in roster]
         if unlisted:
             say(
                 "These submissions are not in the roster, so their individual numbers are derived from the names of "

@@ -8,16 +8,18 @@ from typing import TYPE_CHECKING
 
 from grader.checks.exercises import exercise_from
 from grader.checks.outcome import Status
-from grader.classroom.content import Refused, fingerprint, read
+from grader.classroom.content import fingerprint, read
 from grader.classroom.key import Key, changed, grader_key
+from grader.classroom.refused import Refused
 from grader.classroom.task import Task
+from grader.exercise.own_numbers import normal_id
 from grader.exercise.private_checks import sources_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from grader.classroom.find_submissions import Found
+    from grader.classroom.found import Found
     from grader.classroom.results import Result, Results
     from grader.exercise.model import Exercise
     from grader.exercise.private_checks import Sources
@@ -26,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Order:
-    """The submissions of a class and the options. `roster` maps the name of a submission to a student id."""
+    """The submissions of a class and the options. `roster` maps the normal form of a name to a student id."""
 
     found: tuple[Found, ...]
     roster: Mapping[str, str]
@@ -64,7 +66,7 @@ class Order:
         owner = self._owner(found)
         content = read(found, self.exercises[found.exercise], owner)
         if isinstance(content, Refused):
-            return self._task(found, owner, content.reason, of_the_machine=content.of_the_machine)
+            return self._task(found, owner, content)
         return self._task(
             found,
             owner,
@@ -80,9 +82,8 @@ class Order:
         self,
         found: Found,
         owner: str,
-        content: dict[str, bytes] | str,
+        content: dict[str, bytes] | Refused,
         *,
-        of_the_machine: bool = False,
         package: str = "",
         rejected: tuple[str, ...] = (),
         digest: str = "",
@@ -94,7 +95,6 @@ class Order:
             owner=owner,
             sources=self.sources[found.exercise],
             content=content,
-            of_the_machine=of_the_machine,
             package=package,
             rejected=rejected,
             digest=digest,
@@ -108,7 +108,7 @@ class Order:
         )
 
     def _owner(self, found: Found) -> str:
-        return self.roster.get(found.student, found.student)
+        return self.roster.get(normal_id(found.student), found.student)
 
 
 def sources_for(found: tuple[Found, ...], checks: Path | None) -> dict[str, Sources]:

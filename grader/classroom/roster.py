@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from grader.common.words import a_list, shorten
 from grader.errors import UsageError
+from grader.exercise.own_numbers import SAME, normal_id
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,14 +20,19 @@ if TYPE_CHECKING:
 
 
 def read_owners(file: Path) -> dict[str, str]:
-    """Return a mapping from the name of a submission to the student id. Raises UsageError, as `read_roster` does."""
-    return {row["submission"]: row["student"] for row in read_roster(file, ("submission", "student")).values()}
+    """Return a mapping from the names of submissions to student ids. Raises UsageError, as `read_roster` does.
+
+    The names are in their normal form (grader.exercise.own_numbers.normal_id).
+    """
+    rows = read_roster(file, ("submission", "student")).values()
+    return {normal_id(row["submission"]): row["student"] for row in rows}
 
 
 def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> dict[int, dict[str, str]]:
     """Return a mapping from each line number to the values of that line by column.
 
-    The values of the columns in `needed` are never empty, and the values of the first of these columns are unique.
+    The values of the columns in `needed` are never empty, and the values of the first of these columns are unique, even
+    in their normal form.
 
     Raises:
         UsageError: the file is not a roster. If a single line is wrong, the message contains its number.
@@ -43,6 +49,7 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
         raise UsageError(message)
     rows: dict[int, dict[str, str]] = {}
     lines_of: dict[str, int] = {}
+    """The number of the line of each name, in its normal form."""
     for line, values in lines:
         given = dict(zip(columns, values, strict=False))
         rows[line] = {name: given.get(name, "") for name in (*needed, *also)}
@@ -54,8 +61,10 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
             )
         elif empty:
             fault = f"the {empty[0]} is missing."
-        elif lines_of.setdefault(name, line) != line:
-            fault = f'the {needed[0]} "{shorten(name)}" is already on line {lines_of[name]}.'
+        elif (first := lines_of.setdefault(normal_id(name), line)) != line:
+            other = rows[first][needed[0]]
+            fault = f'the {needed[0]} "{shorten(name)}" is already on line {first}'
+            fault += "." if other == name else f', as "{shorten(other)}": {SAME}.'
         else:
             continue
         message = f"{file}, line {line}: {fault}"

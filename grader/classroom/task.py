@@ -11,6 +11,7 @@ from grader.checks.cause import Cause
 from grader.checks.exercises import exercise_from
 from grader.checks.outcome import Finding, Outcome, Status, failed
 from grader.classroom.key import grader_key
+from grader.classroom.refused import Refused
 from grader.colcon.shared_builds import SharedBuilds
 from grader.errors import MachineError
 from grader.grading.grade import Graded, grade
@@ -23,6 +24,7 @@ from grader.trial.trial import Trial
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from grader.checks.diagnosis import Diagnosis
     from grader.exercise.model import Exercise
     from grader.exercise.private_checks import Sources
     from grader.grading.clock import ClockChoice
@@ -38,18 +40,15 @@ _builds = cache(SharedBuilds)
 class Task:
     """A submission, its exercise, and the options for grading.
 
-    `content` contains the files of the submission, or the reason why they are missing. `package` is the name of the
-    package's folder. `grader` is the key of the grader that created the task. Only a worker with the same key may grade
-    the task.
+    `content` contains the files of the submission, or why they cannot be read. `package` is the name of the package's
+    folder. `grader` is the key of the grader that created the task. Only a worker with the same key may grade the task.
     """
 
     student: str
     owner: str
     """The student id whose individual numbers the submission must use."""
     sources: Sources
-    content: dict[str, bytes] | str
-    of_the_machine: bool = False
-    """Whether the files are missing because the machine failed."""
+    content: dict[str, bytes] | Refused
     package: str = ""
     rejected: tuple[str, ...] = ()
     digest: str = ""
@@ -93,10 +92,10 @@ def perform(
         raise MachineError(message)
     in_cell = _confined(trusted=task.trusted)
     exercise = exercise_from(task.sources)
-    if isinstance(task.content, str):
-        if task.of_the_machine:
-            return set_aside(task, task.content)
-        return _with_page(_refused(task, exercise, task.content))
+    if isinstance(task.content, Refused):
+        if task.content.diagnosis is None:
+            return set_aside(task, task.content.reason)
+        return _with_page(_refused(task, exercise, task.content.reason, task.content.diagnosis))
 
     class Waiting(Trial):
         """A trial that reports when a run in wall time begins and ends."""
@@ -144,12 +143,12 @@ def _submission(task: Task, files: dict[str, bytes] | None = None) -> Submission
     )
 
 
-def _refused(task: Task, exercise: Exercise, reason: str) -> Graded:
+def _refused(task: Task, exercise: Exercise, reason: str, diagnosis: Diagnosis) -> Graded:
     """Return a result with 0 points for a submission that could not be read. The first outcome states the reason."""
     what = "a package" if exercise.package else "answers.toml"
     title = f"The submission contains {what}"
     expected = f"One folder with {what} in it, or a .zip or .tar.gz of this folder."
-    first = failed(reason, expected, Cause("no-package" if exercise.package else "no-answers-file"))
+    first = failed(reason, expected, Cause(diagnosis))
     skipped = Finding(Status.SKIPPED, f'Not judged, because "{title}" did not pass.')
     return _unjudged(task, exercise, skipped, Outcome("submission", "submission", title, 0.0, 0.0, first))
 

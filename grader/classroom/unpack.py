@@ -15,13 +15,15 @@ import zipfile
 import zlib
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, ClassVar
 
 from grader.errors import UnreadableError
 from grader.submission import tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from grader.checks.diagnosis import Diagnosis
 
 MOST_PACKED = 100 * 1024 * 1024
 """The maximum size of an archive (bytes)."""
@@ -36,8 +38,28 @@ CHUNK = 256 * 1024
 class NotUnpackedError(UnreadableError):
     """The student's archive cannot be unpacked.
 
-    The message completes a sentence that begins with the name of the archive.
+    The message completes a sentence that begins with the name of the archive. The class has the diagnosis.
     """
+
+    diagnosis: ClassVar[Diagnosis] = "unreadable"
+
+
+class DamagedArchiveError(NotUnpackedError):
+    """The archive is damaged, is not an archive, or contains a path that is not valid."""
+
+    diagnosis: ClassVar[Diagnosis] = "archive-damaged"
+
+
+class ArchiveFormatError(NotUnpackedError):
+    """The archive has an unsupported format, an unsupported compression, or a password."""
+
+    diagnosis: ClassVar[Diagnosis] = "archive-format"
+
+
+class LargeArchiveError(NotUnpackedError):
+    """The archive exceeds a limit: its size, its number of entries, or the length or the depth of a path."""
+
+    diagnosis: ClassVar[Diagnosis] = "submission-too-large"
 
 
 @dataclass(frozen=True)
@@ -50,7 +72,7 @@ class Member:
 
 
 class Capped(io.RawIOBase):
-    """A stream that raises NotUnpackedError after `most` bytes."""
+    """A stream that raises LargeArchiveError after `most` bytes."""
 
     def __init__(self, stream: IO[bytes], most: int) -> None:
         self._stream, self._left = stream, most
@@ -60,11 +82,11 @@ class Capped(io.RawIOBase):
         return True
 
     def read(self, size: int = -1) -> bytes:
-        """Read some bytes. Raises NotUnpackedError if the limit is exceeded."""
+        """Read some bytes. Raises LargeArchiveError if the limit is exceeded."""
         data = self._stream.read(min(size, CHUNK) if size >= 0 else CHUNK)
         self._left -= len(data)
         if self._left < 0:
-            raise NotUnpackedError(_too_much())
+            raise LargeArchiveError(_too_much())
         return data
 
 
@@ -85,18 +107,18 @@ def read_archive(archive: Path) -> tuple[Member, ...]:
             raise
         except MemoryError as error:
             message = "needs more memory to unpack than a submission may use"
-            raise NotUnpackedError(message) from error
+            raise LargeArchiveError(message) from error
         except (zipfile.BadZipFile, tarfile.TarError, zlib.error, EOFError, gzip.BadGzipFile) as error:
             message = f"is not a .zip or .tar.gz, or is damaged ({_shown(str(error))[:200]})"
-            raise NotUnpackedError(message) from error
+            raise DamagedArchiveError(message) from error
         except RuntimeError as error:  # NotImplementedError, too
             message = f"is compressed with a method that is not supported ({_shown(str(error))[:200]})"
-            raise NotUnpackedError(message) from error
+            raise ArchiveFormatError(message) from error
         except Exception as error:
             # A damaged archive can make the modules raise other errors too, such as UnicodeError.
             detail = f"{type(error).__name__}: {_shown(str(error))[:200]}"
             message = f"is not a .zip or .tar.gz, or is damaged ({detail})"
-            raise NotUnpackedError(message) from error
+            raise DamagedArchiveError(message) from error
 
 
 def _open(archive: Path) -> IO[bytes]:
@@ -111,7 +133,7 @@ def _open(archive: Path) -> IO[bytes]:
         return file
     file.close()
     message = f"is larger than {MOST_PACKED // 1024 // 1024} MiB"
-    raise NotUnpackedError(message)
+    raise LargeArchiveError(message)
 
 
 def _members(file: IO[bytes]) -> Iterator[Member]:
@@ -119,7 +141,7 @@ def _members(file: IO[bytes]) -> Iterator[Member]:
     for number, (name, mode, content) in enumerate(_zip(file) if zipfile.is_zipfile(file) else _tar(file), 1):
         if number > MOST_ENTRIES:
             message = f"contains more than {MOST_ENTRIES} entries"
-            raise NotUnpackedError(message)
+            raise LargeArchiveError(message)
         parts = _parts(name)
         data = None if content is None else _content(content, left)
         left -= len(data or b"")
@@ -131,7 +153,7 @@ def _content(content: IO[bytes], most: int) -> bytes:
     while chunk := content.read(CHUNK):
         data += chunk
         if len(data) > most:
-            raise NotUnpackedError(_too_much())
+            raise LargeArchiveError(_too_much())
     return bytes(data)
 
 
@@ -150,7 +172,7 @@ def _zip(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
             elif stat.S_IFMT(mode) in (0, stat.S_IFREG):
                 if info.flag_bits & 1:
                     message = "is protected with a password"
-                    raise NotUnpackedError(message)
+                    raise ArchiveFormatError(message)
                 with packed.open(info) as content:
                     yield name, mode, content
 
@@ -175,10 +197,10 @@ def _parts(name: str) -> tuple[str, ...]:
     path = PurePosixPath(name)
     if path.is_absolute() or ".." in path.parts:
         message = f'contains an absolute path, or a path with "..": {_shown(name)}'
-        raise NotUnpackedError(message)
+        raise DamagedArchiveError(message)
     if len(path.parts) > MOST_DEPTH or len(os.fsencode(name)) > MOST_PATH_BYTES:
         message = f"contains a path that is too long or too deep: {_shown(name[:60])}..."
-        raise NotUnpackedError(message)
+        raise LargeArchiveError(message)
     return path.parts
 
 

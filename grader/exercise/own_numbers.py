@@ -34,6 +34,10 @@ _INVISIBLE = frozenset(
 without the characters in UNSAFE_CATEGORIES, and the empty Braille pattern."""
 
 
+SAME = "capital letters, extra spaces, invisible characters and the encoding of accents do not count"
+"""What `normal_id` ignores, as a part of a sentence."""
+
+
 @dataclass(frozen=True)
 class Own:
     """A placeholder for the student's own value with this name."""
@@ -61,15 +65,18 @@ class OwnNumbers:
 def normal_id(student: str) -> str:
     """Return the normal form of an id, which ignores case, character width, extra spaces and invisible characters.
 
-    The normal form is used for comparing ids and for choosing the numbers. Without the normal form, students could
-    spell their ids in different ways until they get the same numbers as a friend.
+    A letter with an accent is the same whether it is one character or two (NFC and NFD). The normal form is used for
+    comparing ids and for choosing the numbers. Without the normal form, students could spell their ids in different
+    ways until they get the same numbers as a friend.
     """
     folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", student).casefold())
-    return " ".join("".join(char for char in folded if char.isspace() or _is_visible(char)).split())
+    return " ".join("".join(char for char in folded if char.isspace() or _counts(char)).split())
 
 
-def _is_visible(char: str) -> bool:
-    return ord(char) not in _INVISIBLE and unicodedata.category(char) not in UNSAFE_CATEGORIES
+def _counts(char: str) -> bool:
+    # The name of a folder can contain bytes that are not UTF-8. Python reads each of them as a surrogate.
+    kind = unicodedata.category(char)
+    return ord(char) not in _INVISIBLE and (kind == "Cs" or kind not in UNSAFE_CATEGORIES)
 
 
 def draw_numbers(spec: NumbersSpec, student: str) -> OwnNumbers:

@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from grader.checks.exercises import find_exercise
-from grader.classroom.find_submissions import UNKNOWN, left_out
+from grader.classroom.find_submissions import left_out
+from grader.classroom.found import UNKNOWN
 from grader.common import xdg
 from grader.errors import MachineError, UsageError
 from grader.exercise.model import catalogue, course_folder
@@ -89,7 +90,8 @@ class ClassFolders:
         """
         root = Path(self.course.root) / self.course.submitted_directory
         found = left_out(root, [name for name in assignments if name not in catalogue()])
-        return tuple(each.refused for each in found if not steps or each.exercise in (UNKNOWN, *steps))
+        chosen = (each for each in found if not steps or each.exercise in (UNKNOWN, *steps))
+        return tuple(each.refused.reason for each in chosen if each.refused)
 
 
 def _is_folder(path: Path) -> bool:

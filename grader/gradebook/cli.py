@@ -95,16 +95,25 @@ def sync(
 
 def compare(steps: Steps = None, course: Course = None) -> None:
     """List scores on which autograde's kernel and the grader disagree, and scores that are not confirmed."""
-    from grader.common.words import count, printable
+    from grader.common.words import a_list, count, printable
     from grader.gradebook.class_folders import open_class
-    from grader.gradebook.scores import compare as differences_of
+    from grader.gradebook.differences import compare as compared
 
-    differences = differences_of(open_class(course), steps or [])
-    for each in differences:
+    done = compared(open_class(course), steps or [])
+    if done.not_synced:
+        typer.echo(
+            f"The grader has not graded the submissions of {a_list(done.not_synced)} yet. First type: "
+            f"grader gradebook sync {' '.join(done.not_synced)}"
+        )
+    elif not done.synced:
+        typer.echo("The gradebook has no submissions yet. First type `nbgrader autograde STEP` for a step.")
+    if not done.synced:
+        return
+    for each in done.differences:
         kernel_said = "nothing" if each.kernel is None else f"{each.kernel:g}"
         grader_said = f"0, needs manual grading ({each.why})" if each.grader is None else f"{each.grader:g}"
         typer.echo(printable(f"{each.student} {each.step} {each.check}: kernel {kernel_said}, grader {grader_said}"))
-    differ = count(len(differences), "difference")
+    differ = count(len(done.differences), "difference")
     typer.echo(f"{differ}. After `sync`, the grader's score counts. A manual grade stays.")
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import nbformat
 from nbconvert.exporters import HTMLExporter, NotebookExporter
+from nbgrader.api import Gradebook
 from nbgrader.converters import Autograde
 from nbgrader.converters.base import BaseConverter
 from nbgrader.exchange.default import ExchangeCollect
@@ -20,6 +21,7 @@ from grader.errors import GraderError
 from grader.gradebook import inbound, readable
 from grader.gradebook.class_folders import CLASS, GRADEBOOK, RESULTS
 from grader.gradebook.copies import copy_of
+from grader.gradebook.student_names import unclear
 from grader.submission import tree
 from grader.submission.reader import read
 
@@ -66,9 +68,15 @@ class BoundedAutograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore
     def init_destination(self, assignment_id: str, student_id: str) -> bool:
         """Initialize the destination as nbgrader's method does, and return its result.
 
-        If the submission time is invalid, only this submission fails. A destination of a run that was killed is
-        removed, because nbgrader would skip this submission.
+        If the submission time is invalid, only this submission fails. A submission is skipped if the name of its folder
+        is almost an id in the gradebook, because nbgrader would add a second student. A destination of a run that was
+        killed is removed, because nbgrader would skip this submission.
         """
+        with Gradebook(self.coursedir.db_url, self.coursedir.course_id) as gradebook:
+            enrolled = {student.id for student in gradebook.students}
+        if student_id not in enrolled and (why := unclear([student_id], enrolled)):
+            self.log.error("Not autograded: %s", why[student_id].reason)
+            return False
         read(readable.time_of, Path(self._format_source(assignment_id, student_id)))
         dest = Path(self._format_dest(assignment_id, student_id))
         self._mark = dest.with_name(f".{dest.name}.unfinished")

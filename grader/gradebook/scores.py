@@ -1,21 +1,22 @@
-"""`grader gradebook sync` and `grader gradebook compare`.
+"""`grader gradebook sync`: write the scores that count.
 
-`sync` writes the scores that count, and `compare` lists the scores on which a kernel and the grader disagree, and the
-unconfirmed scores. Scores from a kernel are provisional. `sync` grades the submitted package in the sandbox and writes
-the scores to nbgrader's gradebook through its API. A check that the grader cannot judge is worth 0 points and needs a
-manual grade (confirmed.py). The points of a manual grade are never changed.
+Scores from a kernel are provisional. `sync` grades the submitted package in the sandbox and writes the scores to
+nbgrader's gradebook through its API. A check that the grader cannot judge is worth 0 points and needs a manual grade
+(confirmed.py). The points of a manual grade are never changed.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Status
-from grader.classroom.find_submissions import Found
+from grader.classroom.found import Found
 from grader.classroom.grade_class import Request, grade_found
+from grader.classroom.refused import Refused
 from grader.classroom.results import Results
 from grader.common.system_errors import OF_THE_DISK
 from grader.common.words import shorten
@@ -24,20 +25,19 @@ from grader.gradebook.confirmed import (
     Unconfirmed,
     outcome_of,
     provisional_grades,
-    submissions_of,
-    unconfirmed,
     withhold_unconfirmed,
 )
-from grader.gradebook.kernel_scores import kernel_scores
 from grader.gradebook.readable import time_of
+from grader.gradebook.student_names import unclear
 from grader.submission.handed_in import open_handed_in
 from grader.submission.reader import read
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from datetime import datetime
     from pathlib import Path
 
+    from grader.checks.diagnosis import Diagnosis
     from grader.classroom.results import Result
     from grader.exercise.model import Exercise
     from grader.gradebook.class_folders import ClassFolders
@@ -60,22 +60,6 @@ class Synced:
     """The cells whose maximum points have changed in the gradebook, each with the old and the new points."""
     unconfirmed: tuple[Unconfirmed, ...]
     """The cells without a confirmed score, and the submissions that could not be read or written."""
-
-
-@dataclass(frozen=True)
-class Difference:
-    """A check on which the kernel and the grader disagree, or whose score is not confirmed.
-
-    `kernel` is None if the notebook has no score for the check. `grader` is None if the grader has not confirmed a
-    score. In this case, the check is worth 0 points, and `why` is the reason.
-    """
-
-    student: str
-    step: str
-    check: str
-    kernel: float | None
-    grader: float | None
-    why: str = ""
 
 
 def sync(
@@ -103,6 +87,7 @@ def sync(
     with folders.gradebook() as gradebook:
         _require_assignments(gradebook, {step for _, step in submissions})
         not_graded = folders.left_out(wanted, {assignment.name for assignment in gradebook.assignments})
+        enrolled = {student.id for student in gradebook.students}
         # Withhold scores first, so that no provisional score remains if grading is interrupted.
         withhold_unconfirmed(gradebook, results, wanted)
     if not submissions:
@@ -111,10 +96,14 @@ def sync(
             "copy submissions to this folder."
         )
         raise UsageError(message)
-    found, why = _readable(folders, submissions)
+    doubtful = unclear({student for student, _ in submissions}, enrolled)
+    # The scores of an id that is not in the gradebook would go to a new student.
+    not_graded += tuple(why.reason for student, why in doubtful.items() if student not in enrolled)
+    submissions = [each for each in submissions if each[0] in enrolled or each[0] not in doubtful]
+    found, why = _readable(folders, submissions, doubtful)
     folders.results.parent.mkdir(exist_ok=True)
     request = Request((), folders.results, jobs=jobs, checks=checks, trusted=trusted)
-    graded = grade_found(request, found, say, tell)
+    graded = grade_found(request, found, say, tell) if found else []
     tally: Counter[str] = Counter()
     elsewhere: dict[str, None] = {}
     maxima: dict[str, str] = {}
@@ -141,36 +130,23 @@ def sync(
     )
 
 
-def compare(folders: ClassFolders, steps: Sequence[str]) -> list[Difference]:
-    """Return checks on which autograde's kernel and the grader disagree, and scores that are not confirmed."""
-    kept = Results(folders.results)
-    wanted = [find_exercise(step).id for step in steps]
-    differences: list[Difference] = []
-    with folders.gradebook() as gradebook:
-        doubted = unconfirmed(gradebook, kept, wanted)
-        names = [(student, step) for student, step, _ in submissions_of(gradebook, wanted)]
-    doubts = {(each.student, each.step, check): each.why for each in doubted for check in each.checks}
-    for student, step in names:
-        result = kept.load(student, step)
-        by_kernel = kernel_scores(folders.autograded(student, step)) or {}
-        points = {outcome.id: outcome.points for outcome in result.report.outcomes} if result else {}
-        for check in dict.fromkeys([*points, *by_kernel, *(name for *of, name in doubts if of == [student, step])]):
-            why = doubts.get((student, step, check), "")
-            if why:
-                differences.append(Difference(student, step, check, by_kernel.get(check), None, why))
-            elif check in by_kernel and check in points and by_kernel[check] != points[check]:
-                differences.append(Difference(student, step, check, by_kernel[check], points[check]))
-    return differences
-
-
 def _readable(
-    folders: ClassFolders, submissions: Sequence[tuple[str, str]]
+    folders: ClassFolders,
+    submissions: Sequence[tuple[str, str]],
+    doubtful: Mapping[str, Refused] = MappingProxyType({}),
 ) -> tuple[tuple[Found, ...], dict[tuple[str, str], str]]:
-    """Return the submissions to grade, and the reasons why other submissions could not be read."""
+    """Return the submissions to grade, and the reasons why other submissions are not graded.
+
+    `doubtful` maps a student to the reason why it is not clear whose submissions these are.
+    """
     found: list[Found] = []
     why: dict[tuple[str, str], str] = {}
     for student, step in submissions:
         exercise, submitted = find_exercise(step), folders.submitted(student, step)
+        if student in doubtful:
+            why[student, step] = doubtful[student].reason.rstrip(".")
+            found.append(Found(student, step, submitted, doubtful[student]))
+            continue
         try:
             if submitted.is_symlink() or submitted.parent.is_symlink():
                 _refuse_link(student)
@@ -182,7 +158,9 @@ def _readable(
             if _of_the_machine(error):
                 raise
             why[student, step] = f"it could not be read ({_in_words(error)})"
-            found.append(Found(student, step, submitted, f"The submission could not be read ({_in_words(error)})."))
+            kind: Diagnosis = "submission-link" if isinstance(error, _LinkError) else "unreadable"
+            reason = f"The submission could not be read ({_in_words(error)})."
+            found.append(Found(student, step, submitted, Refused(reason, kind)))
     return tuple(found), why
 
 
@@ -195,9 +173,13 @@ def _require_readable(submitted: Path, exercise: Exercise) -> None:
         return  # there is no package: the grader gives 0 points and the reason
 
 
+class _LinkError(UnreadableError):
+    """The folder of a student is a symbolic link."""
+
+
 def _refuse_link(student: str) -> NoReturn:
     message = f"the folder of {shorten(student)} is a symbolic link, which could lead to another student's work"
-    raise UnreadableError(message)
+    raise _LinkError(message)
 
 
 def _of_the_machine(error: BaseException | None) -> bool:

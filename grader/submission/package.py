@@ -73,7 +73,7 @@ def _read(function: Callable[[str, Path, bool], Submission], name: str, exactly:
         return read(function, name, Path(name), exactly)
     except UnreadableError as error:
         message = f"{shown(name)} cannot be opened: {error}."
-        raise UnreadableError(message) from error
+        raise type(error)(message) from error
 
 
 def _submission(name: str, path: Path, exactly: bool) -> Submission:

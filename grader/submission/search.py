@@ -29,6 +29,10 @@ class NoPackageError(UsageError):
     """A folder contains no package, or no answers.toml if the exercise has no package."""
 
 
+class SeveralPackagesError(UsageError):
+    """A folder contains more than one package."""
+
+
 @dataclass
 class _Search:
     """The results of the search. Paths are relative to the folder in which the search started."""
@@ -48,7 +52,7 @@ def find_package(root: int, name: str) -> str:
 
     `name` is the path as the user typed it.
 
-    Raises NoPackageError if there is no package, and UsageError if there is more than one package.
+    Raises NoPackageError if there is no package, and SeveralPackagesError if there is more than one package.
     """
     search = _Search()
     _visit(search, root, ".", 0, name)
@@ -58,7 +62,7 @@ def find_package(root: int, name: str) -> str:
         message = _none(search, root, name)
         raise NoPackageError(message)
     message = _several(search.packages, name)
-    raise UsageError(message)
+    raise SeveralPackagesError(message)
 
 
 def why_not_opened(error: OSError, name: str) -> str:

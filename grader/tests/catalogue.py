@@ -31,6 +31,13 @@ SHOWN_BY_TESTS = {
     "no-answers-file": "classroom/test_task.py",
     "no-commands": "checks/subjects/test_values.py",
     "no-package": "classroom/test_grade_class.py",
+    **dict.fromkeys(
+        (
+            *("several-packages", "several-submissions", "similar-names", "exercise-missing", "submission-name"),
+            *("submission-link", "archive-damaged", "archive-format", "submission-too-large"),
+        ),
+        "classroom/test_refused.py",
+    ),
     "no-timer": "checks/subjects/test_running.py",
     "numbers-of-another": "checks/subjects/test_own.py",
     "overwhelmed": "checks/test_judge.py",

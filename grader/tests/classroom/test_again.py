@@ -15,7 +15,7 @@ import pytest
 from grader.classroom import result_files
 from grader.classroom.class_run import TRIES, run
 from grader.classroom.engine import Died, Event, Finished
-from grader.classroom.find_submissions import Found
+from grader.classroom.found import Found
 from grader.classroom.order import Order, sort_out, sources_for
 from grader.classroom.progress_display import Lines
 from grader.classroom.results import Result, opened

@@ -14,7 +14,7 @@ import pytest
 
 from grader.checks.outcome import Status
 from grader.classroom.class_run import run
-from grader.classroom.find_submissions import Found, find_submissions
+from grader.classroom.find_submissions import find_submissions
 from grader.classroom.local import LocalEngine, default_jobs
 from grader.classroom.order import Order, sort_out, sources_for
 from grader.classroom.progress_display import Lines
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from grader.classroom.engine import Engine
+    from grader.classroom.found import Found
     from grader.classroom.results import Result
 
 T = TypeVar("T")

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.checks.exercises import find_exercise
-from grader.classroom.content import Refused, fingerprint, read
-from grader.classroom.find_submissions import Found, find_submissions, left_out, passed_over
+from grader.classroom.content import fingerprint, read
+from grader.classroom.find_submissions import find_submissions, left_out, passed_over
+from grader.classroom.found import Found
+from grader.classroom.refused import Refused
 from grader.errors import UsageError
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import zipped
@@ -82,7 +84,8 @@ def test_hidden_folders_hidden_archives_and_links_have_a_line_with_the_reason(tm
         (tmp_path / name).touch()
     for name, target in {"dora": "anna", "emil": "grades", "finn.zip": "nowhere"}.items():
         (tmp_path / name).symlink_to(target)
-    reasons = {each.student: each.refused for each in find_submissions([tmp_path], STEP, tmp_path / "grades")}
+    found = find_submissions([tmp_path], STEP, tmp_path / "grades")
+    reasons = {each.student: each.refused.reason if each.refused else "" for each in found}
     assert [student for student, reason in reasons.items() if "begins with a dot" in reason] == [
         "...",
         ".ben",
@@ -124,8 +127,9 @@ def test_two_submissions_of_one_student_are_a_usage_error(tmp_path: Path) -> Non
     (tmp_path / "anna.zip").touch()
     (tmp_path / "ben").mkdir()
     anna, ben = find_submissions([tmp_path], STEP, tmp_path / "grades")
-    assert anna.refused.startswith("anna has 2 submissions: anna and anna.zip.")
-    assert (ben.student, ben.refused) == ("ben", "")
+    assert anna.refused is not None
+    assert anna.refused.reason.startswith("anna has 2 submissions: anna and anna.zip.")
+    assert (ben.student, ben.refused) == ("ben", None)
 
 
 def test_a_package_or_an_archive_alone_is_one_submission(tmp_path: Path) -> None:
@@ -188,7 +192,8 @@ def test_an_entry_that_is_almost_named_like_an_exercise_is_reported(tmp_path: Pa
         ("erik", "02-discover-topics", False),
         ("erik", "03-circle-publisher", True),
     ]
-    assert "erik/03-Circle-Publisher must be a folder with the name 03-circle-publisher" in found[-1].refused
+    assert found[-1].refused is not None
+    assert "erik/03-Circle-Publisher must be a folder with the name 03-circle-publisher" in found[-1].refused.reason
 
 
 def test_what_nbgrader_does_not_see_is_listed(tmp_path: Path) -> None:
@@ -199,7 +204,7 @@ def test_what_nbgrader_does_not_see_is_listed(tmp_path: Path) -> None:
     (tmp_path / "jon" / "03-circle-publisher.zip").write_bytes(b"")
     (tmp_path / "link").symlink_to("anna")
     (tmp_path / ".gitkeep").write_bytes(b"")
-    listed = {each.student: each.refused for each in left_out(tmp_path, ["homework"])}
+    listed = {each.student: each.refused.reason for each in left_out(tmp_path, ["homework"]) if each.refused}
     assert listed.keys() == {"erik", "fay o", "gina", "ines", "jon", "link"}
     assert "must be a folder with the name 03-circle-publisher" in listed["erik"]
     assert "must be unpacked" in listed["fay o"]

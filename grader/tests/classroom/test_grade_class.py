@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.checks.judge import judge
-from grader.classroom.find_submissions import Found
+from grader.classroom.found import Found
 from grader.classroom.order import Order
 from grader.evidence.evidence import Evidence
 from grader.exercise.private_checks import sources_of
@@ -44,7 +44,7 @@ def test_every_submission_has_a_page(undisturbed: Run) -> None:
     ("student", "diagnosis", "said"),
     [
         ("gina", "no-package", "There is no package in gina"),
-        ("hans", "no-package", "hans.zip is not a .zip or .tar.gz"),
+        ("hans", "archive-damaged", "hans.zip is not a .zip or .tar.gz"),
     ],
 )
 def test_a_submission_without_a_package_gets_no_points_and_a_reason(

@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.classroom.found import Found
+from grader.classroom.order import Order, sources_for
 from grader.classroom.roster import read_owners, read_roster
 from grader.errors import UsageError
 from grader.tests.classroom.a_class import STEP, grade
@@ -50,6 +52,8 @@ def test_line_numbers_are_those_of_the_file_and_missing_columns_are_empty(file: 
         (b"id,name\nada,Lovelace, Ada\n", "line 2: 3 values for 2 columns"),
         (b"id,name\n\n,Ada\n", "line 3: the id is missing"),
         (b"id\nada\n\nbob\nada\n", 'line 5: the id "ada" is already on line 2'),
+        (b"id\nada\nAda\n", 'line 3: the id "Ada" is already on line 2, as "ada": capital letters'),
+        ("id\nzo\u00eb\nzoe\u0308\n".encode(), "is already on line 2"),
         (b"id,name\nada,M\xfcller\n", "line 2: this is not UTF-8"),
         ("id,name\nada,Ada\n".encode("utf-16"), "line 1: this is not UTF-8"),
         (b'id,name\nada,Ada\nbob,"Bob\neve,Eve\n', "this is not CSV: unexpected end of data"),
@@ -66,6 +70,13 @@ def test_a_file_that_is_not_a_roster_is_a_usage_error(file: Path, data: bytes, w
 def test_a_file_that_cannot_be_read_is_a_usage_error(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="cannot be read: Is a directory"):
         read_owners(tmp_path)
+
+
+def test_a_submission_finds_its_student_in_any_spelling(file: Path, tmp_path: Path) -> None:
+    file.write_text("submission,student\nTeam Zo\u00eb,ada\n", encoding="utf-8")
+    found = Found("team zoe\u0308", STEP, tmp_path)
+    order = Order(found=(found,), roster=read_owners(file), sources=sources_for((found,), None), ros="none")
+    assert order.task(found).owner == "ada"
 
 
 def test_a_name_that_is_not_in_the_roster_changes_no_terminal(tmp_path: Path, file: Path) -> None:

@@ -15,9 +15,11 @@ import pytest
 from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Status
 from grader.classroom import archives, content
-from grader.classroom.content import Refused, read
-from grader.classroom.find_submissions import Found, find_submissions
+from grader.classroom.content import read
+from grader.classroom.find_submissions import find_submissions
+from grader.classroom.found import Found
 from grader.classroom.order import Order, sources_for
+from grader.classroom.refused import Refused
 from grader.classroom.task import perform
 from grader.common.interpreter import interpreter
 from grader.errors import DiskError, MachineError, UsageError
@@ -220,8 +222,8 @@ def test_a_student_without_an_exercise_gets_a_line_for_each_exercise_of_the_othe
     (tmp_path / "ben").mkdir()
     found = find_submissions([tmp_path], None, tmp_path / "grades")
     assert [(each.student, each.exercise, each.refused) for each in found] == [
-        ("anna", STEP, ""),
-        ("ben", STEP, f"ben does not contain a folder {STEP}."),
+        ("anna", STEP, None),
+        ("ben", STEP, Refused(f"ben does not contain a folder {STEP}.", "exercise-missing")),
     ]
     shutil.rmtree(tmp_path / "anna")
     with pytest.raises(UsageError, match="Which exercise is"):

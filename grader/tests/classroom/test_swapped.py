@@ -9,13 +9,16 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.checks.exercises import find_exercise
-from grader.classroom.content import Refused, fingerprint, read
-from grader.classroom.find_submissions import Found, find_submissions
+from grader.classroom.content import fingerprint, read
+from grader.classroom.find_submissions import find_submissions
+from grader.classroom.refused import Refused
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import zipped
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from grader.classroom.found import Found
 
 STEP = "03-circle-publisher"
 ANSWERS = "02-discover-topics"

@@ -1,18 +1,25 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import pytest
 
 from grader.classroom.key import grader_key
+from grader.classroom.refused import Refused
 from grader.classroom.task import Task, perform, set_aside
 from grader.exercise.private_checks import sources_of
 
+if TYPE_CHECKING:
+    from grader.checks.diagnosis import Diagnosis
+
 
 @pytest.mark.parametrize(
-    ("step", "diagnosis"), [("02-discover-topics", "no-answers-file"), ("03-circle-publisher", "no-package")]
+    ("step", "diagnosis"), [("02-discover-topics", "no-answers-file"), ("03-circle-publisher", "archive-damaged")]
 )
-def test_a_submission_without_a_package_has_no_points_and_a_reason(step: str, diagnosis: str) -> None:
+def test_a_submission_that_cannot_be_read_has_no_points_and_a_reason(step: str, diagnosis: Diagnosis) -> None:
     reason = "There is nothing in anna."
-    task = Task("anna", "anna", sources_of({step}, None)[step], reason, grader=grader_key(), trusted=True)
+    refused = Refused(reason, diagnosis)
+    task = Task("anna", "anna", sources_of({step}, None)[step], refused, grader=grader_key(), trusted=True)
     report = perform(task).report
     first, *others = report.outcomes
     assert (first.finding.diagnosis, first.finding.observed, report.points) == (diagnosis, reason, 0.0)

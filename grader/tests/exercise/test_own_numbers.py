@@ -57,6 +57,11 @@ def test_every_spelling_of_an_id_draws_the_same_numbers(spelling: str) -> None:
     assert replace(numbers, student="") == replace(wanted, student="")
 
 
+def test_an_accent_may_be_one_character_or_two_and_other_bytes_count() -> None:
+    assert normal_id("zo\u00eb") == normal_id("ZOE\u0308")
+    assert normal_id("J\udcf6rg") != normal_id("J\udce4rg")  # names of folders that are not UTF-8
+
+
 @given(st.text(), st.text())
 def test_ids_that_count_as_one_draw_the_same_numbers(one: str, other: str) -> None:
     for spelling in (one.upper(), one.swapcase(), f" {one} ", other):

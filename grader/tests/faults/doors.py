@@ -59,7 +59,9 @@ DOORS = {
     "own run": Door("grader.learner.run_node:run", f"grader run {STEP} --no-view", _workspace),
     "new": Door("grader.gradebook.new_class:make_class", "grader class new class"),
     "sync": Door("grader.gradebook.scores:sync", "grader gradebook sync --course class/course", _collected),
-    "compare": Door("grader.gradebook.scores:compare", "grader gradebook compare --course class/course", _collected),
+    "compare": Door(
+        "grader.gradebook.differences:compare", "grader gradebook compare --course class/course", _collected
+    ),
     "env": Door("grader.ros.shell:code", "grader env"),
     "list": Door("grader.ros2.main:run", "ros2 topic list"),
     "create": Door("grader.ros2.main:run", "ros2 pkg create --build-type ament_python --node-name drive my_package"),

@@ -9,10 +9,11 @@ from zlib import crc32
 
 from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Status
-from grader.classroom.content import Refused, fingerprint, read
+from grader.classroom.content import fingerprint, read
 from grader.classroom.find_submissions import find_submissions, passed_over
 from grader.classroom.key import Key
 from grader.classroom.order import Order, sources_for
+from grader.classroom.refused import Refused
 from grader.classroom.result_files import write_all
 from grader.classroom.results import Results
 from grader.classroom.task import perform

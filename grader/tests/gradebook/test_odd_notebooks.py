@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, NoReturn
 
 import pytest
 
-from grader.classroom.content import Refused, read
+from grader.classroom.content import read
+from grader.classroom.refused import Refused
 from grader.errors import MachineError
 from grader.gradebook import scores
 from grader.gradebook.scores import _readable
@@ -74,7 +75,9 @@ def test_a_link_to_the_work_of_another_student_is_reported(tmp_path: Path) -> No
     handed_in(folders.submitted("zoe", ""), "mine", {"my_robot_controller/package.xml": "<package/>"})
     folders.submitted("mallory", "").symlink_to("zoe")
     mallory, zoe = _readable(folders, [("mallory", CIRCLE.id), ("zoe", CIRCLE.id)])[0]  # type: ignore[arg-type]
-    assert "the folder of mallory is a symbolic link" in mallory.refused
+    assert mallory.refused is not None
+    assert "the folder of mallory is a symbolic link" in mallory.refused.reason
+    assert mallory.refused.diagnosis == "submission-link"
     assert not zoe.refused
 
 

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.checks.exercises import find_exercise
-from grader.classroom.content import Refused, read
-from grader.classroom.find_submissions import Found
+from grader.classroom.content import read
+from grader.classroom.found import Found
+from grader.classroom.refused import Refused
 from grader.errors import UsageError
 from grader.exercise.model import course_folder
 from grader.submission.handed_in import open_handed_in

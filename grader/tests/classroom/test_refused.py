@@ -1,0 +1,166 @@
+"""Each reason why a submission cannot be graded has a diagnosis, under which the class page counts it."""
+
+from __future__ import annotations
+
+import unicodedata
+import zipfile
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.checks.exercises import find_exercise
+from grader.classroom import unpack
+from grader.classroom.content import read
+from grader.classroom.find_submissions import find_submissions
+from grader.classroom.order import Order, sources_for
+from grader.classroom.refused import Refused
+from grader.classroom.task import perform
+from grader.report.html_class import ClassReports, Entry, failures
+from grader.submission import tree
+from grader.tests.case import copy_solution
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+STEP = "03-circle-publisher"
+
+
+def empty(folder: Path) -> None:
+    (folder / "ben").mkdir()
+
+
+def two_packages(folder: Path) -> None:
+    for name in ("one", "two"):
+        copy_solution(STEP, folder / "ben" / name)
+
+
+def two_submissions(folder: Path) -> None:
+    (folder / "ben").mkdir()
+    (folder / "ben.zip").touch()
+
+
+def other_exercise(folder: Path) -> None:
+    (folder / "ben" / "01-first-node").mkdir(parents=True)
+
+
+def hidden(folder: Path) -> None:
+    (folder / ".ben").mkdir()
+
+
+def link(folder: Path) -> None:
+    (folder / "ben").symlink_to("anna")
+
+
+def no_archive(folder: Path) -> None:
+    (folder / "ben.zip").write_bytes(b"PK\x03\x04 and no more")
+
+
+def leads_out(folder: Path) -> None:
+    with zipfile.ZipFile(folder / "ben.zip", "w") as archive:
+        archive.writestr("../package.xml", "<package/>")
+
+
+def other_format(folder: Path) -> None:
+    (folder / "ben.7z").write_bytes(b"7z")
+
+
+def with_password(folder: Path) -> None:
+    info = zipfile.ZipInfo("package.xml")
+    with zipfile.ZipFile(folder / "ben.zip", "w") as archive:
+        archive.writestr(info, "<package/>")
+        info.flag_bits |= 1
+
+
+def many_entries(folder: Path) -> None:
+    with zipfile.ZipFile(folder / "ben.zip", "w") as archive:
+        for number in range(unpack.MOST_ENTRIES + 1):
+            archive.writestr(str(number), "")
+
+
+def nested_too_deeply(folder: Path) -> None:
+    with zipfile.ZipFile(folder / "ben.zip", "w") as archive:
+        archive.writestr("a/" * (unpack.MOST_DEPTH + 1) + "package.xml", "<package/>")
+
+
+@pytest.mark.parametrize(
+    ("make", "diagnosis"),
+    [
+        (empty, "no-package"),
+        (two_packages, "several-packages"),
+        (two_submissions, "several-submissions"),
+        (other_exercise, "exercise-missing"),
+        (hidden, "submission-name"),
+        (link, "submission-link"),
+        (no_archive, "archive-damaged"),
+        (leads_out, "archive-damaged"),
+        (other_format, "archive-format"),
+        (with_password, "archive-format"),
+        (many_entries, "submission-too-large"),
+        (nested_too_deeply, "submission-too-large"),
+    ],
+)
+def test_each_reason_has_its_own_diagnosis(tmp_path: Path, make: Callable[[Path], None], diagnosis: str) -> None:
+    make(tmp_path)
+    assert [each.diagnosis for each in refused(tmp_path)] == [diagnosis]
+
+
+def refused(folder: Path) -> list[Refused]:
+    contents = [
+        read(each, find_exercise(STEP), each.student) for each in find_submissions([folder], STEP, folder / "grades")
+    ]
+    assert all(isinstance(each, Refused) for each in contents)
+    return [each for each in contents if isinstance(each, Refused)]
+
+
+def test_a_name_that_is_almost_the_exercise_has_a_diagnosis(tmp_path: Path) -> None:
+    almost = tmp_path / "ben" / "03-Circle-Publisher"
+    almost.mkdir(parents=True)
+    (tmp_path / "ben" / "02-discover-topics").mkdir()
+    found = find_submissions([tmp_path], None, tmp_path / "grades")
+    assert [each.refused.diagnosis if each.refused else "" for each in found] == ["", "submission-name"]
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ("anna", "Anna"),
+        (unicodedata.normalize("NFC", "zoë"), unicodedata.normalize("NFD", "zoë")),
+        ("ben li", "ben  li"),
+        ("carl", "carl\N{ZERO WIDTH SPACE}"),
+    ],
+)
+def test_names_that_differ_only_in_their_spelling_are_neither_merged_nor_graded(
+    tmp_path: Path, one: str, other: str
+) -> None:
+    for name in (one, other, "dora"):
+        copy_solution(STEP, tmp_path / name)
+    found = find_submissions([tmp_path], STEP, tmp_path / "grades")
+    assert {each.student: each.refused.diagnosis if each.refused else "" for each in found} == {
+        one: "similar-names",
+        other: "similar-names",
+        "dora": "",
+    }
+    (reason,) = {each.refused.reason for each in found if each.refused}
+    assert tree.shown(one) in reason
+    assert tree.shown(other) in reason
+
+
+def test_names_with_different_bytes_that_are_not_utf8_are_different_students(tmp_path: Path) -> None:
+    """A ZIP from an old Windows contains names in another encoding."""
+    for name in ("J\udcf6rg", "J\udce4rg"):
+        copy_solution(STEP, tmp_path / name)
+    assert [each.refused for each in find_submissions([tmp_path], STEP, tmp_path / "grades")] == [None, None]
+
+
+def test_the_class_page_counts_each_diagnosis_apart(tmp_path: Path) -> None:
+    for make in (empty, no_archive):
+        (tmp_path / make.__name__).mkdir()
+        make(tmp_path / make.__name__)
+    entries = []
+    for folder in sorted(tmp_path.iterdir()):
+        found = find_submissions([folder], STEP, folder / "grades")
+        order = Order(found=found, roster={}, sources=sources_for(found, None), ros="none", trusted=True)
+        entries.append(Entry(perform(order.task(found[0])).report, folder.name, ""))
+    (check,) = failures(ClassReports(tuple(entries), ()).entries)
+    assert {each.id: len(each.entries) for each in check.diagnoses} == {"no-package": 1, "archive-damaged": 1}
