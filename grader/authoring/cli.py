@@ -13,7 +13,15 @@ PANEL = "For authors"
 def add_to(app: typer.Typer) -> None:
     """Add `grader release` and `grader validate` to the typer application `app`."""
     app.command(epilog="Example: grader release --to ../for-students", rich_help_panel=PANEL)(release)
-    app.command(epilog="Example: grader validate 03-circle-publisher", rich_help_panel=PANEL)(validate)
+
+    @app.command(epilog="Example: grader validate 03-circle-publisher", rich_help_panel=PANEL)
+    def validate(
+        exercises: Annotated[
+            list[str] | None, typer.Argument(help="Exercises to validate. Default: all.", metavar="ID")
+        ] = None,
+    ) -> None:
+        """Check exercises, solutions, starting points and lessons (for authors)."""
+        _validate(exercises or [], app)
 
 
 def release(
@@ -37,18 +45,13 @@ def release(
     raise typer.Exit(make_exercises(["--check"] if check else []))
 
 
-def validate(
-    exercises: Annotated[
-        list[str] | None, typer.Argument(help="Exercises to validate. Default: all.", metavar="ID")
-    ] = None,
-) -> None:
-    """Check exercises, solutions, starting points and lessons (for authors)."""
+def _validate(exercises: list[str], app: typer.Typer) -> None:
     from grader.authoring.validate import validate as problems_of
     from grader.common.words import count
     from grader.report.progress_line import progress
 
     with progress() as tell:
-        problems = problems_of(exercises or [], tell)
+        problems = problems_of(exercises, app, tell)
     for problem in problems:
         typer.echo(f"- {problem}")
     typer.echo(f"{count(len(problems), 'problem')}." if problems else "No problems found.")

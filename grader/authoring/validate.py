@@ -7,6 +7,7 @@ import re
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
+from grader.authoring.lesson_commands import command_problems
 from grader.authoring.release import stale
 from grader.checks.exercises import load_exercise
 from grader.checks.outcome import Status
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor, Future
     from pathlib import Path
 
+    import typer
+
     from grader.checks.outcome import Outcome
     from grader.exercise.model import Exercise
     from grader.report.report import Report
@@ -33,12 +36,12 @@ _CODE = re.compile(r"^```.*?^```|`[^`\n]*`", re.MULTILINE | re.DOTALL)
 
 
 def validate(
-    names: list[str], tell: Callable[[str], None] = lambda _: None, *, course: Path | None = None
+    names: list[str], app: typer.Typer, tell: Callable[[str], None] = lambda _: None, *, course: Path | None = None
 ) -> list[str]:
     """Return the problems of the exercises in `names` (or of all exercises if `names` is empty), as one sentence each.
 
-    `tell` is called with progress messages. `course` is the folder course/. The default is the folder of this checkout
-    or installation.
+    `app` is the command `grader`, whose parser checks the commands in the lessons. `tell` is called with progress
+    messages. `course` is the folder course/. The default is the folder of this checkout or installation.
 
     Raises:
         UsageError: `names` contains a name that no exercise has.
@@ -52,23 +55,31 @@ def validate(
             f"The exercises are {a_list(list(files), most=len(files))}."
         )
         raise UsageError(message)
-    problems = [
-        f"{line} Run: grader release" for line in stale(course.parent / "solutions", course.parent / "exercises")
-    ]
+    problems = _stale(course.parent)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        looked = [_Validation(name, files[name], course.parent, pool, tell) for name in names or files]
+        looked = [_Validation(name, files[name], course.parent, app, pool, tell) for name in names or files]
         for each in looked:
             problems += each.problems()
-    return problems
+    return list(dict.fromkeys(problems))
+
+
+def _stale(root: Path) -> list[str]:
+    try:
+        return [f"{line} Run: grader release" for line in stale(root / "solutions", root / "exercises")]
+    except UsageError as error:  # for example, a notebook or an exercise.toml is invalid
+        return [str(error)]
 
 
 class _Validation:
     """Finds the problems of an exercise. The exercise's solution and starting point are graded in the background."""
 
-    def __init__(self, name: str, file: Path, root: Path, pool: Executor, tell: Callable[[str], None]) -> None:
+    def __init__(
+        self, name: str, file: Path, root: Path, app: typer.Typer, pool: Executor, tell: Callable[[str], None]
+    ) -> None:
         self._name = name
         self._file = file
         self._root = root
+        self._app = app
         self._tell = tell
         try:
             self._exercise = load_exercise(file)
@@ -91,7 +102,8 @@ class _Validation:
             for check in self._exercise.unsolved:
                 if check not in helped:
                     yield f"{self._file}: the starting point fails {check}, but no [[hint]] lists this check."
-        yield from _lesson(self._file.with_name("lesson.md"))
+        yield from lesson_problems(self._file.with_name("lesson.md"), self._app)
+        yield from _notebook(self._root / "solutions" / self._name)
         yield from _judged(self._exercise, self._solution, _solution)
         yield from _judged(self._exercise, self._starting_point, _starting_point)
 
@@ -137,7 +149,8 @@ def _starting_point(exercise: Exercise, report: Report) -> Iterator[str]:
             yield f"exercises/{exercise.id} should fail the check {name!r} but does not."
 
 
-def _lesson(file: Path) -> Iterator[str]:
+def lesson_problems(file: Path, app: typer.Typer) -> Iterator[str]:
+    """Yield the problems of a lesson: its length, its links and its commands. `app` is the command `grader`."""
     if not file.is_file():
         yield f"{file} is missing: every step has a lesson."
         return
@@ -152,6 +165,17 @@ def _lesson(file: Path) -> Iterator[str]:
             and not (file.parent / target.partition("#")[0]).exists()
         ):
             yield f"{file} links to {target}, which does not exist."
+    yield from (f"{file}: {problem}" for problem in command_problems(text, file.parent.parent, app))
+
+
+def _notebook(solution: Path) -> Iterator[str]:
+    """Yield a sentence if the step has no notebook of its own: nbgrader refuses to generate its assignment."""
+    name = f"{solution.name}.ipynb"
+    if solution.is_dir() and not (solution / name).is_file():
+        yield (
+            f"{solution}/{name} is missing: every step has a notebook. Copy the notebook of another step to this file, "
+            "change the texts and the file names after %%node, and run: grader release"
+        )
 
 
 def _in_words(outcome: Outcome) -> str:

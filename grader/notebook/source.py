@@ -1,7 +1,8 @@
 """The source notebook of a step: text written by hand, with inserted parts of the solution and of exercise.toml.
 
 A cell that begins with `%%node`, `%%package` or `%%answers` gets the text of its file in the solution, including the
-markers. Each check in exercise.toml gets a grade cell with the same id and points at the end of the notebook.
+markers. The cells `begin` and `check` get the id of the step. Each check in exercise.toml gets a grade cell with the
+same id and points at the end of the notebook.
 """
 
 from __future__ import annotations
@@ -18,8 +19,9 @@ if TYPE_CHECKING:
 
     from grader.exercise.model import CheckSpec, Exercise
 
-BEGIN = "begin"
-"""The id of the locked cell that loads the extension and sets the step."""
+OF_STEP = {"begin": "%load_ext grader.notebook\n%step {}", "check": 'check("{}")'}
+"""Maps the id of a locked cell to its source, with a place for the id of the step. `begin` loads the extension and sets
+the step, and `check` prints the verdict."""
 
 
 def refreshed(data: bytes, exercise: Exercise, files: Mapping[str, bytes], name: str) -> bytes:
@@ -47,6 +49,8 @@ def _refresh(cell: Cell, exercise: Exercise, files: Mapping[str, bytes], name: s
     first = source.partition("\n")[0]
     if cell["cell_type"] == "code":
         cell["outputs"], cell["execution_count"] = [], None
+    if cell["cell_type"] == "code" and cell.get("id") in OF_STEP:
+        cell["source"] = OF_STEP[cell["id"]].format(exercise.id).splitlines(keepends=True)
     magic, _, argument = first.removeprefix("%%").partition(" ")
     if cell["cell_type"] != "code" or not first.startswith("%%") or magic not in MAGICS:
         return

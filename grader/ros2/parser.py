@@ -68,9 +68,8 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Print an error message and exit with code 2."""
-        match = _CHOICE.search(message)
-        choices = re.findall(r"[\w-]+", match[2]) if match else []
-        super().error(did_you_mean(match[1], choices, message) if match else message)
+        invalid = invalid_choice(message)
+        super().error(did_you_mean(*invalid, message) if invalid else message)
 
     def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
         """Print an error message, if there is one, and exit with this code."""
@@ -79,8 +78,14 @@ class Parser(argparse.ArgumentParser):
         super().exit(status)
 
 
-def make_parser(words: Sequence[str]) -> Parser:
-    """Return the parser for a command line. `words` are the words after `ros2`.
+def invalid_choice(message: str) -> tuple[str, list[str]] | None:
+    """Return the invalid word and the valid words in an error message of argparse, or None for any other message."""
+    match = _CHOICE.search(message)
+    return (match[1], re.findall(r"[\w-]+", match[2])) if match else None
+
+
+def make_parser(words: Sequence[str], kind: type[Parser] = Parser) -> Parser:
+    """Return the parser for a command line. `words` are the words after `ros2`. All parsers are of the class `kind`.
 
     The parser contains all groups of `ros2`. The verbs of a group and the arguments of a verb are added only for the
     group and the verb in `words`. The parsed arguments have the attribute `run`, a function that takes the arguments
@@ -88,7 +93,7 @@ def make_parser(words: Sequence[str]) -> Parser:
     """
     chosen = [word for word in words if not word.startswith("-")]
     group, verb = [*chosen[:2], None, None][:2]
-    root = Parser(
+    root = kind(
         prog="ros2",
         description="ros2 is an extensible command-line tool for ROS 2.",
         formatter_class=_Formatter,
@@ -118,7 +123,7 @@ def _add_words(
         metavar=f"Call `{parser.prog} <command> -h` for more detailed usage.",
         # The real ros2 uses the same name, which cannot be the name of an option.
         dest=f" {kind}",
-        parser_class=Parser,
+        parser_class=type(parser),
     )
     for name in sorted(about):
         if name == chosen:

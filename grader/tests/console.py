@@ -1,6 +1,5 @@
 """Run the command blocks of a Markdown text, to test that README and the lessons show the real output.
 
-A block begins with ```console. The block contains lines of the form `$ command`, each followed by the command's output.
 A line `...` matches any number of lines. The real output can have more lines at the end than the page shows. Numbers
 may differ.
 """
@@ -10,53 +9,18 @@ from __future__ import annotations
 import re
 import shlex
 import subprocess
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-FENCE = re.compile(r"^```(\w*) ?([^\n]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+    from grader.authoring.console_blocks import Block, Step
+
 COUNTED = r"(?:of|points?|scores?|submissions?|students?|checks?|differences|(?:not )?passed|failed|to grade|changed)"
 NUMBER = re.compile(rf"\d+(?:\.\d+)?(?!\.?\d)(?! {COUNTED}\b)")
 """A number that may differ from run to run, such as a time. A number of points, for example, may not."""
 END = "--- the end of what one command printed ---"
-
-
-@dataclass(frozen=True)
-class Step:
-    """A command, and the lines that the page shows as its output."""
-
-    command: str
-    printed: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Block:
-    """A fenced block: its language, the rest of its first line, and its text."""
-
-    language: str
-    about: str
-    text: str
-
-    def steps(self) -> tuple[Step, ...]:
-        """Return the commands of a console block. Raises ValueError for output before the first command."""
-        steps: list[Step] = []
-        for line in self.text.splitlines():
-            if line.startswith("$ "):
-                steps.append(Step(line.removeprefix("$ "), ()))
-            elif steps:
-                steps[-1] = Step(steps[-1].command, (*steps[-1].printed, line))
-            else:
-                message = f"output without a command: {line!r}"
-                raise ValueError(message)
-        return tuple(steps)
-
-
-def blocks(markdown: str) -> tuple[Block, ...]:
-    """Return the fenced blocks of a text, in order."""
-    return tuple(Block(*match.groups()) for match in FENCE.finditer(markdown))
 
 
 def run(block: Block, cwd: Path, env: Mapping[str, str], timeout_s: float) -> list[tuple[Step, str, int]]:

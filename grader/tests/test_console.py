@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.tests.console import Block, Step, blocks, differs, run
+from grader.authoring.console_blocks import Block, Step, blocks
+from grader.tests.console import differs, run
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -13,12 +13,15 @@ from typing import TYPE_CHECKING
 import pexpect
 import pytest
 
+from grader.authoring.console_blocks import Block, blocks
+from grader.authoring.validate import lesson_problems
+from grader.cli import app
 from grader.common.interpreter import interpreter
 from grader.ros.installation import environment, find_ros
 from grader.ros.underlay import with_turtlesim
 from grader.submission.answers_toml import read_answers
 from grader.submission.package_xml import read_manifest
-from grader.tests.console import Block, blocks, differs, run
+from grader.tests.console import differs, run
 from grader.tests.domains import own_domain
 from grader.tests.learner.story import Learner
 
@@ -52,9 +55,8 @@ def test_a_lesson_is_neither_too_short_nor_too_long(lesson: Path) -> None:
     assert len(lesson.read_text("utf-8").split()) in WORDS
 
 
-def test_links_and_pictures_are_there(lesson: Path) -> None:
-    links = re.findall(r"\]\(([^)#]+)", lesson.read_text("utf-8"))
-    assert [link for link in links if not link.startswith("https://") and not (lesson.parent / link).exists()] == []
+def test_links_pictures_and_commands_are_there(lesson: Path) -> None:
+    assert list(lesson_problems(lesson, app)) == []
 
 
 def test_every_block_says_what_it_is(lesson: Path) -> None:

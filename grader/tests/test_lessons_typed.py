@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import pexpect
 import pytest
 
-from grader.tests.console import blocks
+from grader.authoring.console_blocks import blocks
 from grader.tests.domains import own_domain
 from grader.tests.learner.story import Learner
 from grader.tests.test_lessons import ROOT, home_of_a_reader

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from grader.authoring.console_blocks import blocks
 from grader.authoring.kinds_page import UNITS, main, page, unit_of
 from grader.checks.exercises import load_exercise
 from grader.checks.kinds import KINDS
 from grader.exercise.model import catalogue, course_folder
 from grader.exercise.own_numbers import Own
-from grader.tests.console import blocks
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from grader.authoring.console_blocks import blocks
 from grader.authoring.release import main as release
 from grader.authoring.validate import _Validation, validate
+from grader.cli import app
 from grader.errors import UsageError
 from grader.tests.case import copy_solution
-from grader.tests.console import blocks
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -47,13 +48,15 @@ def root(tmp_path: Path) -> Path:
     (package / NODE).write_text(node.replace(driving, TASK))
     setup = (package / "setup.py").read_text()
     (package / "setup.py").write_text(setup.replace("draw_circle", "straight_on"))
+    shown = (ROOT / "solutions/03-circle-publisher/03-circle-publisher.ipynb").read_text("utf-8")
+    (tmp_path / "solutions" / NEW / f"{NEW}.ipynb").write_text(shown.replace("draw_circle.py", "straight_on.py"))
     (tmp_path / "exercises").mkdir()
     return tmp_path
 
 
 def problems(root: Path) -> list[str]:
     assert release(["--root", str(root)]) == 0
-    return validate([], course=root / "course")
+    return validate([], app, course=root / "course")
 
 
 def change(file: Path, old: str, new: str) -> None:
@@ -64,7 +67,7 @@ def change(file: Path, old: str, new: str) -> None:
 
 @pytest.mark.exhaustive
 def test_the_course_is_valid() -> None:
-    assert validate([]) == []
+    assert validate([], app) == []
 
 
 def test_the_course_is_valid_apart_from_its_solutions(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -75,7 +78,7 @@ def test_the_course_is_valid_apart_from_its_solutions(monkeypatch: pytest.Monkey
         return SimpleNamespace(outcomes=()) if what == "solution" else graded(self, what, side)
 
     monkeypatch.setattr(_Validation, "_graded", only_starting_points)
-    assert validate([]) == []
+    assert validate([], app) == []
 
 
 def test_each_lesson_shows_that_its_solution_passes() -> None:
@@ -87,6 +90,30 @@ def test_each_lesson_shows_that_its_solution_passes() -> None:
 def test_a_new_exercise_is_one_folder_per_side_without_python(root: Path) -> None:
     assert problems(root) == []
     assert "TODO: make it drive." in (root / "exercises" / NEW / "my_robot_controller" / NODE).read_text()
+
+
+def test_a_copied_notebook_gets_the_id_of_its_step(root: Path) -> None:
+    assert release(["--root", str(root)]) == 0
+    for side in ("solutions", "exercises"):
+        text = (root / side / NEW / f"{NEW}.ipynb").read_text("utf-8")
+        assert f'"%step {NEW}"' in text
+        assert f'"check(\\"{NEW}\\")"' in text
+        assert 'check(\\"03-circle-publisher\\")' not in text
+
+
+def test_a_step_needs_a_notebook_of_its_own(root: Path) -> None:
+    """nbgrader's generate_assignment would stop with an error."""
+    folder = root / "solutions" / NEW
+    (folder / f"{NEW}.ipynb").rename(folder / "another-name.ipynb")
+    (problem,) = problems(root)
+    assert problem.startswith(f"{folder}/{NEW}.ipynb is missing: every step has a notebook.")
+
+
+def test_a_wrong_command_in_a_lesson_is_a_problem(root: Path) -> None:
+    lesson = root / "course" / NEW / "lesson.md"
+    lesson.write_text(f"{lesson.read_text()}\n```console\n$ grader start 15\n$ grader start 14\n```\n")
+    reported = f"{lesson}: `grader start 15` is not a valid command: the course has no step 15."
+    assert problems(root) == [reported]
 
 
 def wrong_solution(root: Path) -> None:
@@ -124,14 +151,14 @@ def test_all_missing_things_are_reported_together(root: Path) -> None:
     course = root / "course" / NEW
     (course / "lesson.md").write_text("Too short, with a [link](nowhere.md).\n")
     change(course / "exercise.toml", "[[hint]]", "[[trial]]")
-    assert validate([], course=root / "course")[1:] == validate([NEW], course=root / "course")[1:]
+    assert validate([], app, course=root / "course")[1:] == validate([NEW], app, course=root / "course")[1:]
     change(course / "exercise.toml", '[[trial]]\ntext = "Two', '# "Two')
     shutil.rmtree(root / "solutions" / NEW)
-    reported = "\n".join(validate([], course=root / "course"))
+    reported = "\n".join(validate([], app, course=root / "course"))
     for problem in ("the file has no [[hint]]", "words (without code)", "links to nowhere.md", f"solutions/{NEW}"):
         assert problem in reported
 
 
 def test_an_unknown_exercise_is_an_error_that_lists_all(root: Path) -> None:
     with pytest.raises(UsageError, match=f"The course has no exercise 09-x. The exercises are {NEW}."):
-        validate(["09-x"], course=root / "course")
+        validate(["09-x"], app, course=root / "course")

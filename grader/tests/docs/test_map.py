@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-from grader.tests.console import blocks
+from grader.authoring.console_blocks import blocks
 from grader.tests.docs.pages import ROOT, text_of
 
 MAPS = ("README.md", "docs/development.md")
