@@ -19,7 +19,7 @@ CHOSEN := $(if $(findstring command line,$(origin PYTHON)),--python $(PYTHON))
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 18
 
-demo: python3 ## set up, grade the solution of step 03, say what to type next
+demo: python3 ## set up, grade step 03, say what to type next
 	@read begin _ < /proc/uptime && $(SET_UP) learner $(CHOSEN) && $(BIN)/python -I -m grader.setup.demo --since $$begin
 
 cluster: python3 ## set up a machine as a Dask worker for grading

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from pathlib import Path
 
@@ -12,7 +13,11 @@ from grader.errors import UsageError
 from grader.exercise.model import catalogue, course_folder
 
 _FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore", ".gitattributes", "COLCON_IGNORE")
-_NOT_FOR_STUDENTS = ("tests", "benchmarks", "__pycache__", "*.pyc")
+_PAGES = ("learner.md", "commands.md", "glossary.md", "ros2-differences.md", "security.md")
+"""The pages of docs/ that students need. The others are for instructors, authors and developers."""
+_TARGETS = ("help", "demo", "notebooks", "clean", "python3")
+"""The targets of the Makefile that work without tests, solutions and the other pages."""
+_NOT_FOR_STUDENTS = ("tests", "benchmarks", "__pycache__", "*.pyc", "nbgrader_config.py")
 _IN_A_WHEEL = ("course", "exercises", "solutions", "repository")
 """Folders that are inside the package in a wheel, and next to the package in a checkout (see hatch_build.py)."""
 
@@ -34,12 +39,35 @@ def hand_out(to: Path) -> None:
     with new_folder(to):
         for name in _FILES:
             shutil.copyfile(files / name, to / name)
+        (to / "Makefile").write_text(_makefile((files / "Makefile").read_text("utf-8")), encoding="utf-8")
         shutil.copytree(root / "course", to / "course", ignore=shutil.ignore_patterns(*_NOT_FOR_STUDENTS))
         shutil.copytree(package, to / "grader", ignore=skipped)
-        shutil.copytree(files / "docs", to / "docs", ignore=shutil.ignore_patterns(*_NOT_FOR_STUDENTS))
+        (to / "docs").mkdir()
+        for name in _PAGES:
+            text = (files / "docs" / name).read_text("utf-8")
+            (to / "docs" / name).write_text(_without_missing_links(text, to / "docs"), encoding="utf-8")
         for name in catalogue():
             release(root / "solutions" / name, to / "exercises" / name)
         (to / "README.md").write_text(_readme(), encoding="utf-8")
+
+
+def _makefile(text: str) -> str:
+    """Return the Makefile with only the targets for students."""
+    parts = text.split("\n\n")
+    names = [re.match(r"([a-z.-]+[a-z0-9]): ", part) for part in parts]
+    kept = [part for part, name in zip(parts, names, strict=True) if name is None or name[1] in _TARGETS]
+    phony = f".PHONY: {' '.join(_TARGETS)}"
+    return re.sub(r"^\.PHONY: help.*$", phony, "\n\n".join(kept), flags=re.MULTILINE)
+
+
+def _without_missing_links(text: str, folder: Path) -> str:
+    """Return a page without the links to files that students do not get. The texts of the links stay."""
+
+    def kept(link: re.Match[str]) -> str:
+        there = link[2].startswith(("https://", "#")) or (folder / link[2].partition("#")[0]).exists()
+        return link[0] if there or (folder / link[2].partition("#")[0]).name in _PAGES else link[1]
+
+    return re.sub(r"\[([^\]]*)\]\(([^)\s]+)\)", kept, text)
 
 
 def _readme() -> str:

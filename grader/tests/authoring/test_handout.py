@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -44,6 +46,33 @@ def test_students_get_no_solution_and_no_test(students: Path) -> None:
     solved = (ROOT / "solutions/07-challenges/my_robot_controller/my_robot_controller/go_to_goal.py").read_text()
     line = next(line for line in solved.splitlines() if "atan2(dy, dx)" in line)
     assert [path for path in files(students) if path.suffix == ".py" and line in path.read_text("utf-8")] == []
+
+
+def test_no_page_for_students_tells_an_instructor_what_to_do(students: Path) -> None:
+    pages = sorted(path.relative_to(students).as_posix() for path in students.glob("docs/*"))
+    names = ("commands", "glossary", "learner", "ros2-differences", "security")
+    assert pages == [f"docs/{name}.md" for name in names]
+    for page in (*pages, "README.md", "Makefile", *(f"course/{name}/lesson.md" for name in catalogue())):
+        text = (students / page).read_text("utf-8")
+        assert re.findall(r".*(?:solutions/|a correct solution|grade a class).*", text) == [], page
+    assert not (students / "course" / "nbgrader_config.py").exists()
+
+
+def test_every_link_on_a_page_for_students_leads_somewhere(students: Path) -> None:
+    for page in (students / "README.md", *students.glob("docs/*.md"), *students.glob("course/*/*.md")):
+        links = re.findall(
+            r"\]\(([^)\s]+)\)",
+            re.sub(r"^```.*?^```|`[^`\n]*`", "", page.read_text("utf-8"), flags=re.MULTILINE | re.DOTALL),
+        )
+        files_of_links = [link.partition("#")[0] for link in links if not link.startswith(("https://", "#"))]
+        assert [link for link in files_of_links if not (page.parent / link).exists()] == [], page
+
+
+def test_the_makefile_for_students_has_only_their_targets(students: Path) -> None:
+    done = subprocess.run(["make", "help"], cwd=students, capture_output=True, text=True, check=True)
+    assert [line.split()[1] for line in done.stdout.splitlines()] == ["help", "demo", "notebooks", "clean"]
+    done = subprocess.run(["make", "-n", "demo", "notebooks"], cwd=students, capture_output=True, text=True, check=True)
+    assert "grader.setup.demo" in done.stdout
 
 
 def test_a_folder_that_is_not_empty_stays_unchanged(tmp_path: Path) -> None:
