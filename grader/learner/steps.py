@@ -67,8 +67,14 @@ def begin_message(begun: Begun) -> str:
     lines = [f"{begun.exercise.id}: {begun.exercise.title}, in {started.folder}"]
     if started.kept:
         lines.append(f"Your earlier work was moved to {started.kept}.")
-    if started.added:
-        lines.append(f"Added {', '.join(started.added)}.")
+    new = [path for path in started.added if path not in started.earlier]
+    if new:
+        lines.append(f"Added {', '.join(new)}.")
+    if started.earlier:
+        lines.append(
+            f"Also added, from earlier steps: {', '.join(started.earlier)}. "
+            "The tasks (TODO) in these files are not part of this step."
+        )
     if started.present:
         lines.append(f"Not changed: {', '.join(started.present)}.")
     for path, lacking in started.lacking.items():

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import MachineError, UsageError
-from grader.exercise.model import course_folder
+from grader.exercise.model import catalogue, course_folder
 from grader.exercise.own_numbers import draw_numbers, to_toml
 from grader.exercise.starting_point import starting_point
 from grader.submission import tree
@@ -35,9 +35,10 @@ _TASK = re.compile(r"(?:#|<!--)\s*(TODO \d+: .+?)\s*(?:-->)?$", re.MULTILINE)
 class Started:
     """The result of `start`. The paths of files are relative to `folder`.
 
-    `kept` is the folder to which older work was moved (with --fresh). For each package file that already existed,
-    `lacking` has the lines of the step's version that are missing from the file, and `tasks` has the missing tasks
-    (TODO 1: ...). If `start` has added no file, `tasks` is empty.
+    `earlier` are the files in `added` that belong to an earlier step: their tasks are not part of this step. `kept` is
+    the folder to which older work was moved (with --fresh). For each package file that already existed, `lacking`
+    has the lines of the step's version that are missing from the file, and `tasks` has the missing tasks (TODO 1: ...).
+    If `start` has added no file, `tasks` is empty.
     """
 
     folder: Path
@@ -46,6 +47,7 @@ class Started:
     kept: Path | None = None
     lacking: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     tasks: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    earlier: tuple[str, ...] = ()
 
 
 def solution(exercise: Exercise) -> Path:
@@ -94,12 +96,13 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
         mine = {path: (folder / path).read_bytes() for path in present if path in _PACKAGE_FILES}
         lacking = lacking_lines(exercise, mine)
         tasks = open_tasks(exercise, mine) if added else {}
+        earlier = tuple(path for path in added if _is_of_earlier_step(exercise, source, path))
     except (FileExistsError, NotADirectoryError) as error:
         raise UsageError(_in_the_way(Path(error.filename))) from error
     except OSError as error:
         message = f"{error.filename or folder} could not be written: {error.strerror}."
         raise MachineError(message) from error
-    return Started(folder, added, present, kept, lacking, tasks)
+    return Started(folder, added, present, kept, lacking, tasks, earlier)
 
 
 def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -126,6 +129,20 @@ def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tup
         target.chmod(0o755 if path in found.executable else 0o644)
         added.append(path)
     return tuple(added), tuple(present)
+
+
+def _is_of_earlier_step(exercise: Exercise, source: Path, path: str) -> bool:
+    """Return whether the file is a module with tasks of an earlier step, and this step does not run it.
+
+    Raises OSError.
+    """
+    module = Path(path)
+    if len(module.parts) < 2 or module.suffix != ".py" or module.stem in {each.executable for each in exercise.trials}:
+        return False
+    content = (source / path).read_bytes()
+    names = list(catalogue())
+    others = (source.parents[1] / name / source.name / path for name in names[: names.index(exercise.id)])
+    return b"TODO" in content and any(other.is_file() and other.read_bytes() == content for other in others)
 
 
 def lacking_lines(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, tuple[str, ...]]:

@@ -10,7 +10,6 @@ from contextlib import closing, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from mcap.exceptions import McapError
 from mcap.records import Channel, Message, Schema
 from mcap.stream_reader import StreamReader
 
@@ -100,8 +99,11 @@ def _mcap(file: Path) -> Iterator[Saved]:
                         schema = schemas[channel.schema_id]
                         text = schema.data.decode("utf-8", "replace")
                         yield Saved(record.log_time, channel.topic, schema.name, record.data, text)
-        except (McapError, EOFError, ValueError, KeyError):
-            # The file ends in the middle of a record, or is damaged.
+        except OSError:
+            raise
+        except (
+            Exception
+        ):  # a damaged or incomplete file has wrong lengths, offsets and strings, so any error is possible
             return
 
 

@@ -96,6 +96,25 @@ def test_start_adds_missing_files_and_overwrites_nothing(home: Path) -> None:
     assert (package / "setup.py").read_text() == "mine"
 
 
+def test_a_step_alone_names_the_files_of_earlier_steps_with_their_tasks() -> None:
+    begun = steps.start("13", None)
+    modules = {path.rpartition("/")[2] for path in begun.started.earlier}
+    assert {"two_pens.py", "own_circle.py", "wall_guard.py"} <= modules
+    assert not {"spawner.py", "catcher.py", "setup.py", "__init__.py"} & modules
+    first, second = steps.begin_message(begun).splitlines()[1:3]
+    assert "spawner.py" in first
+    assert "two_pens.py" not in first
+    assert second.startswith("Also added, from earlier steps: ")
+    assert second.endswith("The tasks (TODO) in these files are not part of this step.")
+
+
+def test_a_workspace_that_has_the_earlier_steps_gets_no_file_of_them() -> None:
+    for step in ("07", "08", "09"):
+        begun = steps.start(step, None)
+    assert begun.started.earlier == ()
+    assert [path for path in begun.started.added if path.endswith(".py")] == ["my_robot_controller/tunable_circle.py"]
+
+
 def test_start_quotes_the_path_that_a_new_terminal_sources(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.prefix", "/home/ada/my course/.venv")
     monkeypatch.setenv("SHELL", "/bin/bash")
