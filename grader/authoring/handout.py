@@ -13,7 +13,7 @@ from grader.errors import UsageError
 from grader.exercise.model import catalogue, course_folder
 
 _FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore", ".gitattributes", "COLCON_IGNORE")
-_PAGES = ("learner.md", "commands.md", "glossary.md", "ros2-differences.md", "security.md")
+_PAGES = ("learner.md", "commands.md", "glossary.md", "kinds.md", "ros2-differences.md", "security.md")
 """The pages of docs/ that students need. The others are for instructors, authors and developers."""
 _TARGETS = ("help", "demo", "notebooks", "clean", "python3")
 """The targets of the Makefile that work without tests, solutions and the other pages."""
