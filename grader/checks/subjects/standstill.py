@@ -30,7 +30,8 @@ def no_standstill(evidence: Evidence, expected: str) -> Finding | None:
     if max(linear, angular) > STILL:
         what = f"drives at {linear:.2f} m/s" if linear > STILL else f"turns at {angular:.2f} rad/s"
         cause = f"Small speeds are not 0. {ZEROS}" if max(linear, angular) < 0.1 else ZEROS
-        return failed(f"The turtle still {what} at the end.", expected, Cause("still-moving", cause, where))
+        observed = f"The turtle still {what} at the end of the {evidence.recording.duration_s:g} s of the trial."
+        return failed(observed, expected, Cause("still-moving", cause, where))
     if silent_while_moving(evidence):
         observed = "The last command has values other than 0. The turtle stopped only because no more commands arrived."
         return failed(observed, expected, Cause("still-moving", ZEROS, where))

@@ -199,7 +199,7 @@ def test_a_wall_beside_a_lobe_of_the_right_size_says_nothing_about_its_size() ->
 def test_a_small_speed_at_the_end_is_told(speed: float, *, found: bool) -> None:
     commands = [*legs(lobe(1), lobe(-1), rest_s=8.2), *every(0.1, speed, 0.0, first_s=8.3)]
     given = told(found_eight(commands))
-    assert f"The turtle still drives at {speed:.2f} m/s at the end." in given
+    assert f"The turtle still drives at {speed:.2f} m/s at the end of the 10 s of the trial." in given
     assert ("Small speeds are not 0. Publish a command with all values 0" in given) == found
 
 

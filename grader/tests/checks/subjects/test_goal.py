@@ -56,7 +56,7 @@ def test_whoever_stops_near_enough_has_arrived(length_m: float) -> None:
         (
             (ahead(3.92, 90), (20, 0.05, 0.0)),
             "still-moving",
-            "The turtle still drives at 0.05 m/s at the end.",
+            "The turtle still drives at 0.05 m/s at the end of the 10 s of the trial.",
         ),
     ],
 )
