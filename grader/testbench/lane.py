@@ -20,6 +20,7 @@ from grader.errors import MachineError
 from grader.ros import installation
 from grader.sandbox import bubblewrap, entering, holder
 from grader.sandbox.control_group import control_group
+from grader.sandbox.descendants import kill_descendants
 from grader.sandbox.limits import NODE_LIMITS, limited, resource_limits
 from grader.sandbox.system_calls import program
 from grader.sandbox.usage import Guard
@@ -166,8 +167,10 @@ class Lane:
             raise MachineError("pytest and rclpy could not be imported. `grader doctor` shows what is missing.")  # noqa: EM101
 
     def kill(self) -> None:
-        """Kill all processes of the room and of its cells."""
+        """Kill all processes of the room and of its cells, or the session and all its descendants."""
         self._killed = True
+        if not self._in_cell and self._process.poll() is None:
+            kill_descendants(self._process.pid)
         with suppress(ProcessLookupError):
             os.killpg(self._process.pid, signal.SIGKILL)
 

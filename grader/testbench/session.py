@@ -32,7 +32,7 @@ import time
 from pathlib import Path
 from typing import Any, NoReturn
 
-from grader.common.linux_calls import pidfd_open
+from grader.common.linux_calls import adopt_orphans, pidfd_open
 from grader.sandbox import entering
 from grader.sandbox.holder import Holder
 
@@ -134,6 +134,7 @@ def _supervise(order: dict[str, Any], source: bytes, asks: int, answers: int, re
     workspace = Path(order["workspace"])
     if cell is None:
         workspace = Path(tempfile.mkdtemp(dir=workspace))
+        adopt_orphans()
     begun = time.monotonic()
     child = os.fork()
     if child == 0:
@@ -146,7 +147,9 @@ def _supervise(order: dict[str, Any], source: bytes, asks: int, answers: int, re
     if cell is not None:
         cell.close()
     else:
-        _end_group(child)
+        from grader.sandbox.descendants import kill_descendants  # not in the room
+
+        kill_descendants(os.getpid())
         shutil.rmtree(workspace, ignore_errors=True)
     result.sendall(_HEADER.pack(code, seconds, len(report)) + report)
 
@@ -216,14 +219,6 @@ def _report(file: Path) -> bytes:
         return os.read(descriptor, _MOST_REPORT) if stat.S_ISREG(os.fstat(descriptor).st_mode) else b""
     finally:
         os.close(descriptor)
-
-
-def _end_group(group: int) -> None:
-    """Kill the processes of a run without a cell, except those that have left its process group."""
-    try:
-        os.killpg(group, signal.SIGKILL)
-    except ProcessLookupError:
-        return
 
 
 main()

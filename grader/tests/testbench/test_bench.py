@@ -11,8 +11,11 @@ from grader.checks.exercises import find_exercise
 from grader.sandbox import bubblewrap
 from grader.testbench.bench import uses_one_participant
 from grader.tests.testbench.bench_runs import STEP, TESTS, run, spec
+from grader.tests.waiting import until_gone
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from grader.testbench.result import NodeRun
 
 pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
@@ -128,6 +131,24 @@ def test_it():
 def test_without_a_cell_no_other_program_takes_part(files: dict[str, bytes]) -> None:
     runs = run(spec(right_runs=4), {**files, TESTS: LISTENS.encode()}, lanes=2, in_cell=False)
     assert [(each.exit_code, each.message) for each in runs] == [(0, "")] * 4
+
+
+LEAVES_A_CHILD = """
+import pathlib, subprocess
+
+def test_it():
+    child = subprocess.Popen(["sleep", "300"], start_new_session=True, stdout=subprocess.DEVNULL)
+    pathlib.Path("{pid}").write_text(str(child.pid))
+"""
+
+
+def test_without_a_cell_a_child_in_a_session_of_its_own_ends_with_the_run(
+    files: dict[str, bytes], tmp_path: Path
+) -> None:
+    pid = tmp_path / "pid"
+    code = LEAVES_A_CHILD.replace("{pid}", str(pid))
+    assert verdicts(run(spec(right_runs=1), {**files, TESTS: code.encode()}, in_cell=False)) == {"": True}
+    until_gone(int(pid.read_text("ascii")))
 
 
 TWO_CONTEXTS = """
