@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 FORM = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION in the list console_scripts of setup.py"
 
+MISSPELT = 0.84
+"""From this difflib ratio on, one name is the other with a spelling mistake. draw_star and draw_square have 0.8."""
+
 
 def line(evidence: Evidence) -> Where:
     """Return the line of setup.py with the entry point, or else with `console_scripts`, or else with setup()."""
@@ -82,11 +85,19 @@ def no_entry_point(evidence: Evidence) -> Finding:
 
 
 def _is_another(evidence: Evidence, name: str) -> bool:
-    """Return whether an executable has the right name, or is another node, in a module of its own name."""
-    executable = evidence.trial.executable
+    """Return whether an executable is not the executable of the exercise under another name.
+
+    An executable with the name of its file, such as draw_circle, is complete. It has the wrong name only if the
+    exercise's name is almost the same, or is a part of it, or if its file contains the name of the exercise's node.
+    """
+    executable, node = evidence.trial.executable, evidence.trial.node
     has_file = any(path.rpartition("/")[2] == f"{executable}.py" for path in evidence.submission.files)
     module = evidence.built.entry_points.get(name, "").partition(":")[0].strip()
-    return name == executable or (has_file and module.rpartition(".")[2] == name)
+    file = module_file(module, evidence.submission.files)
+    source = evidence.submission.files[file] if file is not None else b""
+    renamed = name in executable or executable in name or nearest(executable, [name], MISSPELT) is not None
+    renamed = renamed or (node is not None and re.search(rf"(['\"]){re.escape(node)}\1".encode(), source) is not None)
+    return name == executable or (module.rpartition(".")[2] == name and (has_file or not renamed))
 
 
 def _script(evidence: Evidence) -> Cause | None:

@@ -111,6 +111,31 @@ def test_an_executable_of_nearly_that_name_is_named(build: Build) -> None:
     assert got.observed == "There is no executable draw_circle, but there is draw_cirle."
 
 
+@pytest.mark.parametrize(
+    ("name", "module", "node", "misspelt"),
+    [
+        ("draw_square", "draw_square", "draw_square", False),
+        ("draw_square", "draw_square", "draw_circle", True),
+        ("draw_square", "square", "draw_square", True),
+        ("draw_cirle", "draw_cirle", "draw_square", True),
+        ("circle", "circle", "draw_square", True),
+        ("go_draw_circle", "go_draw_circle", "draw_square", True),
+    ],
+)
+def test_a_complete_executable_of_another_name_is_not_a_misspelling(
+    name: str, module: str, node: str, *, misspelt: bool
+) -> None:
+    build = replace(NOTHING, executables=(name,), entry_points={name: f"my_robot_controller.{module}:main"})
+    files: Files = {
+        **setup_py(f'            "{name} = my_robot_controller.{module}:main",\n'),
+        NODE_FILE: None,
+        f"my_robot_controller/{module}.py": NODE.replace('"draw_circle"', f'"{node}"'),
+    }
+    got = found(files, build)
+    words = "Compare the two names letter by letter." if misspelt else "setup.py has no entry point with this name."
+    assert (words in got.cause, "letter by letter" in got.cause) == (True, misspelt)
+
+
 SCRIPT = replace(BUILD, entry_points={})
 
 
