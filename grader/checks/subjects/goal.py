@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import ast
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.requested import Requested
@@ -19,6 +21,7 @@ from grader.common.lazy import np
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
+    from grader.submission.where import Where
 
 STROKE_M = 0.3
 """The length (m) of each of the four lines that point to a goal in a drawing."""
@@ -59,36 +62,50 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
         where = evidence.code.assigned("angular", "z") or where
         return still.because(Cause("turns-on-the-spot", text, where))
     away = np.hypot(trajectory.x - params.x_m, trajectory.y - params.y_m)
-    end, nearest = float(away[-1]), float(away.min())
+    end = float(away[-1])
     moving = no_standstill(evidence, expected)
     close = Band.at_most(params.tolerance_m)
     near = close.near(end)
     if not close.holds(end):
-        observed = f"The turtle ends at x={trajectory.x[-1]:.2f} y={trajectory.y[-1]:.2f}, {end:.2f} m from the goal."
-        if close.holds(nearest):
-            observed += f" On the way, the turtle came within {nearest:.2f} m of the goal."
-            cause = "The turtle does not stop at the goal. Near the goal, publish a command with all values 0."
-            return failed(observed, expected, Cause("goes-on", cause, where), near_edge=near)
-        last = evidence.commands[-1] if evidence.commands else None
-        if last is not None and moving is None and not (last.linear[0] or last.angular[2]):
-            cause = (
-                "The last command has all values 0, as if the turtle had arrived. "
-                "Compare the position of the goal in the code with the position in the task."
-            )
-            if end <= NEARLY_M and _in_code(evidence, params.x_m, params.y_m):
-                cause = (
-                    "The last command has all values 0, as if the turtle had arrived. "
-                    f"At which distance from the goal does the node stop? The turtle ended {end:.1f} m from the goal."
-                )
-            return failed(observed, expected, Cause("not-there", cause, where), near_edge=near)
-        if end >= away[0] - MOVED_M:
-            cause = "The direction to the goal is atan2(goal_y - y, goal_x - x). The direction of the turtle is theta."
-            return failed(observed, expected, Cause("away-from-goal", cause, where), near_edge=near)
-        return failed(observed, expected, Cause("not-there", _on_the_way(evidence, params), where), near_edge=near)
+        return replace(_not_there(evidence, params, expected, where), near_edge=near)
     if moving is not None:
         return moving
     start = math.dist((float(trajectory.x[0]), float(trajectory.y[0])), (params.x_m, params.y_m))
     return passed(f"The turtle drove to its goal, {start:.1f} m away, and stopped.", near_edge=near)
+
+
+def _not_there(evidence: Evidence, params: Goal, expected: str, where: Where | None) -> Finding:
+    """Return the finding about a turtle that drove, but is not at the goal at the end."""
+    trajectory = evidence.trajectory
+    away = np.hypot(trajectory.x - params.x_m, trajectory.y - params.y_m)
+    end, nearest = float(away[-1]), float(away.min())
+    observed = f"The turtle ends at x={trajectory.x[-1]:.2f} y={trajectory.y[-1]:.2f}, {end:.2f} m from the goal."
+    crash = crash_of(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, f"{observed} {end_observed(evidence)}", expected)
+    unknown = _not_in_code(evidence, params)
+    if unknown is not None:
+        return failed(observed, expected, unknown.at(where))
+    if Band.at_most(params.tolerance_m).holds(nearest):
+        observed += f" On the way, the turtle came within {nearest:.2f} m of the goal."
+        cause = "The turtle does not stop at the goal. Near the goal, publish a command with all values 0."
+        return failed(observed, expected, Cause("goes-on", cause, where))
+    last = evidence.commands[-1] if evidence.commands else None
+    if last is not None and no_standstill(evidence, expected) is None and not (last.linear[0] or last.angular[2]):
+        cause = (
+            "The last command has all values 0, as if the turtle had arrived. "
+            "Compare the position of the goal in the code with the position in the task."
+        )
+        if end <= NEARLY_M and _in_code(evidence, params.x_m, params.y_m):
+            cause = (
+                "The last command has all values 0, as if the turtle had arrived. "
+                f"At which distance from the goal does the node stop? The turtle ended {end:.1f} m from the goal."
+            )
+        return failed(observed, expected, Cause("not-there", cause, where))
+    if end >= away[0] - MOVED_M:
+        cause = "The direction to the goal is atan2(goal_y - y, goal_x - x). The direction of the turtle is theta."
+        return failed(observed, expected, Cause("away-from-goal", cause, where))
+    return failed(observed, expected, Cause("not-there", _on_the_way(evidence, params), where))
 
 
 def _on_the_way(evidence: Evidence, params: Goal) -> str:
@@ -106,8 +123,9 @@ def _on_the_way(evidence: Evidence, params: Goal) -> str:
     away = np.hypot(trajectory.x - params.x_m, trajectory.y - params.y_m)
     nearest = int(away.argmin())
     near_s = float(trajectory.t_s[max(nearest - 1, 0)])
-    if away[-1] < away[np.searchsorted(trajectory.t_s, trajectory.t_s[-1] - LATE_S)] - MOVED_M:
-        return "The turtle was still getting nearer to the goal at the end of the trial, so it needs more time."
+    late = int(np.searchsorted(trajectory.t_s, trajectory.t_s[-1] - LATE_S))
+    if away[-1] < min(float(away[:late].min(initial=math.inf)), away[late]) - MOVED_M:
+        return "The turtle was still getting nearer to the goal at the end of the trial, so it may need more time."
     return f"The turtle came within {away[nearest]:.2f} m of the goal at {near_s:.1f} s, and no nearer after that."
 
 
@@ -116,6 +134,16 @@ def _in_code(evidence: Evidence, *numbers: float) -> bool:
     nodes = [node for module in evidence.code.modules for node in module.nodes]
     found = {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, float)}
     return found.issuperset(numbers)
+
+
+def _not_in_code(evidence: Evidence, params: Goal) -> Cause | None:
+    """Return the cause if the code contains no coordinate of the goal, else None."""
+    goal = {params.x_m, params.y_m}
+    nodes = [node for module in evidence.code.modules for node in module.nodes]
+    if not nodes or any(isinstance(node, ast.Constant) and node.value in goal for node in nodes):
+        return None
+    text = f"The code contains neither {params.x_m:g} nor {params.y_m:g}, the coordinates of the goal."
+    return Cause("not-there", text)
 
 
 def requested_goal(_: Evidence, params: Goal) -> Requested:

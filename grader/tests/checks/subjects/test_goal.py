@@ -1,14 +1,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from grader.checks.outcome import Finding, Status
 from grader.checks.subjects.goal import GOAL
-from grader.tests.checks.made import NODE_FILE, TICK_S, evidence, found, legs, recording
-from grader.tests.checks.shapes import teleported
-from grader.trial.recording import Pose
+from grader.tests.checks.made import NODE, NODE_FILE, TICK_S, evidence, found, legs, recording, submission
+from grader.tests.checks.shapes import TRACEBACK, crashed, teleported
+from grader.trial.recording import Output, Pose
 
 Leg = tuple[int, float, float]
 START = Pose(3.0, 5.0, 0.0)
@@ -20,9 +21,9 @@ def ahead(length_m: float, ticks: int = 20) -> Leg:
     return ticks, length_m / (ticks * TICK_S), 0.0
 
 
-def goal(*parts: Leg, start: Pose = START, stops: bool = True) -> Finding:
+def goal(*parts: Leg, start: Pose = START, stops: bool = True, code: str = "GOAL = 7.0, 5.0") -> Finding:
     given = recording(legs(*parts) if stops else legs(*parts, rest_s=0.0), start)
-    return found(GOAL, evidence(given), x_m=7.0, y_m=5.0)
+    return found(GOAL, evidence(given, submission({NODE_FILE: f"{NODE}\n{code}\n"})), x_m=7.0, y_m=5.0)
 
 
 @pytest.mark.parametrize("length_m", [4.0, 3.95, 4.05])
@@ -90,9 +91,36 @@ def test_a_turtle_that_does_not_arrive_is_described_by_its_way(parts: tuple[Leg,
     assert words in goal(*parts, stops=False).cause
 
 
+@pytest.mark.parametrize(("length_m", "diagnosis"), [(3.0, "crash"), (4.0, None)])
+def test_a_crash_on_the_way_is_the_cause(length_m: float, diagnosis: str | None) -> None:
+    given = replace(recording(legs(ahead(length_m)), START), end=crashed(5.0), stderr=Output(TRACEBACK))
+    finding = found(GOAL, evidence(given), x_m=7.0, y_m=5.0)
+    assert finding.diagnosis == diagnosis
+    if diagnosis is not None:
+        assert finding.observed.startswith("The turtle ends at x=6.00 y=5.00, 1.00 m from the goal. The node crashed")
+
+
+def test_a_turtle_that_was_as_near_before_is_not_getting_nearer() -> None:
+    again = goal(ahead(3.0, 40), ahead(-2.0), ahead(1.5, 40), stops=False)
+    assert "getting nearer" not in again.cause
+    assert "The turtle came within 1.0" in again.cause
+
+
+@pytest.mark.parametrize("stops", [True, False])
+@pytest.mark.parametrize(
+    ("code", "unknown"), [("GOAL = 3.0, 9.0", True), ("GOAL = 7, 9", False), ("GOAL = 3.0, 5.0", False)]
+)
+def test_a_node_whose_code_contains_no_coordinate_of_the_goal_does_not_know_it(
+    code: str, *, stops: bool, unknown: bool
+) -> None:
+    cause = goal(ahead(3.0), stops=stops, code=code).cause
+    assert (cause == "The code contains neither 7 nor 5, the coordinates of the goal.") == unknown
+
+
 def test_a_node_that_stops_somewhere_else_has_another_goal() -> None:
-    assert "the position of the goal" in goal(ahead(3.0)).cause
-    assert "the position of the goal" not in goal(ahead(3.0), stops=False).cause
+    other = "GOAL = 6.0, 5.0"
+    assert "the position of the goal" in goal(ahead(3.0), code=other).cause
+    assert "the position of the goal" not in goal(ahead(3.0), stops=False, code=other).cause
 
 
 def test_a_turtle_at_the_wall_learns_about_angles() -> None:
