@@ -18,6 +18,8 @@ NOT_HERE = {
     "_tkinter": "tkinter is Python's module for graphical windows.",
 }
 """Maps a module to a sentence about it. A correct program may import the module, but the grader does not have it."""
+OWN_INTERFACES = ("_interfaces", "_msgs")
+"""The usual endings of the name of a package that contains messages."""
 NO_MODULE = re.compile(r"No module named '(?P<name>[\w.]+)'")
 NO_NAME = re.compile(r"cannot import name '(?P<name>\w+)' from '(?P<module>[\w.]+)'")
 
@@ -56,9 +58,18 @@ def _no_module(scene: CrashScene, name: str) -> Cause:
     if guess is not None:
         text = f"A similar module exists: {guess}. Compare the two names letter by letter."
         return Cause("module-misspelt", text).fixed_by(at(scene.crash.where, name, guess.partition(".")[0]))
+    manifest = scene.evidence.manifest
+    declared = manifest is not None and top in (*manifest.run_depends, *manifest.other_depends)
+    if declared or top.endswith(OWN_INTERFACES):
+        return Cause(
+            "module-missing",
+            f"The grader does not have the package {shorten(top)}. If the package is your own, the node must work "
+            "without it, since you hand in only one package.",
+        )
     return Cause(
         "module-missing",
-        f"No installed package has a module {shorten(name)}. Check the name letter by letter.",
+        f"No installed package has a module {shorten(name)}. Check the name letter by letter. If the name is right, "
+        "the grader does not have this module.",
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from grader.tests.checks.crashes import reported
+from grader.tests.checks.made import PACKAGE_XML
 
 HELPER = {"my_robot_controller/helper.py": "", "my_robot_controller/unhelper.py": ""}
 
@@ -18,7 +19,11 @@ HELPER = {"my_robot_controller/helper.py": "", "my_robot_controller/unhelper.py"
         ("No module named 'turtlesim_msgs.msg'", "turtlesim-msgs", "Newer ROS 2 distributions have"),
         ("No module named 'helper'", "sibling-import", "my_robot_controller/helper.py exists, but"),
         ("No module named 'geometry_msg.msg'", "module-misspelt", "A similar module exists: geometry_msgs.msg."),
-        ("No module named 'cv2'", "module-missing", "No installed package has a module cv2."),
+        (
+            "No module named 'cv2'",
+            "module-missing",
+            "No installed package has a module cv2. Check the name letter by letter. If the name is right, the grader",
+        ),
         (
             "cannot import name 'twist' from 'geometry_msgs.msg' (unknown)",
             "import-name",
@@ -57,3 +62,22 @@ def test_a_failed_import_is_explained_by_what_there_is(error: str, diagnosis: st
     found = reported("import this_and_that  # crashed\n", f"ImportError: {error}", HELPER)
     assert (found.diagnosis, found.line) == (diagnosis, 1)
     assert found.cause.startswith(words)
+
+
+@pytest.mark.parametrize(
+    ("module", "declared", "words"),
+    [
+        ("dove", "dove", "The grader does not have the package dove. If the package is your own,"),
+        ("dove.msg", "dove", "The grader does not have the package dove."),
+        ("dove_interfaces", "turtlesim", "The grader does not have the package dove_interfaces."),
+        ("dove_msgs", "turtlesim", "The grader does not have the package dove_msgs."),
+        ("dove", "raven", "No installed package has a module dove. Check the name letter by letter."),
+        ("turtlesim.mgs", "turtlesim", "A similar module exists: turtlesim.msg."),
+        ("geometry_mgs.msg", "turtlesim", "A similar module exists: geometry_msgs.msg."),
+    ],
+)
+def test_a_package_that_was_not_handed_in_is_not_misspelt(module: str, declared: str, words: str) -> None:
+    manifest = PACKAGE_XML.replace("<depend>rclpy</depend>", f"<depend>rclpy</depend>\n  <depend>{declared}</depend>")
+    assert manifest != PACKAGE_XML
+    found = reported("import this  # crashed\n", f"ImportError: No module named '{module}'", {"package.xml": manifest})
+    assert (found.diagnosis in ("module-missing", "module-misspelt"), found.cause.startswith(words)) == (True, True)
