@@ -27,6 +27,8 @@ OUTSIDE = re.compile(
 )
 OF_THE_NODE = re.compile(r"cannot import name '(?P<name>[A-Z][A-Z0-9_]*)' from '[\w.]*\bwall_guard'")
 """Matches pytest's message about a constant that cannot be imported from the module of the node."""
+STYLE = re.compile(r"No module named '(?P<name>ament_(?:copyright|flake8|pep257|mypy|xmllint))")
+"""Matches the message about a package that checks the style of the code. A test file of `ros2 pkg create` needs it."""
 ERROR = re.compile(r"^E\s+(?P<text>\w*(?:Error|Exception|Interrupt)\b.*)$", re.MULTILINE)
 
 
@@ -101,6 +103,13 @@ def _of_ros(message: str, where: Where | None) -> Cause | None:
     if OUTSIDE.search(last_error(message)):
         text = "A test must also run without a display and without a network."
         return Cause("needs-the-outside", text, where)
+    style = STYLE.search(message)
+    if style is not None:
+        text = (
+            f"The file needs {style['name']}, which the grader does not have. `ros2 pkg create` writes such files; "
+            "they check the style of the code, not the node. Remove the file."
+        )
+        return Cause("test-import", text, where)
     constant = OF_THE_NODE.search(message)
     if constant is not None:
         text = f"Only the class is promised, not {shorten(constant['name'], 60)}. Write your numbers into the tests."

@@ -41,6 +41,11 @@ def cause(message: str, *, over: bool = False) -> str:
             "Only the class is promised, not SPEED. Write your numbers into the tests.",
         ),
         (
+            "E   ModuleNotFoundError: No module named 'ament_flake8'",
+            "E   ModuleNotFoundError: No module named 'flake8'",
+            "The file needs ament_flake8, which the grader does not have. `ros2 pkg create` writes such files;",
+        ),
+        (
             "E   fixture 'bench' not found",
             "E   AssertionError: not found",
             "No fixture is named bench. Does a function with this name have the decorator pytest.fixture?",
