@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.log_place import log_place
 from grader.checks.causes.waiting import waits_in_callback
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
@@ -68,7 +69,7 @@ def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
     wrong = [pair for pair in told if not _holds(evidence, params, *pair)]
     if not lines:
         return _none_in_format(evidence, params, goals, expected)
-    where = evidence.place("info")
+    where = log_place(evidence, student_log.Format(params.format).example())
     if wrong:
         return _wrong(evidence, params, told, wrong[0], expected)
     turning_s = sum(_ended_s(evidence, goal) - goal.t_s for goal in goals)
@@ -150,7 +151,7 @@ def _wrong(
         f"At {line.t_s:.1f} s, the line shows {line.numbers['remaining']:.2f}, "
         f"but the turtle still had to turn by {remaining:.2f} rad."
     )
-    where = evidence.place("info")
+    where = log_place(evidence, student_log.Format(params.format).example())
     if all(_holds(evidence, params, *pair, factor=-1.0) for pair in told):
         return failed(observed, expected, Cause("wrong-sign", "Log the number from the feedback unchanged.", where))
     if all(_holds(evidence, params, *pair, signed=False) for pair in told):

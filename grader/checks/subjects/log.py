@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed, ended_early
+from grader.checks.causes.log_place import LEVELS, log_place
 from grader.checks.causes.timers import timer_fault
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_not_set import compared_condition
@@ -18,7 +19,7 @@ from grader.checks.edit import at
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.rate import Rate, Subject, rate_of
-from grader.common.words import shorten
+from grader.common.words import a_list, shorten
 from grader.evidence import student_log
 from grader.evidence.arrivals import measure_arrivals
 from grader.submission.constants import evaluate
@@ -34,7 +35,6 @@ LOG_LINE = Subject("log line", "info")
 FORMAT = "The format of a line, with a replacement field for each number, such as `Hello {counter}` or `x={x:.2f}`."
 UNRECEIVED = "No messages will be received from it"
 """rclpy logs this if a subscription is not compatible with a publisher."""
-LEVELS = ("info", "warning", "warn", "error", "fatal")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,9 +110,10 @@ def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expe
     observed = f'The last log line{when} is "{shorten(line, 90)}".'
     why = Cause("log-format", "Compare the line letter by letter: capital letters, spaces and dots matter.")
     pattern = student_log.Format(params.format).pattern()
+    words = student_log.FIELD.sub(" ", params.format).split()
     if re.search(r"\{[\w.:]+\}", line):
         text = "The line contains the braces themselves. An f-string replaces the braces with a value."
-        where = evidence.place(*LEVELS)
+        where = log_place(evidence, line)
         why = Cause("log-numbers", text, where).fixed_by(at(where, '("', '(f"'))
     elif method := re.search(r"<bound method \w+\.(\w+) of ", line):
         why = Cause("log-numbers", f"{method[1]} is a method, so the line shows the method itself instead of a value.")
@@ -127,7 +128,9 @@ def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expe
         why = Cause("log-numbers", "The words are right, but the numbers are missing or have the wrong format.")
         if ":." in params.format:
             why = replace(why, text=why.text + " In an f-string, {value:.2f} writes two decimal places.")
-    return failed(observed, expected, why.at(evidence.place(*LEVELS)))
+    elif missing := [f'"{word}"' for word in words if word not in line]:
+        why = replace(why, text=f"The line does not contain {a_list(missing)}.")
+    return failed(observed, expected, why.at(log_place(evidence, line)))
 
 
 def _same_words(line: str, format_: str) -> bool:
@@ -163,7 +166,7 @@ def log_counter(evidence: Evidence, params: Counter) -> Finding:
     numbers = [line.numbers[params.counts] for line in student_log.in_format(evidence.recording, params.format)]
     form = student_log.Format(params.format)
     expected = f'"{form.example(params.first)}", then "{form.example(params.first + 1)}", and so on.'
-    where = evidence.place(*LEVELS)
+    where = log_place(evidence, form.example(params.first))
     if len(numbers) < 2:
         observed = "There are fewer than two lines to compare."
         return failed(observed, expected, Cause("too-few-log-lines", ended_early(evidence), where))

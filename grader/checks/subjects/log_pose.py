@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.log_place import log_place
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.starved import too_busy
@@ -63,6 +64,7 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
     if len(logged) < FEWEST:
         return _too_few(evidence, params.format)
 
+    where = log_place(evidence, student_log.Format(params.format).example())
     early = [line for line in logged if line.t_s < evidence.trial.scenario.pose_from_s]
     if early:
         observed = "A line with numbers was logged before the first pose arrived."
@@ -70,7 +72,6 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
             "Before the first pose, the position is unknown, not 0. Until the first pose arrives, store None and log "
             "nothing."
         )
-        where = evidence.place("info", "create_subscription")
         return failed(observed, expected, Cause("before-first-pose", cause, where))
 
     def off(line: Line, x: float, y: float) -> float:
@@ -91,7 +92,7 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
         why = Cause("x-y-swapped", "x and y are swapped.")
     elif len({(each.numbers["x"], each.numbers["y"]) for each in logged}) == 1:
         why = Cause("stale-pose", "The numbers never change. Store x and y in self each time a message arrives.")
-    return failed(observed, expected, why.at(evidence.place("info", "create_subscription")))
+    return failed(observed, expected, why.at(where))
 
 
 def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
@@ -207,7 +208,7 @@ def _too_few(evidence: Evidence, text_: str, from_s: float = 0.0) -> Finding:
     if sum(line.t_s >= from_s for line in student_log.in_format(evidence.recording, text_)) >= FEWEST:
         return too_busy()
     expected = f"The log has at least {FEWEST} lines in this format."
-    where = evidence.place("info")
+    where = log_place(evidence, student_log.Format(text_).example())
     return failed("There are too few lines to compare.", expected, Cause("too-few-log-lines", where=where))
 
 

@@ -55,6 +55,13 @@ def test_lines_in_the_format_are_enough_whatever_else_is_logged() -> None:
             'The last log line is "Hello: 0".',
             "Compare the line letter by letter: capital letters, spaces and dots matter.",
         ),
+        ("Count 0", HELLO, 'The last log line is "Count 0".', 'The line does not contain "Hello".'),
+        (
+            "X = 1.23 at y=5",
+            "x={x:.2f} y={y:.2f} distance={d:.2f}",
+            'The last log line is "X = 1.23 at y=5".',
+            'The line does not contain "x=" and "distance=".',
+        ),
         (
             "Hello",
             HELLO,
@@ -85,6 +92,29 @@ def test_a_line_in_another_format_is_shown_with_what_differs(log: str, format_: 
     finding = in_format(lines(log), format_)
     assert (finding.status, finding.observed, finding.cause) == (Status.FAILED, observed, cause)
     assert finding.diagnosis in ("log-capitals", "log-more", "log-numbers", "log-format")
+
+
+@pytest.mark.parametrize(
+    ("message", "line"),
+    [
+        ("str(self.count)", "turtle 3"),
+        ('"turtle " + str(self.count)', "turtle 3"),
+        ('f"turtle {self.count}"', "turtle 3"),
+        ('"turtle %d" % self.count', "turtle 3"),
+        ('"turtle {} of 9".format(self.count)', "turtle 3 of 9"),
+        ('"turtle" + " 3"', "turtle 3"),
+    ],
+)
+def test_the_place_is_the_call_that_can_have_written_the_line(message: str, line: str) -> None:
+    wrong = ('"I have started"', 'f"{self.count} turtles"', '"a turtle %d" % 3', '"turtle {}s".format(3)')
+    for first in wrong:
+        node = LOGS.replace("super()", f"self.get_logger().info({first})\n        super()", 1)
+        start = node[: node.index(first)].count("\n") + 1
+        node = node.replace("def send(self):", f"def send(self):\n        self.get_logger().info({message})")
+        here = node[: node.index(message)].count("\n") + 1
+        assert str(in_format(lines(line), node=node).where) == f"{NODE_FILE}:{here}"
+        unknown = here if message.startswith("str(") else start
+        assert str(in_format(lines("I ended"), node=node).where) == f"{NODE_FILE}:{unknown}"
 
 
 @pytest.mark.parametrize(
@@ -156,6 +186,14 @@ def test_the_counter(numbers: tuple[int, ...], diagnosis: str | None, observed: 
     assert (finding.diagnosis, finding.observed) == (diagnosis, observed)
     assert str(finding.where) == ("None" if diagnosis is None else NODE_FILE)
     assert ("Log the number first, then increase it." in finding.cause) == (numbers[0] == 1)
+
+
+def test_the_place_of_a_counter_is_the_line_that_logs_it() -> None:
+    source = LOGS.replace("super()", 'self.get_logger().info("Hello")\n        super()', 1)
+    source = source.replace('info("...")', 'info(f"Hello {self.count}")')
+    line = source[: source.index('f"Hello')].count("\n") + 1
+    given = evidence(recording([], log=hello(3, 2, 1)), submission({NODE_FILE: source}))
+    assert str(found(LOG_COUNTER, given, format=HELLO, counts="counter").where) == f"{NODE_FILE}:{line}"
 
 
 @pytest.mark.parametrize("numbers", [(0, 1, 1), (1, 1, 1)])
