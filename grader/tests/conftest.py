@@ -85,12 +85,16 @@ def _no_blocked_signals() -> Iterator[None]:
 
 
 @pytest.fixture(autouse=True)
-def _no_open_files() -> Iterator[None]:
-    """Check that no test leaves many descriptors open. pexpect needs descriptors below 1024 (see select(2))."""
+def _no_open_files(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Check that no test leaves many descriptors open. pexpect needs descriptors below 1024 (see select(2)).
+
+    Tests that use `gradings` are not checked, because other cases are being graded in the meantime.
+    """
     before = descriptors()
     yield
     left = len(descriptors() - before)
-    assert left <= MOST_LEFT_OPEN, f"this test leaves {left} descriptors open"
+    if "gradings" not in request.fixturenames:
+        assert left <= MOST_LEFT_OPEN, f"this test leaves {left} descriptors open"
 
 
 @pytest.fixture(scope="session")

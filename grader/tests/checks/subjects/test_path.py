@@ -126,6 +126,8 @@ def test_a_call_that_does_not_move_the_turtle_is_not_said_to_move_it() -> None:
     found = finding("circle", evidence(replace(SHAPES["good"](), interventions=("set_parameters",))))
     observed = "Something other than a velocity command may have changed the turtle's movement: set_parameters."
     assert (found.diagnosis, found.observed) == ("intervention", observed)
+    moved = finding("circle", evidence(SHAPES["teleported"]()))
+    assert "may have changed the turtle's movement" not in moved.observed
 
 
 @pytest.mark.parametrize(
