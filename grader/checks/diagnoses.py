@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.diagnoses_of_catching import OF_CATCHING
 from grader.checks.diagnoses_of_files import OF_FILES
+from grader.checks.diagnoses_of_functions import OF_FUNCTIONS
 
 if TYPE_CHECKING:
     from grader.checks.diagnosis import Diagnosis
@@ -19,6 +20,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
     **OF_FILES,
     "Starting and stopping": {
         "crash": "the node crashed, and only the exception is known",
+        "own-exception": "the node raises an exception itself, and nothing catches it",
         "needs-stdin": "the node waits for keyboard input",
         "node-name-invalid": "the node name contains characters that are not allowed",
         "topic-name-invalid": "the name of a topic, service or action is not valid, for example because of a space",
@@ -145,6 +147,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "stale-pose": "the logged position never changes",
         "wrong-position": "the logged position is wrong",
         "distance-zero": "the logged distance stays 0",
+        "distance-replaced": "the distance is replaced instead of increased",
         "distance-from-start": "the distance is the straight line to the start instead of the length of the trajectory",
         "distance-by-chords": "the distance is the sum of lines between logged positions instead of all small steps",
         "distance-from-zero": "the distance includes the step from x=0 y=0 to the first position",
@@ -212,6 +215,8 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "starts-a-process": "the tests start the node as another process",
         "sleeps-by-luck": "the tests sleep for a fixed time instead of waiting for a message",
         "by-chance": "the tests use random numbers",
+        "test-named-twice": "two tests have the same name",
+        "assert-vacuous": "an assert holds on every node",
         "rejects-right": "a test fails on the correct node",
         "bench-wall-time": "the tests advance the clock of a node that uses the system time",
         "bench-not-spun": "no callback of the node under test runs, because no executor spins the node",
@@ -262,33 +267,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "all-messages": "the messages of all topics are used instead of those of one topic",
         "rate-off-by-one": "the rate is computed from the number of messages instead of the number of intervals",
     },
-    "Functions and programs": {
-        "function-missing": "the module does not have the required function, or does not exist",
-        "result-form": "a function returns something other than the required numbers, such as None",
-        "result-order": "a function returns the right values in the wrong order",
-        "radius-squared": "the square of the radius is returned",
-        "diameter": "the diameter is given as the radius",
-        "radius-without-centre": "the radius is computed without the squares of the centre's coordinates",
-        "centre-doubled": "the centre is twice as far away as it should be",
-        "centre-sign": "the centre has the wrong sign",
-        "mean-for-centre": "the mean of the points of an arc is used as the centre",
-        "extremes-for-centre": "the centre or the radius is computed only from the extremes of the points",
-        "wrong-fit": "the fitted circle is wrong",
-        "lists-refused": "a function works with arrays but not with lists",
-        "list-for-array": "a program computes with a whole list, as if the list were an array",
-        "own-name-read": "the program reads its own name instead of its first argument",
-        "lstsq-result": "numpy's lstsq is called incorrectly, or its result is used incorrectly",
-        "no-error": "a function returns a value instead of raising an exception",
-        "other-error": "a function raises the wrong exception, or ends the program instead of raising one",
-        "empty-error": "a function raises the right exception, but without a message",
-        "call-too-long": "a function or a program does not end in time",
-        "call-ended": "a function ends the whole program, or a program ends with an error but without a traceback",
-        "prints-nothing": "the program prints nothing",
-        "print-format": "the printed line has the wrong format",
-        "wrong-count": "the number of messages is wrong",
-        "program-traceback": "the program ends with a traceback instead of a message",
-        "exit-code": "if something is missing, the program ends with exit code 0, without a message, or not by itself",
-    },
+    **OF_FUNCTIONS,
     **OF_CATCHING,
     "Advice": {
         "no-timer": "the node does not use a timer",

@@ -64,6 +64,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "entry-point-format": "setuptools cannot read the entry point",
         "entry-point-slash": "the entry point names a file path instead of a module",
         "entry-point-no-function": "the entry point does not name a function",
+        "entry-point-other": "the entry point leads to another module than the one with its name",
         "entry-point-module": "the entry point names a module that does not exist",
         "entry-point-py": "the entry point gives the module name with the ending .py",
         "entry-point-function": "the entry point names a function that does not exist",

@@ -58,6 +58,7 @@ DiagnosisOfFiles = Literal[
     "entry-point-format",
     "entry-point-slash",
     "entry-point-no-function",
+    "entry-point-other",
     "entry-point-module",
     "entry-point-py",
     "entry-point-function",

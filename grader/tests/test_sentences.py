@@ -30,7 +30,9 @@ PATTERN = re.compile(r"\\[wsdb(]|\(\?|\S\|\S|\.\*")
 """Marks a regular expression, which is not a sentence."""
 NOT_IN_REPORTS = frozenset({"Kind", "string", "strings", "number", "choice", "names", "integer", "table", "whole"})
 """Functions whose strings describe a kind of check or its parameters."""
-NOT_EITHER = frozenset({"kind.py", "diagnoses.py", "diagnoses_of_catching.py", "diagnoses_of_files.py"})
+NOT_EITHER = frozenset(
+    {"kind.py", "diagnoses.py", "diagnoses_of_catching.py", "diagnoses_of_files.py", "diagnoses_of_functions.py"}
+)
 """Files whose sentences are only printed for authors. test_catalogue.py covers the diagnoses."""
 KEEPS_AWAY = re.compile(r"\bnot in\b|\bfound: bool|== \"\"|\bis None\b|!=|\bnot \w|parametrize")
 """Marks a test that also judges evidence for which it expects other words or none."""

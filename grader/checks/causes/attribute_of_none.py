@@ -40,5 +40,26 @@ def _before_message(scene: CrashScene, objects: list[ast.expr]) -> Cause | None:
         values = [node for node in scene.nodes if isinstance(node, ast.Assign) and holder in map(dotted, node.targets)]
         if any(isinstance(each.value, ast.Constant) and each.value.value is None for each in values):
             text = f"{shorten(holder)} is None until it gets a value. Check for None before you use the value."
-            return Cause("none-before-message", text)
+            known = _just_cleared(scene, values, holder) or _reversed(scene, holder)
+            return known or Cause("none-before-message", text)
+    return None
+
+
+def _just_cleared(scene: CrashScene, values: list[ast.Assign], holder: str) -> Cause | None:
+    """Return the cause if the line directly before the crash sets the attribute to None, else None."""
+    for node in values:
+        cleared = isinstance(node.value, ast.Constant) and node.value.value is None
+        if cleared and node.lineno == scene.line - 1:
+            text = f"Line {node.lineno} sets {shorten(holder)} to None, and the next line uses it."
+            return Cause("none-before-message", text, scene.at(node))
+    return None
+
+
+def _reversed(scene: CrashScene, holder: str) -> Cause | None:
+    """Return the cause if the function returns early when the attribute is not None, else None."""
+    for node in ast.walk(scene.function) if scene.function is not None else ():
+        returns = isinstance(node, ast.If) and isinstance(node.body[0], ast.Return) and node.lineno < scene.line
+        if isinstance(node, ast.If) and returns and ast.unparse(node.test) == f"{holder} is not None":
+            text = f"This condition is the wrong way round: the method returns if {shorten(holder)} is not None."
+            return Cause("none-before-message", text, scene.at(node))
     return None

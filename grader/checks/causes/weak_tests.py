@@ -46,6 +46,19 @@ def why_without_assert(test: TestFunction) -> Cause:
     return Cause("no-assert", "A test without an assert fails only if something raises an exception.", test.where)
 
 
+def named_twice(code: TestCode) -> Cause | None:
+    """Return the cause if two tests in the same class or file have the same name, else None."""
+    found: dict[tuple[str, str], TestFunction] = {}
+    for test in code.tests:
+        key = (test.module.file, test.node.name)
+        other = found.setdefault(key, test)
+        if other is not test and other.node.col_offset == test.node.col_offset == 0:
+            name = shorten(test.node.name, 60)
+            text = f"Another test on line {test.node.lineno} is also named {name}, so pytest never runs this one."
+            return Cause("test-named-twice", text, other.where)
+    return None
+
+
 def always_true(code: TestCode) -> Cause | None:
     """Return the cause if an assert is always true because its condition is a tuple, else None."""
     for module in code.modules:

@@ -13,6 +13,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes import no_entry_point, ros_names
 from grader.checks.causes.attribute_of_none import attribute_of_none
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
+from grader.checks.causes.why_no_field import why_no_field
 from grader.checks.causes.why_not_set import compared
 from grader.checks.causes.why_other_object import (
     CREATE_OBJECT,
@@ -124,11 +125,11 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
         text = f"A {owner} has no attribute or method with that name."
         return _misspelt(scene, name, ros_names.OTHERS[owner]) or set_twice(scene, name, text)
     if owner in ("int", "float") and name == "self":
-        text = "Separate two arguments with a comma, not with a dot."
-        return Cause("comma-missing", text).fixed_by(at(scene.crash.where, ". self", ", self"))
+        comma = Cause("comma-missing", "Separate two arguments with a comma, not with a dot.")
+        return comma.fixed_by(at(scene.crash.where, ". self", ", self"))
     if owner in PLAIN:
         return Cause("attribute-missing", f"This value is {PLAIN[owner]}, which has no {shorten(name)}.")
-    return None
+    return why_no_field(owner, name)
 
 
 def _of_class_elsewhere(scene: CrashScene, owner: str, name: str) -> Cause:
@@ -235,10 +236,8 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
         return Cause("attribute-too-early", text)
     compared = [each for each in scene.on_line if isinstance(each, ast.Expr) and isinstance(each.value, ast.Compare)]
     if compared:
-        place = scene.at(compared[0])
-        return Cause("equals", "== compares two values. = assigns a value to a name.", place).fixed_by(
-            at(place, "==", "=")
-        )
+        equals = Cause("equals", "== compares two values. = assigns a value to a name.", scene.at(compared[0]))
+        return equals.fixed_by(at(equals.where, "==", "="))
     local = [node for node in ast.walk(own) if isinstance(node, ast.Name) and _is_store(node) and node.id == name]
     if local:
         text = (

@@ -14,13 +14,13 @@ from grader.checks.causes.why_operands import why_operands
 from grader.checks.causes.why_other_object import CREATE_OBJECT, message_for_class, published_other
 from grader.checks.causes.why_parameters import too_few, too_many
 from grader.checks.edit import at
-from grader.common.words import a_list, count, shorten
+from grader.common.words import count, shorten
 from grader.submission.constants import dotted
 
 if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
-MISSING = re.compile(r"(?:\w+\.)*(?P<function>\w+)\(\) missing \d+ required .*arguments?: (?P<names>.*)")
+MISSING = re.compile(r"(?:(?P<of>\w+)\.)*(?P<function>\w+)\(\) missing \d+ required .*arguments?: (?P<names>.*)")
 TOO_MANY = re.compile(
     r"(?:(?P<of>\w+)\.)?(?P<function>\w+)\(\) takes (?:from \d+ to )?(?P<most>\d+) positional arguments?"
     r" but (?P<given>\d+) (?:was|were) given"
@@ -28,6 +28,8 @@ TOO_MANY = re.compile(
 KEYWORD = re.compile(r"(?:\w+\.)*(?P<function>\w+)\(\) got an unexpected keyword argument '(?P<name>\w+)'")
 NOT_CALLABLE = re.compile(r"'(?P<type>\w+)' object is not callable")
 EXPECTED = re.compile(r"Expected <class '[\w.]*\.(?P<wanted>\w+)'>, got <class '(?P<got>[\w.]+)'>")
+INNER = re.compile(r"_(?:Request|Response|Goal|Result|Feedback)$")
+"""Matches the end of the name of a class that belongs to a service or to an action."""
 LOGGED = "rcutils_log(): incompatible"
 """The beginning of rclpy's message about a log method that got something other than a string."""
 MAKERS = {
@@ -106,9 +108,9 @@ def why_type(scene: CrashScene) -> Cause | None:
         return found
     missing, many, keyword = MISSING.search(text), TOO_MANY.search(text), KEYWORD.search(text)
     if missing is not None:
-        return _too_few(scene, missing["function"], missing["names"])
+        return _init_of(scene, missing) or _too_few(scene, missing["function"], missing["names"])
     if many is not None:
-        if many["function"] == "__init__" and many["of"] in ros_names.FIELDS:
+        if many["function"] == "__init__" and (many["of"] in ros_names.FIELDS or INNER.search(many["of"] or "")):
             return Cause("message-arguments", "Create the message without arguments, then set its fields one by one.")
         return _too_many(scene, many)
     if keyword is not None:
@@ -116,6 +118,9 @@ def why_type(scene: CrashScene) -> Cause | None:
         return Cause("unexpected-keyword", f"{keyword['function']} has no parameter {keyword['name']}.{more}")
     if (expected := EXPECTED.search(text)) is not None:
         return published_other(scene, expected["wanted"], expected["got"])
+    if text.startswith("Third element") and scene.calls_on_line("declare_parameter"):
+        text = "The third argument of declare_parameter is a ParameterDescriptor. The description is one of its fields."
+        return Cause("parameter-descriptor", text)
     if (called := NOT_CALLABLE.search(text)) is not None:
         return _not_callable(scene, called["type"])
     if "'Parameter'" in text:
@@ -190,6 +195,17 @@ def _too_few(scene: CrashScene, function: str, names: str) -> Cause:
     return Cause("argument-missing", f"{function} needs more arguments: {shorten(names)}.")
 
 
+def _init_of(scene: CrashScene, missing: re.Match[str]) -> Cause | None:
+    """Return the cause if __init__ of a class that is not in this file and is not a node lacks arguments, else None."""
+    of = missing["of"]
+    if missing["function"] != "__init__" or of in (None, "Node") or scene.class_named(of) is not None:
+        return None
+    text = f"{of} needs more arguments: {shorten(missing['names'])}."
+    if of == "ActionServer":
+        text += " A node that sends goals needs an ActionClient."
+    return Cause("argument-missing", text)
+
+
 def _init_misspelt(scene: CrashScene) -> Cause | None:
     """Return the cause if the class of the new object has a method whose name is a misspelt __init__, else None."""
     for own in (each for each in scene.classes if scene.calls_on_line(each.name)):
@@ -226,7 +242,9 @@ def _too_many(scene: CrashScene, many: re.Match[str]) -> Cause | None:
     return Cause("too-many-arguments", text)
 
 
+STACK = " Put the arrays into a tuple: {}((a, b))."
 MORE = {"get_logger": " get_logger() returns the logger, and the methods of the logger take the text."}
+MORE |= {name: STACK.format(name) for name in ("column_stack", "hstack", "vstack", "concatenate")}
 
 
 def _not_callable(scene: CrashScene, kind: str) -> Cause | None:
@@ -254,41 +272,19 @@ def _not_callable(scene: CrashScene, kind: str) -> Cause | None:
                         f"{name} gets only the return value of the method."
                     )
                     return Cause("callback-called", text, scene.at(call))
-    return Cause("not-callable", f"A value of type {shorten(kind)} is called like a function.")
+    return _module_called(scene, kind) or Cause(
+        "not-callable", f"A value of type {shorten(kind)} is called like a function."
+    )
 
 
-def why_refused(scene: CrashScene) -> Cause | None:
-    """Return the cause if rclpy rejected a type, a period, a callback or a second call to init, else None."""
-    text = scene.crash.message
-    if "must only be called once" in text:
-        return Cause("init-twice", f"Call rclpy.init only once.{_calls_of_init(scene)}")
-    if "called for existing topic name" in text:
-        return Cause("second-type", "A topic has one type. A program cannot use the same topic name with two types.")
-    if "callback should be either be callable" in text:
-        return callback_called(scene) or _no_message(scene)
-    if "timer period must be non-negative" in text:
-        made = next(iter(scene.calls_on_line("create_timer")), None)
-        fix = at(scene.at(made), "(-", "(") if made is not None else ()
-        text = "The period is a time in seconds, so it cannot be negative."
-        return Cause("timer-period-negative", text).fixed_by(fix)
-    return None
-
-
-def _calls_of_init(scene: CrashScene) -> str:
-    """Return a sentence about the lines that call rclpy.init, or an empty string if there are fewer than two calls."""
-    calls = [node for node in scene.nodes if isinstance(node, ast.Call) and dotted(node.func) == "rclpy.init"]
-    lines = [str(line) for line in sorted({call.lineno for call in calls})]
-    if len(calls) < 2:
-        return ""
-    return f" rclpy.init is called {f'on lines {a_list(lines)}' if len(lines) > 1 else f'twice on line {lines[0]}'}."
-
-
-def _no_message(scene: CrashScene) -> Cause:
-    for call in scene.calls_on_line("create_subscription"):
-        name = (dotted(call.args[2]) or "").rpartition(".")[2] if len(call.args) > 2 else ""
-        for method in (each for each in scene.functions(name) if len(each.args.args) < 2):
-            text = f"{name} has no parameter for the message that a subscription passes."
-            if (only := [each.arg for each in method.args.args if each.arg != "self"]) and scene.class_around(method):
-                text = f"{name} is a method, so its first parameter is self. Write {name}(self, {only[0]})."
-            return Cause("callback-parameters", text, scene.at(method))
-    return Cause("not-callable", "The callback of a subscription is a function or method that takes the message.")
+def _module_called(scene: CrashScene, kind: str) -> Cause | None:
+    """Return the cause if the line calls a module that the file imports by name, else None."""
+    imported = [alias for node in scene.nodes if isinstance(node, ast.Import) for alias in node.names]
+    names = {alias.asname or alias.name for alias in imported}
+    called = [dotted(node.func) for node in scene.on_line if isinstance(node, ast.Call)]
+    name = next((each for each in called if each in names), None) if kind == "module" else None
+    return (
+        Cause("not-callable", f"{name} is a module. Write the name of one of its functions after a dot.")
+        if name
+        else None
+    )

@@ -11,7 +11,7 @@ from grader.checks.causes.comma_for_dot import comma_for_dot
 from grader.checks.causes.crash_scene import CrashScene
 from grader.checks.causes.trailing_comma import trailing_comma
 from grader.checks.causes.why_attributes import why_no_attribute
-from grader.checks.causes.why_calls import why_refused, why_type
+from grader.checks.causes.why_calls import why_type
 from grader.checks.causes.why_ended import named_only
 from grader.checks.causes.why_fields import why_field
 from grader.checks.causes.why_imports import why_no_import
@@ -19,6 +19,8 @@ from grader.checks.causes.why_interface import why_interface
 from grader.checks.causes.why_names import why_no_name, why_unbound
 from grader.checks.causes.why_none import why_none
 from grader.checks.causes.why_passed import why_passed
+from grader.checks.causes.why_rate import callbacks_of
+from grader.checks.causes.why_refused import why_refused
 from grader.checks.causes.why_response import why_response
 from grader.checks.causes.why_transition import why_no_transition
 from grader.checks.outcome import Finding, failed
@@ -79,9 +81,17 @@ def _why_undeclared(scene: CrashScene) -> Cause:
 
 
 def _why_value(scene: CrashScene) -> Cause | None:
+    if any(isinstance(node, ast.Raise) for node in scene.on_line):
+        text = "This line raises the exception itself. An exception that nothing catches ends the program."
+        around = scene.function.name if scene.function is not None else ""
+        if any(name == around for _, name in callbacks_of(scene.evidence, "add_on_set_parameters_callback")):
+            text = "To refuse a value, do not raise an exception. Return a SetParametersResult with successful=False."
+        return Cause("own-exception", text)
     if "to unpack" in scene.crash.message:
         text = "The number of names differs from the number of values that are unpacked."
         return comma_for_dot(scene) or Cause("crash", text)
+    if "list.remove(x): x not in list" in scene.crash.message:
+        return Cause("crash", "remove needs an item that is equal to one in the list, and the list has no such item.")
     if "empty" not in scene.crash.message or not any(name in scene.crash.message for name in ("min()", "max()")):
         return None
     return Cause("crash", "min or max got no values to compare. Check first whether there are any values.")
@@ -111,6 +121,26 @@ def _why_resized(scene: CrashScene) -> Cause | None:
     return Cause("crash", text)
 
 
+def _why_await(scene: CrashScene) -> Cause | None:
+    """Return the cause if a function that is not `async` contains await, else None."""
+    if "'await' outside async function" not in scene.crash.message:
+        return None
+    text = (
+        "await is allowed only in a function that begins with async def. Instead of waiting, pass the next step to "
+        "add_done_callback."
+    )
+    return Cause("syntax-error", text)
+
+
+def _why_zero(scene: CrashScene) -> Cause | None:
+    """Return the cause if the value of a float parameter is read from integer_value, which is 0 then, else None."""
+    for node in scene.nodes:
+        if isinstance(node, ast.Attribute) and node.attr == "integer_value":
+            text = "integer_value is 0 if the parameter is a float. The number is then in double_value."
+            return Cause("parameter-itself", text, scene.at(node))
+    return None
+
+
 EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "AssertionError": why_field,
     "AttributeError": why_no_attribute,
@@ -124,10 +154,12 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "ParameterNotDeclaredException": _why_undeclared,
     "RCLError": lambda scene: why_no_transition(scene) or why_refused(scene),
     "RuntimeError": lambda scene: _why_resized(scene) or why_refused(scene),
+    "SyntaxError": _why_await,
     "TypeError": lambda scene: why_none(scene) or why_type(scene),
     "UnboundLocalError": why_unbound,
     "exit code 2": _why_usage,
     "ValueError": _why_value,
+    "ZeroDivisionError": _why_zero,
 }
 """Maps an exception to a function that returns the cause of the exception, or None if the source does not show it."""
 

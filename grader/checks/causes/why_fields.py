@@ -7,11 +7,14 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes import ros_names
 from grader.checks.edit import at
 from grader.common.words import shorten
 from grader.submission.constants import dotted
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from grader.checks.causes.crash_scene import CrashScene
     from grader.checks.edit import Edit
 
@@ -38,7 +41,7 @@ def why_field(scene: CrashScene) -> Cause | None:
             text = f"The field {many['field']} is a list. Write square brackets, even for one element."
             return Cause("field-type", text)
         if "Invalid arguments passed to constructor" in scene.crash.message:
-            return Cause("message-arguments", "Create the message without arguments, then set its fields one by one.")
+            return _no_such_field(scene)
         return None
     field, wanted = match["field"], match["type"]
     value = assigned(scene, field)
@@ -56,6 +59,18 @@ def why_field(scene: CrashScene) -> Cause | None:
     if isinstance(resolved, ast.Constant) and resolved is value:
         return cause.fixed_by(_as_float(scene, resolved))
     return cause
+
+
+def _no_such_field(scene: CrashScene) -> Cause:
+    """Return the cause for a message that was created with an argument that is not one of its fields."""
+    names = scene.crash.message.rpartition(": ")[2].rstrip(".")
+    text = "Create the message without arguments, then set its fields one by one."
+    made = [node for node in scene.on_line if isinstance(node, ast.Call)]
+    calls = [call for call in made if names in [keyword.arg for keyword in call.keywords]]
+    of = (dotted(calls[0].func) or "").rpartition(".")[2] if calls else ""
+    if calls and of not in ros_names.FIELDS:
+        text = f"The message has no field {shorten(names)}. Check the name letter by letter."
+    return Cause("message-arguments", text)
 
 
 def _as_float(scene: CrashScene, value: ast.Constant) -> tuple[Edit, ...]:
@@ -151,9 +166,20 @@ def assigned(scene: CrashScene, field: str) -> ast.expr | None:
             isinstance(each, ast.Attribute) and each.attr == field for each in node.targets
         ):
             return node.value
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Tuple):
+            pairs = (pair for target in node.targets for pair in _pairs(target, node.value))
+            given = next((value for each, value in pairs if getattr(each, "attr", "") == field), None)
+            if given is not None:
+                return given
         if isinstance(node, ast.keyword) and node.arg == field:
             return node.value
     return None
+
+
+def _pairs(target: ast.expr, values: ast.Tuple) -> Iterator[tuple[ast.expr, ast.expr]]:
+    """Yield the targets and values of an assignment such as `msg.x, msg.y = 1, 2`."""
+    if isinstance(target, ast.Tuple) and len(target.elts) == len(values.elts):
+        yield from zip(target.elts, values.elts, strict=True)
 
 
 def _resolved(scene: CrashScene, value: ast.expr) -> ast.expr:

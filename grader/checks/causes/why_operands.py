@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.comma_for_dot import comma_for_dot
+from grader.common.words import shorten
+from grader.submission.constants import dotted
 
 if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
 OPERANDS = re.compile(r"unsupported operand type\(s\) for (?P<operator>[^:]+): '(?P<left>\w+)' and '(?P<right>\w+)'")
 CONCATENATED = re.compile(r"can only concatenate (?P<left>\w+) \(not \"(?P<right>\w+)\"\) to \w+")
+CARET = re.compile(r"unsupported operand type\(s\) for \^=?: |ufunc 'bitwise_xor' not supported")
+QUOTES = "'\""
 NUMBERS = frozenset({"int", "float", "float64"})
 
 
 def why_operands(scene: CrashScene) -> Cause | None:
     """Return the cause of a TypeError that an operator raised, or None for any other TypeError."""
+    if CARET.search(scene.crash.message):
+        return Cause("caret-for-power", "In Python, ^ is not a power. Write x**2 for the square of x.")
     found = OPERANDS.search(scene.crash.message) or CONCATENATED.search(scene.crash.message)
     if found is None:
         return None
@@ -31,6 +38,37 @@ def why_operands(scene: CrashScene) -> Cause | None:
     if "list" in types and types & NUMBERS:
         text = "A list is not an array: Python cannot compute with a whole list. `np.array` turns a list into an array."
         return Cause("list-for-array", text)
+    if "property" in types:
+        text = "A class is used in place of a message: its fields have no values. Compare upper and lower case."
+        return Cause("class-for-object", text)
+    if "ParameterValue" in types:
+        text = "get_parameter_value returns a ParameterValue, which is a message. The field double_value has the float."
+        return Cause("parameter-itself", text)
+    if "str" in types and types & NUMBERS and (quoted := _default_in_quotes(scene)) is not None:
+        return quoted
     if (comma := comma_for_dot(scene)) is not None:
         return comma
     return Cause("crash", f"This operator cannot combine a value of type {left} with a value of type {right}.")
+
+
+def _default_in_quotes(scene: CrashScene) -> Cause | None:
+    """Return the cause if the module declares a parameter whose default value is a number in quotation marks."""
+    for node in scene.nodes:
+        declares = isinstance(node, ast.Call) and (dotted(node.func) or "").endswith("declare_parameter")
+        if isinstance(node, ast.Call) and declares and len(node.args) > 1:
+            name, default = node.args[:2]
+            if isinstance(default, ast.Constant) and isinstance(default.value, str) and _is_number(default.value):
+                text = (
+                    f"The default value of the parameter {shorten(ast.unparse(name).strip(QUOTES))} is a string. "
+                    f"Write {shorten(default.value)} without quotation marks."
+                )
+                return Cause("parameter-type", text, scene.at(default))
+    return None
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

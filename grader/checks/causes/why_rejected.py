@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.weak_tests import always_false
+from grader.checks.causes.why_test_raised import why_test_raised
 from grader.common.words import shorten
 from grader.submission.where import Where
 
@@ -58,7 +59,7 @@ def why_rejected(run: NodeRun, code: TestCode, numbers: str = "") -> Cause:
         return known
     if run.outcome == "import":
         return Cause("test-import", shorten(last_error(run.message), 150), where)
-    false = always_false(code)
+    false = always_false(code) or why_test_raised(run.message, code, where)
     if false is not None:
         return false
     text = "Compare the test with the promises in wall_guard.py. Does the test give the node enough time?"
@@ -84,6 +85,9 @@ def _known(message: str, where: Where | None) -> Cause | None:
     if field is not None:
         text = f"The field {shorten(field['name'], 60)} is a float. Write the number with a decimal point."
         return Cause("int-for-float", text, where)
+    if "approx() is not supported in a boolean context" in message:
+        text = "pytest.approx is one side of a comparison: assert value == pytest.approx(expected)."
+        return Cause("compares-only", text, where)
     return _of_ros(message, where)
 
 

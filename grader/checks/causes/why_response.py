@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.why_rate import callbacks_of
 from grader.checks.causes.why_silent import methods_of
+from grader.common.words import shorten
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -42,6 +43,9 @@ def why_response(scene: CrashScene) -> Cause | None:
 
 
 def _returned_instead(method: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
-    """Return the first constant that the method returns, or an empty string."""
-    returned = (node.value for node in ast.walk(method) if isinstance(node, ast.Return))
+    """Return the first constant that the method returns, or its first parameter, the request, or an empty string."""
+    returned = [node.value for node in ast.walk(method) if isinstance(node, ast.Return)]
+    request = method.args.args[1].arg if len(method.args.args) > 1 else ""
+    if any(isinstance(value, ast.Name) and value.id == request for value in returned):
+        return f"{shorten(request)}, its first parameter"
     return next((repr(value.value) for value in returned if isinstance(value, ast.Constant)), "")

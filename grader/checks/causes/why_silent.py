@@ -28,6 +28,7 @@ WAKES = ("create_timer", "create_subscription", "create_service", "create_client
 """Functions that give a node something to do in spin_once."""
 ANSWERS = ("wait_for_service", "service_is_ready", "wait_for_server", "server_is_ready")
 """Methods of clients that return True as soon as the server exists."""
+CATCH = "/catch"
 ALWAYS = ("True", "1", "rclpy.ok()")
 
 
@@ -104,16 +105,24 @@ def _stuck(evidence: Evidence) -> Cause | None:
 
 def _waits(evidence: Evidence, node: ast.AST, module: Module) -> Cause | None:
     """Return the cause if the node waits forever for a service that no node of the trial has, else None."""
+    waits = any(isinstance(each, ast.Attribute) and each.attr == "wait_for_service" for each in module.nodes)
+    return not_there(evidence, node, module) if waits else None
+
+
+def not_there(evidence: Evidence, node: ast.AST, module: Module) -> Cause | None:
+    """Return the cause if this call creates a client of a service that no node of the trial has, else None."""
     if not isinstance(node, ast.Call) or getattr(node.func, "attr", "") != "create_client" or len(node.args) < 2:
         return None
     name = evaluate(node.args[1], module.names)
-    waits = any(isinstance(each, ast.Attribute) and each.attr == "wait_for_service" for each in module.nodes)
     recording = evidence.recording
     observed = {*(each.service for each in recording.offers), *(each.service for each in recording.calls)}
+    observed |= {CATCH} if recording.catch_from_s is not None else set()
     known = observed | set(ros_names.SERVICES)
-    if not isinstance(name, str) or not waits or f"/{name.strip('/')}" in known:
+    if not isinstance(name, str) or f"/{name.strip('/')}" in known:
         return None
-    guess = nearest(f"/{name.strip('/')}", ros_names.SERVICES)
+    last = name.rpartition("/")[2]
+    same = next((each for each in ros_names.SERVICES if each.rpartition("/")[2] == last), None)
+    guess = same or nearest(f"/{name.strip('/')}", ros_names.SERVICES)
     more = f" A similar service exists: {guess}." if guess else ""
     return Cause("service-not-there", f"The node waits for the service {shorten(name)}, which does not exist.{more}")
 

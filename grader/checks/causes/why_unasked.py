@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.waiting import waits_in_callback
-from grader.checks.causes.why_silent import why_nothing
+from grader.checks.causes.why_silent import not_there, why_nothing
 from grader.common.words import nearest, shorten
-from grader.submission.constants import evaluate
+from grader.submission.constants import dotted, evaluate
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
+    from grader.submission.code import Module
 
 
 def why_unasked(evidence: Evidence, service: str) -> Cause:
@@ -20,6 +23,7 @@ def why_unasked(evidence: Evidence, service: str) -> Cause:
     return (
         waits_in_callback(evidence)
         or _wrong_name(evidence, service)
+        or _never_ready(evidence)
         or why_nothing(evidence, ("call_async", "call"))
         or _never_called(evidence)
     )
@@ -39,6 +43,27 @@ def _wrong_name(evidence: Evidence, wanted: str) -> Cause | None:
         if near:
             return Cause("service-name", text, call.where)
     return None
+
+
+def _never_ready(evidence: Evidence) -> Cause | None:
+    """Return the cause if the node calls service_is_ready of a client whose service does not exist, else None."""
+    for module in evidence.code.modules:
+        for node in module.nodes:
+            if isinstance(node, ast.Call) and _asks_whether_ready(node, module):
+                cause = not_there(evidence, node, module)
+                if cause is not None:
+                    return cause.at(Where(module.file, node.lineno))
+    return None
+
+
+def _asks_whether_ready(made: ast.Call, module: Module) -> bool:
+    """Return whether the module calls service_is_ready of the client that this call creates."""
+    assigned = (node for node in module.nodes if isinstance(node, ast.Assign) and node.value is made)
+    clients = {dotted(target) for node in assigned for target in node.targets} - {None}
+    return any(
+        isinstance(node, ast.Attribute) and node.attr == "service_is_ready" and dotted(node.value) in clients
+        for node in module.nodes
+    )
 
 
 def _never_called(evidence: Evidence) -> Cause:

@@ -122,6 +122,9 @@ def _wrong_names(evidence: Evidence, message: Announcement, heard: list[Announce
     if any(name not in known and _is_of_parts(name, known) for name in strange):
         text = 'The text consists of the names, separated by single spaces: " ".join(names).'
         return failed(f'{at} is "{shorten(message.text)}".', expected, Cause("target-format", text, where))
+    if len(message.names) > 1 and "".join(message.names) in known:
+        text = "join puts spaces between the letters, because it got one string. It needs a list of names."
+        return failed(f'{at} is "{shorten(message.text)}".', expected, Cause("target-format", text, where))
     if strange:
         return _not_there(evidence, message, strange, expected)
     missing = sorted(throughout - called - set(message.names))

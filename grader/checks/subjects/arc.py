@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.sign_for_sum import sign_for_sum
 from grader.checks.causes.waiting import waits_in_callback
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_path import radius_of_commands
@@ -123,6 +124,9 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
     )
     near = near or wide.near(angle) or pace.near(speed)
     if not wide.holds(angle):
+        crash = crash_of(evidence)
+        if crash is not None and _until_the_end(chosen):
+            return crash_finding(evidence, crash, end_observed(evidence), expected)
         observed, cause = _other_angle(evidence, params, chosen, angle)
         return failed(observed, expected, cause, near_edge=near)
     if not pace.holds(speed):
@@ -134,10 +138,10 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
 def _other_angle(evidence: Evidence, params: Arc, chosen: Steps, angle: float) -> tuple[str, Cause]:
     """Return the observation and the cause for an arc with the wrong angle (degrees)."""
     too_long = angle > params.angle_deg
-    if too_long and np.flatnonzero(chosen)[-1] == len(chosen) - 1:
+    if too_long and _until_the_end(chosen):
         observed = f"This arc has an angle of {angle:.0f} degrees, and the turtle was still driving it at the end."
         text = "The state must change after the last timer call of this arc. At which value does the counter start?"
-        return observed, Cause("drives-on", text, evidence.place("publish"))
+        return observed, sign_for_sum(evidence, "drives-on") or Cause("drives-on", text, evidence.place("publish"))
     if not too_long and params.color is not None and _always_draws(evidence) and _goes_on(evidence, chosen):
         text = "The pen must have this colour before the turtle moves: wait for the response before you drive."
         cause = Cause("not-in-colour", text, evidence.place("publish"))
@@ -145,6 +149,11 @@ def _other_angle(evidence: Evidence, params: Arc, chosen: Steps, angle: float) -
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
     text = "The angle is angular.z times the time, which is the number of timer calls times the timer period."
     return f"This arc has an angle of {angle:.0f} degrees.", Cause("wrong-angle", text, where)
+
+
+def _until_the_end(chosen: Steps) -> bool:
+    """Return whether the arc includes the last step of the trajectory."""
+    return bool(chosen[-1])
 
 
 def _not_followed(evidence: Evidence, params: Arc) -> Cause | None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.sign_for_sum import sign_for_sum
 from grader.checks.causes.too_soon import too_soon
 from grader.checks.kind import Kind, choice, number
 from grader.checks.outcome import Finding, failed, passed
@@ -91,8 +92,9 @@ def eight(evidence: Evidence, params: Eight) -> Finding:
     lobes = lobes_of(trajectory)
     if len(lobes) < 2:
         what = f"only one lobe, to the {lobes[0].side}" if lobes else "no lobe"
-        cause = "When the first lobe is closed, the sign of angular.z must change for the second one."
-        return failed(f"The trajectory has {what}.", expected, Cause("one-lobe", cause, where))
+        text = "When the first lobe is closed, the sign of angular.z must change for the second one."
+        one = sign_for_sum(evidence, "one-lobe") or Cause("one-lobe", text, where)
+        return failed(f"The trajectory has {what}.", expected, one)
     if params.first not in (lobes[0].side, "either"):
         observed = f"The first lobe goes to the {lobes[0].side}."
         cause = "A positive angular.z turns the turtle to the left."
@@ -157,6 +159,8 @@ def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: boo
         cause = "A full circle takes 2 pi / angular.z seconds. How many timer calls does a full circle take?"
         if last and degrees > 360.0:
             cause = f"After the second lobe, the turtle must stand still. {ZEROS}"
+        if full.holds(math.radians(degrees)):
+            cause = "angular.z is in radians per second, and a full circle is 2 pi radians, not 360."
         finding = failed(observed, wanted, Cause("lobe-angle", cause, evidence.place("create_timer")), near_edge=near)
         turning = math.degrees(float(np.abs(recording.frames.angular).max()))
         return unless_starved(finding, recording, abs(degrees - 360.0) - params.angle_tolerance_deg, turning), near

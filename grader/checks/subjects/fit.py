@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import math
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 
 IN_MODULE = ", in <module>"
 """The end of a traceback entry for code outside of functions."""
+DTYPE = re.compile(r"Cannot (?:construct a dtype from an array|interpret .* as a data type)|Field elements must be")
+"""Matches numpy's messages about an array or a list in place of the type of an array."""
 SIGMAS = 6.0
 """The maximum error that noise may cause in a correct result, in standard deviations of the best fit."""
 
@@ -148,6 +151,23 @@ def _why_raised(evidence: Evidence, crash: Crash, id_: str) -> Cause | None:
         if others:
             cause = "The function works with numpy arrays, but not with lists. `np.asarray` accepts arrays and lists."
             return Cause("lists-refused", cause)
+    if crash.error == "LinAlgError" and evidence.code.calls("solve"):
+        cause = "solve needs exactly as many equations as unknowns. lstsq accepts more equations, one for each point."
+        return Cause("lstsq-result", cause)
+    of_circle = any(each.id == id_ and each.arc for each in evidence.trial.calls.points)
+    if of_circle and crash.error == "ValueError" and _is_raise(evidence, crash.where):
+        cause = "Your own code raises this error: its condition is true for these points, although they form a circle."
+        return Cause("refuses-circle", cause)
+    stacks = evidence.code.calls("vstack")
+    if stacks and crash.error == "LinAlgError":
+        cause = "vstack puts the arrays below each other. The matrix needs one row for each point, with three columns."
+        return Cause("lstsq-result", cause, stacks[0].where)
+    if DTYPE.search(crash.message) and evidence.code.calls("array"):
+        cause = "The second argument of np.array is the type of the elements. Call np.array once for each list."
+        return Cause("array-arguments", cause, evidence.code.calls("array")[0].where)
+    if evidence.code.calls("lstsq") and "expected 3, got 2" in crash.message:
+        cause = "lstsq returns one value for each column of the matrix. Three unknowns need three columns."
+        return Cause("lstsq-result", cause)
     if evidence.code.calls("lstsq") and (crash.error == "LinAlgError" or "to unpack" in crash.message):
         cause = (
             "lstsq takes the matrix first and the right-hand side second. lstsq returns four values: the solution, "
@@ -155,6 +175,13 @@ def _why_raised(evidence: Evidence, crash: Crash, id_: str) -> Cause | None:
         )
         return Cause("lstsq-result", cause)
     return None
+
+
+def _is_raise(evidence: Evidence, where: Where | None) -> bool:
+    """Return whether the line is a raise statement."""
+    modules = (module for module in evidence.code.modules if where is not None and module.file == where.file)
+    raised = [node for module in modules for node in module.nodes if isinstance(node, ast.Raise)]
+    return any(where is not None and node.lineno == where.line for node in raised)
 
 
 def refuses(evidence: Evidence, params: OneCall) -> Finding:

@@ -30,6 +30,7 @@ HALF_TURN_S = 3.2
 """The longest time (s) that the turtle needs to reach a goal: it turns by at most pi rad, at 1 rad/s."""
 STILL_DRIVES_S = 0.5
 """If the node drives the turtle within this time (s) before the end of the trial, its drive has not ended."""
+CONVERTED_RAD = 1e-4
 LARGE_RAD = 7.0
 """A larger angle than this (rad) is more than a full turn, so it may be in degrees."""
 
@@ -72,6 +73,7 @@ def sends_goals(evidence: Evidence, params: SendsGoals) -> Finding:
         edge |= near.near(off)
         if not near.holds(off):
             turned = _other_turn(goals[first + index - 1], goal, params.turn_deg) if index else ""
+            turned = turned or (_again(goals[first - 1], goal) if first else "")
             return _other_heading(evidence, goal, heading, turned, expected, near_edge=near.near(off))
         if not _reached(evidence, goal):
             return _not_reached(evidence, goal, expected)
@@ -123,7 +125,7 @@ def _no_more(evidence: Evidence, goals: list[Goal], expected: str) -> Finding:
     crash = crash_of(evidence)
     observed = f"The node sent {count(len(goals), 'goal')}, and then no more."
     if crash is not None:
-        return crash_finding(evidence, crash, observed, expected)
+        return crash_finding(evidence, crash, f"{observed} {end_observed(evidence)}", expected)
     if goals[-1].result_asked_s is None:
         return failed(observed, expected, waits_in_callback(evidence) or _no_result(evidence))
     text = "The callback that receives the result must send the next goal."
@@ -166,16 +168,29 @@ def _other_turn(before: Goal, goal: Goal, turn_deg: float) -> str:
     )
 
 
+def _again(before: Goal, goal: Goal) -> str:
+    """Return a sentence about a goal with the heading of the previous goal or with the opposite sign, or ""."""
+    theta, earlier = float(goal.request["theta"]), float(before.request["theta"])
+    if abs(normalize(theta - earlier)) <= SAME_RAD:
+        return "This heading is the same as in the previous goal. The heading must change before the next goal is sent."
+    if abs(theta + earlier) <= SAME_RAD:
+        return "This is the heading of the previous goal with the opposite sign."
+    return ""
+
+
 def _other_heading(
     evidence: Evidence, goal: Goal, heading: float, turned: str, expected: str, *, near_edge: bool
 ) -> Finding:
     theta = float(goal.request["theta"])
     where = evidence.code.assigned("theta") or evidence.place("Goal", *SENDS)
-    observed = (
-        f"The goal sent at {goal.t_s:.1f} s has theta={theta:.2f} rad, which is {math.degrees(theta):.0f} degrees."
-    )
+    shown = f"{math.degrees(theta):.0f}"
+    degrees = f"{shown} degree{'' if shown.lstrip('-') == '1' else 's'}"
+    observed = f"The goal sent at {goal.t_s:.1f} s has theta={theta:.2f} rad, which is {degrees}."
     if abs(theta) > LARGE_RAD and abs(theta - heading) < 1.0:
         text = "The field theta is in radians. math.radians converts degrees to radians."
+        return failed(observed, expected, Cause("degrees", text, where), near_edge=near_edge)
+    if abs(theta - math.radians(math.radians(heading))) <= CONVERTED_RAD:
+        text = "This is the heading converted from degrees to radians twice. math.radians must be called only once."
         return failed(observed, expected, Cause("degrees", text, where), near_edge=near_edge)
     if abs(normalize(theta + math.radians(heading))) <= SAME_RAD:
         text = "Angles increase to the left, which is counter-clockwise."

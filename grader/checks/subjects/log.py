@@ -11,15 +11,16 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed, ended_early
 from grader.checks.causes.log_place import LEVELS, log_place
+from grader.checks.causes.sign_for_sum import sign_for_sum
 from grader.checks.causes.timers import timer_fault
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_not_set import compared_condition
 from grader.checks.causes.why_silent import why_nothing, why_qos
 from grader.checks.edit import at
 from grader.checks.kind import Kind, number, string
-from grader.checks.outcome import Finding, failed, passed
+from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.subjects.rate import Rate, Subject, rate_of
-from grader.common.words import a_list, shorten
+from grader.common.words import a_list, count, shorten
 from grader.evidence import student_log
 from grader.evidence.arrivals import measure_arrivals
 from grader.submission.constants import evaluate
@@ -28,7 +29,6 @@ from grader.submission.where import Where
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from grader.checks.diagnosis import Diagnosis
     from grader.evidence.evidence import Evidence
 
 LOG_LINE = Subject("log line", "info")
@@ -125,12 +125,31 @@ def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expe
     elif re.search(rf"{pattern.pattern}(?!\.?\d)", line, re.ASCII):  # (not only the first digits of a number)
         why = Cause("log-more", "The line contains more than it should.")
     elif _same_words(line, params.format):
-        why = Cause("log-numbers", "The words are right, but the numbers are missing or have the wrong format.")
-        if ":." in params.format:
-            why = replace(why, text=why.text + " In an f-string, {value:.2f} writes two decimal places.")
+        why = _other_numbers(params.format)
     elif missing := [f'"{word}"' for word in words if word not in line]:
         why = replace(why, text=f"The line does not contain {a_list(missing)}.")
     return failed(observed, expected, why.at(log_place(evidence, line)))
+
+
+def _other_numbers(format_: str) -> Cause:
+    text = "The words are right, but the numbers are missing or have the wrong format."
+    text += " In an f-string, {value:.2f} writes two decimal places." if ":." in format_ else ""
+    return Cause("log-numbers", text)
+
+
+def unless_other_numbers(finding: Finding, evidence: Evidence, format_: str) -> Finding:
+    """Return the failed finding or, if some log lines have the right words but other numbers, one about these lines."""
+    right = student_log.in_format(evidence.recording, format_)
+    pattern = student_log.Format(format_).pattern()
+    logged = (line.text for line in student_log.students(evidence.recording))
+    others = [line for line in logged if _same_words(line, format_) and not pattern.fullmatch(line)]
+    if finding.status is not Status.FAILED or not others:
+        return finding
+    observed = (
+        f"The format fits only {len(right)} of {count(len(right) + len(others), 'log line')}. Another line is "
+        f'"{shorten(others[-1], 90)}".'
+    )
+    return failed(observed, finding.expected, _other_numbers(format_).at(log_place(evidence, others[-1])))
 
 
 def _same_words(line: str, format_: str) -> bool:
@@ -149,7 +168,8 @@ class LogRate(Rate):
 def log_rate(evidence: Evidence, params: LogRate) -> Finding:
     """Log lines in the required format arrive at the required rate."""
     arrivals = (line.t_s for line in student_log.in_format(evidence.recording, params.format))
-    return rate_of(evidence, params, LOG_LINE, measure_arrivals(evidence.recording, arrivals))
+    finding = rate_of(evidence, params, LOG_LINE, measure_arrivals(evidence.recording, arrivals))
+    return unless_other_numbers(finding, evidence, params.format)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -175,7 +195,7 @@ def log_counter(evidence: Evidence, params: Counter) -> Finding:
         observed = f"The number is always {numbers[0]:.0f}."
         why = (
             _thrown_away(evidence)
-            or _sign_for_sum(evidence, "counter-stuck")
+            or sign_for_sum(evidence, "counter-stuck")
             or _set_again(evidence)
             or Cause("counter-stuck", "Store the counter as an attribute of self and increase it in every call.", where)
         )
@@ -184,7 +204,7 @@ def log_counter(evidence: Evidence, params: Counter) -> Finding:
         at = next(index for index, step in enumerate(steps) if step != 1.0)
         observed = f"The number after {numbers[at]:.0f} is {numbers[at + 1]:.0f}."
         step = Cause("counter-step", "Each number must be one more than the previous number.", where)
-        return failed(observed, expected, _sign_for_sum(evidence, "counter-step") or step)
+        return failed(observed, expected, sign_for_sum(evidence, "counter-step") or step)
     if numbers[0] != params.first:
         observed = f"The first number is {numbers[0]:.0f}."
         assigned = next((place for value, place in _starts(evidence) if value == numbers[0]), None)
@@ -202,18 +222,6 @@ def _thrown_away(evidence: Evidence) -> Cause | None:
                 text = f"This line calculates {shorten(ast.unparse(node.value), 40)} but does not store the result."
                 where = Where(module.file, node.lineno)
                 return Cause("counter-stuck", text, where).fixed_by(at(where, " + ", " += "))
-    return None
-
-
-def _sign_for_sum(evidence: Evidence, diagnosis: Diagnosis) -> Cause | None:
-    """Return the cause if a method has =+ in place of +=, else None."""
-    for module in evidence.code.modules:
-        methods = (node for node in module.nodes if isinstance(node, ast.FunctionDef) and node.name != "__init__")
-        for node in (node for method in methods for node in ast.walk(method) if isinstance(node, ast.Assign)):
-            if isinstance(node.value, ast.UnaryOp) and isinstance(node.value.op, ast.UAdd):
-                target, where = shorten(ast.unparse(node.targets[0]), 40), Where(module.file, node.lineno)
-                text = f"=+ sets {target} to {shorten(ast.unparse(node.value.operand), 40)} in each call. += adds."
-                return Cause(diagnosis, text, where).fixed_by(at(where, "=+", "+="))
     return None
 
 

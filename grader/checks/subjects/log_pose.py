@@ -12,6 +12,7 @@ from grader.checks.causes.log_place import log_place
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.starved import too_busy
+from grader.checks.subjects.log import unless_other_numbers
 from grader.common.lazy import np
 from grader.common.words import shorten
 from grader.evidence import student_log
@@ -144,6 +145,10 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
             "There is no pose before the first one, so there is nothing to add yet, not even the distance from x=0 y=0."
         )
         return failed(observed, expected, Cause("distance-from-zero", cause, where))
+    again = _assigned_again(evidence) if min(np.diff(numbers)) < 0.0 else None
+    if again is not None:
+        cause = f"Line {again.line} replaces the distance instead of adding to it."
+        return failed(observed, expected, Cause("distance-replaced", cause, again))
     if _is_chords(logged, numbers):
         cause = (
             "The node adds straight lines from each logged position to the next. On a curve, the path is longer. "
@@ -157,6 +162,21 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
     if holds(np.cumsum(np.abs(np.diff(x)) + np.abs(np.diff(y))), lambda line: line.numbers["distance"]):
         cause = "This is the sum of abs(dx) + abs(dy). A step is the square root of dx * dx + dy * dy."
     return failed(observed, expected, Cause("wrong-distance", cause, where))
+
+
+def _assigned_again(evidence: Evidence) -> Where | None:
+    """Return the line outside __init__ that assigns a new value to the attribute which the node logs as its distance.
+
+    The line must not use the old value. Return None if there is no such line.
+    """
+    shown = " ".join(ast.unparse(each.node) for each in evidence.code.calls("info"))
+    for module in evidence.code.modules:
+        for method in (node for node in module.nodes if isinstance(node, ast.FunctionDef) and node.name != "__init__"):
+            for node in (node for node in ast.walk(method) if isinstance(node, ast.Assign)):
+                name = dotted(node.targets[0]) or ""
+                if name.startswith("self.") and f"distance={{{name}:" in shown and name not in ast.unparse(node.value):
+                    return Where(module.file, node.lineno)
+    return None
 
 
 def _added(evidence: Evidence) -> Where | None:
@@ -209,7 +229,8 @@ def _too_few(evidence: Evidence, text_: str, from_s: float = 0.0) -> Finding:
         return too_busy()
     expected = f"The log has at least {FEWEST} lines in this format."
     where = log_place(evidence, student_log.Format(text_).example())
-    return failed("There are too few lines to compare.", expected, Cause("too-few-log-lines", where=where))
+    finding = failed("There are too few lines to compare.", expected, Cause("too-few-log-lines", where=where))
+    return unless_other_numbers(finding, evidence, text_)
 
 
 def _window(recording: Recording, t_s: float, lag_s: float) -> slice:

@@ -12,8 +12,9 @@ from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.kind import Kind, choice, number, string, table
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.services import calls_of
+from grader.common.words import a_list, shorten
 from grader.common.words import number as shown
-from grader.common.words import shorten
+from grader.submission.constants import evaluate
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -30,6 +31,7 @@ INTEGER, DOUBLE = 2, 3
 UNDECLARED = "undeclared parameter"
 NOT_RETURNED = "Callback returned an invalid type"
 OTHER_TYPE = "Wrong parameter type"
+STEP = "valid step"
 READ_ONLY = "Trying to set a read-only parameter"
 OUT_OF_RANGE = re.compile(r"Parameter .* out of range|The parameter value for .* valid step")
 """The reasons that rclpy itself gives when it refuses a value. Every other reason comes from the student's callback."""
@@ -51,7 +53,8 @@ def declares(evidence: Evidence, params: Declares) -> Finding:
     expected = f"The parameter {name} is a float with a description and the range {limits}."
     where = evidence.place("declare_parameter", "declare_parameters")
     service = f"/{evidence.trial.node}/describe_parameters"
-    call = next((each for each in calls_of(evidence) if each.by_trial and each.service == service), None)
+    calls = [each for each in calls_of(evidence) if each.by_trial and each.service == service]
+    call = next((each for each in calls if name in each.request.get("names", [name])), None)
     if call is None or call.response is None:
         return _unanswered(evidence, f"The node did not respond when the trial asked for {name}.", expected, where)
     found = _described(call, name)
@@ -166,13 +169,24 @@ def _undeclared(evidence: Evidence, name: str, expected: str) -> Finding:
         return crash_finding(evidence, crash, end_observed(evidence), expected)
     text = "declare_parameter declares a parameter, with its default value and its descriptor."
     where = evidence.place("declare_parameter", "get_parameter", "__init__")
+    if others := [name_ for name_ in declared_names(evidence) if name_ != name]:
+        text = f"The name is the first argument of declare_parameter. The node declares {a_list(others)}."
     return failed(f"The node has no parameter {name}.", expected, Cause("parameter-undeclared", text, where))
+
+
+def declared_names(evidence: Evidence) -> list[str]:
+    """Return the names of parameters that the source declares with declare_parameter, sorted."""
+    calls = evidence.code.calls("declare_parameter")
+    names = {evaluate(call.argument(0, "name"), call.module.names) for call in calls}
+    return sorted(shorten(name) for name in names if isinstance(name, str))
 
 
 def _refused(evidence: Evidence, observed: str, expected: str, reason: str) -> Finding:
     where = evidence.place("add_on_set_parameters_callback", "declare_parameter")
     if UNDECLARED in reason:
-        text = "Only a declared parameter can be set."
+        declared = declared_names(evidence)
+        more = f" The node declares {a_list(declared)}." if declared else ""
+        text = f"Only a declared parameter can be set.{more}"
         return failed(observed, expected, Cause("parameter-undeclared", text, evidence.place("declare_parameter")))
     if reason == NOT_RETURNED:
         text = (
@@ -186,6 +200,8 @@ def _refused(evidence: Evidence, observed: str, expected: str, reason: str) -> F
         return failed(observed, expected, Cause("parameter-range", "", evidence.place("declare_parameter")))
     if OUT_OF_RANGE.match(reason):
         text = "The range in the ParameterDescriptor does not contain this value."
+        if STEP in reason:
+            text = "The range has the field step, so it allows only some of the values between its limits. Remove step."
         return failed(observed, expected, Cause("parameter-range", text, evidence.place("declare_parameter")))
     text = "For every valid value, the callback must return SetParametersResult(successful=True)."
     return failed(observed, expected, Cause("parameter-refused", text, where))

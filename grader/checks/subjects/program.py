@@ -49,6 +49,9 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
     if crash is not None and crash.error == "AnyReaderError" and program is not None:
         text = "sys.argv[0] is the name of the program. The first argument is sys.argv[1]."
         return failed(f"{name} raised {crash.observed}.", expected, Cause("own-name-read", text, program))
+    if crash is not None and crash.error == "FileNotFoundError" and bag.id not in crash.message:
+        text = "The program must open the bag that its first argument names, whatever the name is: sys.argv[1]."
+        return failed(f"{name} raised {crash.observed}.", expected, Cause("own-name-read", text, crash.where))
     if crash is not None and crash.error == "AttributeError" and "Twist" in crash.message:
         observed = f"{name} raised {crash.observed}."
         cause = "The program used a command as a pose. Read only the messages on the topic of the poses."

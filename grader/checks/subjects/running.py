@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes import no_entry_point
 from grader.checks.causes.crash import crash_of
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended, why_no_node
@@ -73,11 +74,26 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
     where = evidence.place("create_node", "__init__")
     if guess.endswith(wanted):
         return failed(observed, expected, Cause("node-namespace", "The node is in a namespace.", where))
+    other = _other_module(evidence)
+    if other is not None:
+        return failed(observed, expected, other)
     calls = evidence.code.calls
     by_class = calls("__init__") or not calls("create_node")
     giver = "super().__init__" if by_class else "create_node"
     cause = f"The node name is the first argument of {giver}."
     return failed(observed, expected, Cause("node-name", cause, where))
+
+
+def _other_module(evidence: Evidence) -> Cause | None:
+    """Return the cause if the entry point leads to another module although one is named like the executable."""
+    executable = evidence.trial.executable
+    module = (evidence.entry_point() or "").partition(":")[0]
+    folder, _, last = module.rpartition(".")
+    file = f"{folder.replace('.', '/')}/{executable}.py"
+    if not folder or last == executable or file not in evidence.submission.files:
+        return None
+    text = f"The entry point {executable} leads to {shorten(last)}.py, and the package also has a file {executable}.py."
+    return Cause("entry-point-other", text, no_entry_point.line(evidence))
 
 
 def _names_in_source(evidence: Evidence) -> tuple[str, ...]:

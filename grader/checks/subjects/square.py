@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.sign_for_sum import sign_for_sum
 from grader.checks.causes.too_soon import too_soon
 from grader.checks.kind import Kind, choice, number
 from grader.checks.outcome import Finding, failed, passed
@@ -104,7 +105,10 @@ def square(evidence: Evidence, params: Square) -> Finding:
         return still
     if trajectory.wall.any():
         text = "A side is too long, a corner has the wrong angle, or the turtle does not stop after the fourth side."
-        return failed("The turtle ran into a wall.", expected, Cause("wall", text, where))
+        if len(sides_of(trajectory).lengths) == 1 and not float(np.abs(trajectory.turn).sum()):
+            text = "The turtle never turned. After the last timer call of a side, the state must change."
+        into = sign_for_sum(evidence, "wall") or Cause("wall", text, where)
+        return failed("The turtle ran into a wall.", expected, into)
     sides = sides_of(trajectory)
     if sides.curved_share > CURVED_SHARE:
         observed = f"{100.0 * sides.curved_share:.0f} % of the trajectory is curved."

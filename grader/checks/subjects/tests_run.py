@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.weak_tests import in_a_loop, swallowed, why_without_assert, without_assert
+from grader.checks.causes.vacuous_asserts import vacuous_assert, value_as_message
+from grader.checks.causes.weak_tests import in_a_loop, named_twice, swallowed, why_without_assert, without_assert
 from grader.checks.causes.why_no_test import why_no_test
 from grader.checks.causes.why_not_heard import why_not_called, why_not_heard
 from grader.checks.causes.why_rejected import last_error, why_rejected
@@ -128,7 +129,8 @@ def _why_accepted(evidence: Evidence, params: Catches, code: TestCode) -> Cause:
     empty = without_assert(code)
     if empty and len(empty) == len(code.tests):
         return why_without_assert(empty[0])
-    cause = swallowed(code) or _why_not_called(evidence, params.broken, code)
+    cause = named_twice(code) or swallowed(code) or _why_not_called(evidence, params.broken, code)
+    cause = cause or vacuous_assert(code) or value_as_message(code)
     if cause is None and _is_silent(evidence, params.broken):
         cause = in_a_loop(code)
     # No line is wrong: a test is missing.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.chance import is_seeded
+from grader.checks.causes.vacuous_asserts import vacuous_assert
 from grader.checks.causes.weak_tests import always_true, timed_loop, why_without_assert, without_assert
 from grader.checks.kind import Kind, NoParams, strings
 from grader.checks.outcome import Finding, failed, passed
@@ -148,7 +149,7 @@ def asserts(evidence: Evidence, _: NoParams) -> Finding:
     """Every test asserts something."""
     code = code_of(evidence)
     expected = "Every test has an assert that can fail."
-    cause = always_true(code)
+    cause = always_true(code) or vacuous_assert(code)
     if cause is not None:
         return failed("An assert is always true.", expected, cause)
     empty = without_assert(code)

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from grader.checks.causes.weak_tests import always_false, always_true, in_a_loop, swallowed, why_without_assert
+from grader.checks.causes.weak_tests import (
+    always_false,
+    always_true,
+    in_a_loop,
+    named_twice,
+    swallowed,
+    why_without_assert,
+)
 from grader.submission.pytest_files import TestCode, read_test_code
 
 SEARCH = "    for each in bench.heard:\n        if each.linear.x == 0.0:\n            return\n"
@@ -106,3 +113,21 @@ def test_a_loop_over_what_may_be_empty_is_found(above: str, listed: str, *, foun
     cause = in_a_loop(code(f"    for each in {listed}:\n        assert each", above))
     words = "If there is nothing to loop over, for example no message, the assert in this loop never runs."
     assert (cause is not None and cause.text == words) == found
+
+
+@pytest.mark.parametrize(
+    ("source", "line"),
+    [
+        ("def test_a():\n    pass\n\ndef test_a():\n    pass\n", 1),
+        ("def test_a():\n    pass\n\ndef test_b():\n    pass\n", None),
+        (
+            "class TestX:\n    def test_a(self):\n        pass\n\nclass TestY:\n    def test_a(self):\n        pass\n",
+            None,
+        ),
+    ],
+)
+def test_only_a_name_in_the_same_place_replaces_a_test(source: str, line: int | None) -> None:
+    cause = named_twice(read_test_code({"test/test_guard.py": source.encode()}, "my_package"))
+    assert (cause is not None and cause.where is not None and cause.where.line) == (line or False)
+    words = "Another test on line 4 is also named test_a, so pytest never runs this one."
+    assert (cause is not None and cause.text == words) == (line is not None)

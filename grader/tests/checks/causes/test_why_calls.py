@@ -98,7 +98,7 @@ def test_a_call_over_several_lines_is_shown_where_it_begins() -> None:
             "create_publisher takes the type, the topic and the queue size.",
         ),
         (
-            "Thread.__init__() missing 2 required positional arguments: 'a' and 'b'",
+            "Driver.__init__() missing 2 required positional arguments: 'a' and 'b'",
             "callback-parameters",
             "def __init__",
             "Nothing is passed for 'a' and 'b'.",

@@ -32,3 +32,22 @@ PEN = "/turtle1/set_pen"
 )
 def test_what_the_source_lacks_is_told(code: str, words: str) -> None:
     assert why_unasked(evidence(recording([]), submission({NODE_FILE: code})), PEN).text == words
+
+
+READY = CLIENT.replace("self.timer", 'self.spawn = self.create_client(Spawn, "{spawn}")\n        self.timer', 1)
+
+
+@pytest.mark.parametrize(
+    ("spawn", "asks", "found"),
+    [
+        ("/turtle1/spawn", "self.spawn.service_is_ready()", True),
+        ("/turtle1/spawn", "self.client.service_is_ready()", False),
+        ("/spawn", "self.spawn.service_is_ready()", False),
+    ],
+)
+def test_another_service_that_does_not_exist_keeps_the_node_from_calling(spawn: str, asks: str, *, found: bool) -> None:
+    code = READY.format(name=PEN, spawn=spawn, line=f"if {asks}:\n            {CALLS}")
+    cause = why_unasked(evidence(recording([]), submission({NODE_FILE: code})), PEN)
+    assert (cause.diagnosis == "service-not-there") == found
+    words = "The node waits for the service /turtle1/spawn, which does not exist. A similar service exists: /spawn."
+    assert (words in cause.text) == found

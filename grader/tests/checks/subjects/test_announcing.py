@@ -168,3 +168,12 @@ def test_a_sentence_about_announcements_is_true(
 ) -> None:
     assert words in told(of_announces(given(messages=true)))
     assert words not in told(of_announces(given(messages=near)))
+
+
+LETTERS = "join puts spaces between the letters, because it got one string. It needs a list of names."
+
+
+@pytest.mark.parametrize(("text", "found_"), [("t a r g e t 1", True), ("target1", False), ("t a r", False)])
+def test_a_name_in_letters_is_told(text: str, *, found_: bool) -> None:
+    messages = (*(said(2.0 + 0.5 * number, names_at(2.0 + 0.5 * number)) for number in range(16)), said(2.1, text))
+    assert (LETTERS in told(of_announces(given(messages=messages)))) == found_

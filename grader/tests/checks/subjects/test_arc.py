@@ -10,12 +10,15 @@ import pytest
 from grader.checks.outcome import Status
 from grader.checks.subjects.arc import ARC
 from grader.tests.checks.made import every, evidence, found, recording
+from grader.tests.checks.shapes import TRACEBACK, crashed
 from grader.tests.checks.told import told
 from grader.trial.observed import Call, PenChange
+from grader.trial.recording import Output
 
 if TYPE_CHECKING:
     from grader.checks.outcome import Finding
     from grader.tests.checks.made import Timed
+    from grader.trial.recording import ProcessEnd
 
 
 @pytest.mark.parametrize(
@@ -38,6 +41,7 @@ def test_an_arc_is_measured_in_its_colour_and_time(values: dict[str, Any], diagn
     assert (finding.diagnosis, finding.status is Status.PASSED) == (diagnosis, diagnosis is None)
 
 
+CRASHED = crashed(10.0)
 RED = {"radius_m": 1.0, "red": 200.0, "green": 0.0, "blue": 0.0}
 CIRCLE = every(0.1, 2.0, 1.0)
 WIDE = every(0.1, 2.0, 0.5)
@@ -159,3 +163,13 @@ def test_commands_that_did_not_follow_a_parameter_are_told(commands: list[Timed]
 
 def found_arc(commands: list[Timed], call: Call) -> Finding:
     return found(ARC, evidence(recording(commands, calls=(call,))), radius_m=1.0, from_s=3.4)
+
+
+@pytest.mark.parametrize(("degrees", "end"), [(90.0, CRASHED), (900.0, CRASHED), (90.0, None)])
+def test_an_arc_that_a_crash_cut_off_or_did_not_end_is_the_fault_of_the_crash(
+    degrees: float, end: ProcessEnd | None
+) -> None:
+    changes: dict[str, Any] = {"end": end, "stderr": Output(TRACEBACK)} if end is not None else {}
+    finding = found(ARC, evidence(recording(CIRCLE, **changes)), radius_m=2.0, angle_deg=degrees)
+    assert (finding.diagnosis == "drives-on") == (end is None)
+    assert ("crashed" in finding.observed) == (end is not None)

@@ -7,7 +7,7 @@ import pytest
 
 from grader.checks.outcome import Finding, Status
 from grader.checks.subjects.eight import EIGHT
-from grader.tests.checks.made import NODE_FILE, TICK_S, every, evidence, found, legs, recording
+from grader.tests.checks.made import NODE_FILE, TICK_S, every, evidence, found, legs, recording, submission
 from grader.tests.checks.shapes import teleported
 from grader.tests.checks.told import told
 from grader.trial.recording import Pose
@@ -214,3 +214,21 @@ def test_a_last_command_that_is_not_zero_is_told() -> None:
     nearly = [*driving[:-1], (last_s, 1e-2, 0.0)]
     assert words in told(found_eight(nearly))
     assert words not in told(found_eight([*nearly, (last_s + TICK_S, 0.0, 0.0)]))
+
+
+@pytest.mark.parametrize(("times", "found_"), [(180.0 / math.pi, True), (50.0, False)])
+def test_a_lobe_in_degrees_is_told(times: float, *, found_: bool) -> None:
+    parts = legs((TICKS, times * TURN, times * TURN), (TICKS, times * TURN, -times * TURN))
+    given = told(found(EIGHT, evidence(recording(parts)), radius_m=1.0, radius_tolerance_m=0.3))
+    words = "angular.z is in radians per second, and a full circle is 2 pi radians, not 360."
+    assert "after it was closed" in given
+    assert (words in given) == found_
+
+
+@pytest.mark.parametrize(("operator", "found_"), [("=+", True), ("+=", False)])
+def test_a_counter_that_stays_the_same_is_told(operator: str, *, found_: bool) -> None:
+    source = f"class Eight:\n    def step(self):\n        self.ticks {operator} 1\n"
+    given = evidence(recording(legs(lobe(1, degrees=720.0))), submission({NODE_FILE: source}))
+    reported = told(found(EIGHT, given, radius_m=1.0))
+    assert ("=+ sets self.ticks to 1 in each call. += adds." in reported) == found_
+    assert ("the sign of angular.z must change for the second one." in reported) != found_

@@ -241,3 +241,56 @@ def test_only_the_points_of_an_arc_have_a_circle() -> None:
     with pytest.raises(ValueError, match="the points too-few are not points of an arc"):
         found(FITS, given, call="too-few")
     assert found(FITS, given, call="whole").diagnosis is None
+
+
+FILE = "my_robot_controller/circle_fit.py"
+SHAPE = "numpy.linalg.LinAlgError: Incompatible dimensions"
+UNPACK = "ValueError: not enough values to unpack (expected 3, got {})"
+
+
+def source(stack: str = "asarray", solver: str = "lstsq", line: str = "pass") -> dict[str, bytes]:
+    """Return a module whose line 9 is the given line, at which the made-up exceptions are raised."""
+    code = f"import numpy as np\n\n\ndef fit_circle(x, y):\n    a = np.{stack}(x)\n    np.linalg.{solver}(a, y)\n\n\n"
+    return {FILE: f"{code}    {line}\n".encode()}
+
+
+@pytest.mark.parametrize(
+    ("true", "near", "errors", "words"),
+    [
+        (
+            source("vstack"),
+            source("column_stack"),
+            (SHAPE, SHAPE),
+            "vstack puts the arrays below each other. The matrix needs one row for each point, with three columns.",
+        ),
+        (
+            source("array"),
+            source("asarray"),
+            ("TypeError: Cannot construct a dtype from an array", "TypeError: no dtype"),
+            "The second argument of np.array is the type of the elements. Call np.array once for each list.",
+        ),
+        (
+            source(),
+            source(),
+            (UNPACK.format(2), UNPACK.format(1)),
+            "lstsq returns one value for each column of the matrix. Three unknowns need three columns.",
+        ),
+        (
+            source(solver="solve"),
+            source(),
+            (SHAPE, SHAPE),
+            "solve needs exactly as many equations as unknowns. lstsq accepts more equations, one for each point.",
+        ),
+        (
+            source(line="raise ValueError('a line')"),
+            source(line="int('a line')"),
+            ("ValueError: a line", "ValueError: a line"),
+            "Your own code raises this error: its condition is true for these points, although they form a circle.",
+        ),
+    ],
+)
+def test_the_source_and_the_exception_show_the_cause(
+    true: dict[str, bytes], near: dict[str, bytes], errors: tuple[str, str], words: str
+) -> None:
+    assert words in told(judged("whole", raised("whole", errors[0]), true))
+    assert words not in told(judged("whole", raised("whole", errors[1]), near))

@@ -179,3 +179,34 @@ def about_results(*goals: Goal) -> str:
 def test_a_sentence_about_results_is_true(words: str, true: list[Goal], near: list[Goal]) -> None:
     assert words in about_results(*true)
     assert words not in about_results(*near)
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        (
+            "This is the heading converted from degrees to radians twice. math.radians must be called only once.",
+            [goal(1.0, math.radians(80.0), 1.4)],
+            [goal(1.0, math.radians(81.0), 1.4)],
+        ),
+        ("theta=0.02 rad, which is 1 degree.", [goal(1.0, 1.2, 1.4)], [goal(1.0, 2.2, 1.4)]),
+        ("theta=0.04 rad, which is 2 degrees.", [goal(1.0, 2.2, 1.4)], [goal(1.0, 1.2, 1.4)]),
+    ],
+)
+def test_a_sentence_about_the_size_of_a_heading_is_true(words: str, true: list[Goal], near: list[Goal]) -> None:
+    assert words in told(found(SENDS_GOALS, given(*true), heading_deg=80.0))
+    assert words not in told(found(SENDS_GOALS, given(*near), heading_deg=80.0))
+
+
+@pytest.mark.parametrize(
+    ("words", "true", "near"),
+    [
+        ("This heading is the same as in the previous goal. The heading must change", 80.0, -80.0),
+        ("This is the heading of the previous goal with the opposite sign.", -80.0, 80.0),
+        ("Compare this heading with the one that the exercise asks for.", 30.0, 80.0),
+    ],
+)
+def test_a_second_goal_is_compared_with_the_first(words: str, true: float, near: float) -> None:
+    for degrees, is_told in ((true, True), (near, False)):
+        trial = given(goal(1.0, 80.0, 2.4), goal(3.0, degrees, 5.0))
+        assert (words in told(found(SENDS_GOALS, trial, heading_deg=-75.0, nth=2))) == is_told

@@ -269,3 +269,20 @@ def test_a_pose_that_is_replaced_too_early_is_told(source: str, *, found: bool) 
     reported = about(LOG_DISTANCE, logged(ZERO), source)
     assert ("Line 14 replaces self.x before the step from the old value is calculated." in reported) == found
     assert ("The distance stays 0." in reported) != found
+
+
+AGAIN = """def heard(self, pose):
+            self.d = {}
+            self.get_logger().info(f"distance={{self.d:.2f}}")"""
+
+
+@pytest.mark.parametrize(
+    ("value", "falls", "found"),
+    [("0.0", True, True), ("math.hypot(1.0, 2.0)", True, True), ("self.d + 1.0", True, False), ("0.0", False, False)],
+)
+def test_a_distance_that_is_replaced_is_told(value: str, *, falls: bool, found: bool) -> None:
+    x, y, driven_m = truth()
+    said = (x, y, 0.5 * driven_m if not falls else driven_m % 1.0)
+    reported = about(LOG_DISTANCE, logged(said), AGAIN.format(value))
+    words = "replaces the distance instead of adding to it."
+    assert (words in reported) == found

@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from grader.checks.outcome import Status
 from grader.checks.subjects.arc import ARC
 from grader.checks.subjects.parameters import DECLARES, SETS
-from grader.tests.checks.made import every, evidence, exercise, found, recording
+from grader.tests.checks.made import NODE as NODE_SOURCE
+from grader.tests.checks.made import NODE_FILE, every, evidence, exercise, found, recording, submission
 from grader.tests.checks.told import told
 from grader.trial.observed import Call
 from grader.trial.recording import ProcessEnd
 
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.submission.package import Submission
+
 NODE = exercise().trials[0].node
+RADIUS: dict[str, Any] = {"parameter": "radius", "at_least": 0.2, "at_most": 3.0}
 
 
 def described(**changes: Any) -> Call:  # noqa: ANN401
@@ -210,3 +217,42 @@ def test_a_node_that_ended_blocks_nothing() -> None:
     for given in (about_set(UNSET, end=ENDED), about_described(None, end=ENDED)):
         assert "The node exited on its own after 3.2 s." in given
         assert BLOCKED not in given
+
+
+NAMES = NODE_SOURCE.replace("        self.timer", '        self.declare_parameter("Radius", 1.0)\n        self.timer')
+UNKNOWN = replace(described(), response={"descriptors": []}, request={"names": ["speed"]})
+REFUSED = was_set(1.0, successful=False, reason="Invalid access to undeclared parameter(s): []")
+
+
+@pytest.mark.parametrize(("source", "found_"), [(NAMES, True), (NODE_SOURCE, False)])
+def test_the_names_that_the_node_declares_are_told(source: str, *, found_: bool) -> None:
+    package = submission({NODE_FILE: source})
+    missing = told(found(DECLARES, about_calls(described(type=0), package), **RADIUS))
+    first = "The name is the first argument of declare_parameter. The node declares Radius."
+    assert (first in missing) == found_
+    refused_ = told(found(SETS, about_calls(REFUSED, package), parameter="radius", value=1.0, answer="accepted"))
+    assert ("Only a declared parameter can be set. The node declares Radius." in refused_) == found_
+
+
+def test_a_request_for_another_parameter_says_nothing_about_this_one() -> None:
+    made = recording(every(0.5, 2.0, 1.0), calls=(UNKNOWN, replace(described(), request={"names": ["radius"]})))
+    assert found(DECLARES, evidence(made), **RADIUS).status is Status.PASSED
+
+
+STEP = "The range has the field step, so it allows only some of the values between its limits. Remove step."
+
+
+@pytest.mark.parametrize(
+    ("reason", "found_"),
+    [
+        ("The parameter value for radius is not close enough to a valid step.", True),
+        ("Parameter radius out of range Min: 0.2, Max: 0.9", False),
+    ],
+)
+def test_a_range_with_steps_is_told(reason: str, *, found_: bool) -> None:
+    assert (STEP in about_set(refused(reason))) == found_
+    assert ("The range in the ParameterDescriptor does not contain this value." in about_set(refused(reason))) != found_
+
+
+def about_calls(call: Call, package: Submission) -> Evidence:
+    return evidence(recording(every(0.5, 2.0, 1.0), calls=(call,)), package)

@@ -161,3 +161,10 @@ CRASH = raised("no-poses", "IndexError: list index out of range")
 def test_a_sentence_about_a_bag_without_poses_is_true(words: str, true: Called, near: Called) -> None:
     assert words in told(judged("no-poses", true))
     assert words not in told(judged("no-poses", near))
+
+
+@pytest.mark.parametrize(("path", "found_"), [("circle_bag", True), ("bags/slow/metadata.yaml", False)])
+def test_a_program_that_opens_another_bag_is_told(path: str, *, found_: bool) -> None:
+    finding = judged("report", raised("slow", f"FileNotFoundError: The following paths are missing: [{path}]"))
+    words = "The program must open the bag that its first argument names, whatever the name is: sys.argv[1]."
+    assert (words in told(finding)) == found_

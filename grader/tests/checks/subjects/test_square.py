@@ -6,7 +6,7 @@ import pytest
 
 from grader.checks.outcome import Finding, Status
 from grader.checks.subjects.square import SQUARE
-from grader.tests.checks.made import NODE_FILE, TICK_S, evidence, found, legs, recording, submission
+from grader.tests.checks.made import NODE_FILE, TICK_S, every, evidence, found, legs, recording, submission
 from grader.tests.checks.shapes import teleported
 from grader.tests.checks.told import told
 from grader.trial.recording import Pose
@@ -211,3 +211,11 @@ def test_a_turtle_without_a_command_with_zeros_continues(rest_s: float, *, found
 
 def cut(end_s: float) -> str:
     return told(found(SQUARE, evidence(recording(LAST, Pose(4.0, 4.0, 0.0), sigint_t_s=end_s)), side_m=2.0))
+
+
+@pytest.mark.parametrize(("turn", "found_"), [(0.0, True), (0.3, False)])
+def test_a_turtle_that_never_turned_is_told(turn: float, *, found_: bool) -> None:
+    given = told(found(SQUARE, evidence(recording(every(0.1, 2.0, turn))), side_m=2.0))
+    assert "The turtle ran into a wall." in given
+    words = "The turtle never turned. After the last timer call of a side, the state must change."
+    assert (words in given) == found_

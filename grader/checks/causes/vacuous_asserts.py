@@ -1,0 +1,93 @@
+"""Find asserts that hold on every node: an `or` with a constant, or a comparison of a value with itself."""
+
+from __future__ import annotations
+
+import ast
+import copy
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.common.words import shorten
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from grader.submission.pytest_files import TestCode
+
+
+def vacuous_assert(code: TestCode) -> Cause | None:
+    """Return the cause if an assert of a test holds on every node, else None."""
+    for test in code.tests:
+        for node in ast.walk(test.node):
+            if isinstance(node, ast.Assert):
+                text = _or_constant(node.test) or _with_itself(node.test, _just_assigned(test.node, node.lineno))
+                if text is not None:
+                    return Cause("assert-vacuous", text, Where(test.module.file, node.lineno))
+    return None
+
+
+def value_as_message(code: TestCode) -> Cause | None:
+    """Return the cause if an assert has a value before the comma and a number or a constant after it, else None."""
+    for test in code.tests:
+        for node in ast.walk(test.node):
+            if isinstance(node, ast.Assert) and isinstance(node.test, ast.Attribute) and _is_value(node.msg):
+                text = "An assert checks only the part before the comma. To compare two values, write == between them."
+                return Cause("assert-vacuous", text, Where(test.module.file, node.lineno))
+    return None
+
+
+def _is_value(message: ast.expr | None) -> bool:
+    """Return whether the message of an assert is a number or the name of a constant."""
+    number = isinstance(message, ast.Constant) and isinstance(message.value, int | float)
+    return number or (isinstance(message, ast.Name) and message.id.isupper())
+
+
+def _or_constant(condition: ast.expr) -> str | None:
+    """Return a sentence about a constant after `or` that makes the condition true, or None."""
+    if isinstance(condition, ast.BoolOp) and isinstance(condition.op, ast.Or):
+        for each in condition.values:
+            if isinstance(each, ast.Constant) and each.value:
+                shown = shorten(ast.unparse(each), 30)
+                return f"{shown} alone counts as true, so the condition always holds. Repeat the comparison after or."
+    return None
+
+
+def _with_itself(condition: ast.expr, names: Mapping[str, ast.expr]) -> str | None:
+    """Return a sentence about a value that is compared with itself, or None.
+
+    `names` maps a variable to the expression that was assigned to it.
+    """
+    if not isinstance(condition, ast.Compare) or len(condition.ops) != 1 or not isinstance(condition.ops[0], ast.Eq):
+        return None
+    left, right = (_resolved(each, names) for each in (condition.left, condition.comparators[0]))
+    if left != right or "(" in left:
+        return None
+    return "This compares a value with itself. Compare it with the number that the node promises."
+
+
+def _resolved(value: ast.expr, names: Mapping[str, ast.expr]) -> str:
+    """Return the expression as text. A variable is replaced with the expression that was assigned to it."""
+
+    class Replace(ast.NodeTransformer):
+        def visit_Name(self, node: ast.Name) -> ast.expr:
+            return names.get(node.id, node)
+
+    return ast.unparse(Replace().visit(copy.deepcopy(value)))
+
+
+def _just_assigned(test: ast.AST, line: int) -> dict[str, ast.expr]:
+    """Return the variables that were assigned before a line, without a call between the assignment and the line.
+
+    A call could change the value of the same expression. Calls in an assert do not count.
+    """
+    asserts = [node for node in ast.walk(test) if isinstance(node, ast.Assert)]
+    harmless = {id(each) for node in asserts for each in ast.walk(node)}
+    calls = [node.lineno for node in ast.walk(test) if isinstance(node, ast.Call) and id(node) not in harmless]
+    return {
+        target.id: node.value
+        for node in ast.walk(test)
+        if isinstance(node, ast.Assign) and not any(node.lineno <= each < line for each in calls)
+        for target in node.targets
+        if isinstance(target, ast.Name) and node.lineno < line
+    }

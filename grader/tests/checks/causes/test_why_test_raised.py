@@ -1,0 +1,42 @@
+"""The reasons for exceptions that a student's test raises, each with a test that is nearly the same."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.checks.causes.why_rejected import why_rejected
+from grader.submission.pytest_files import read_test_code
+from grader.testbench.result import NodeRun
+
+FILE = "test/test_guard.py"
+MISSING = "TypeError: Bench.run() missing 1 required positional argument: 'steps'"
+NO_RUN = "AttributeError: 'TestGuard' object has no attribute 'run'"
+FIXTURE = "def bench():\n    {}\n"
+CLASS = "class TestGuard:\n    def test_it({}):\n        bench.run()\n"
+RAISES = "The code of the test raises this exception before it compares anything."
+COMPARE = "Compare the test with the promises in wall_guard.py."
+
+
+@pytest.mark.parametrize(
+    ("source", "message", "words", "line"),
+    [
+        (FIXTURE.format("yield Bench"), MISSING, "Bench is the class itself. Write Bench() to create an object.", 2),
+        (FIXTURE.format("return Bench"), MISSING, "Bench is the class itself. Write Bench() to create an object.", 2),
+        (FIXTURE.format("yield Bench()"), MISSING, RAISES, 7),
+        (CLASS.format("bench"), NO_RUN, "test_it is a method, so its first parameter is self. Write (self, bench).", 2),
+        (CLASS.format("self, bench"), NO_RUN, RAISES, 7),
+        ("", "NameError: name 'Twst' is not defined", f"{RAISES} This name has no value here.", 7),
+        ("", "AssertionError: assert 4 == 3", COMPARE, 7),
+        ("", "assert 4 == 3", COMPARE, 7),
+        ("", "IndexError: list index out of range", COMPARE, 7),
+        ("", "AssertionError: approx() is not supported in a boolean context.", "pytest.approx is one side of a", 7),
+    ],
+)
+def test_the_message_and_the_source_decide(source: str, message: str, words: str, line: int) -> None:
+    code = read_test_code({FILE: source.encode()}, "my_package")
+    run = NodeRun("", 1, test=f"{FILE}::test_it", outcome="failed", message=message, file=f"/in/{FILE}", line=7)
+    cause = why_rejected(run, code)
+    assert cause.text.startswith(words)
+    assert cause.where is not None
+    assert cause.where.line == line
+    assert (RAISES in cause.text) == words.startswith(RAISES)
