@@ -28,7 +28,7 @@ class Answers:
     """The answers in the table [answers], by their ids: strings, numbers and lists of strings.
 
     Answers of other types, empty answers and 0 are left out. `unusable` contains the ids of the answers of other types,
-    and of numbers that are too large.
+    and of numbers that are nan or too large.
 
     `lines` are the line numbers of the answers, counted from 1. `problem` is the reason why the file cannot be read.
     `line` is the line of this problem, if known.
@@ -77,7 +77,7 @@ def _answer(value: object) -> Answer | None:
 
 
 def _open_list(text: str) -> int | None:
-    """Return the first line with a list that is not closed before the next answer begins, or None."""
+    """Return the first line with a list that is not closed before the next answer or the end of the file, or None."""
     opened = None
     for number, line in enumerate(text.splitlines(), 1):
         begins = re.match(r"\s*\w+\s*=", line) is not None

@@ -44,7 +44,7 @@ class Poses:
 
 @dataclass(frozen=True)
 class BagFolder:
-    """A bag. `problem` is the reason why the bag cannot be read, and `detail` the folder, file or error that caused it.
+    """A bag. `problem` is the reason why the bag cannot be read, and `detail` the file or error that shows it, if any.
 
     `types` contains the type of each topic, `counts` the number of messages on each topic, and `poses` the messages of
     type Pose.

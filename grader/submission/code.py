@@ -91,7 +91,7 @@ class Call:
 
 @dataclass(frozen=True)
 class Code:
-    """The node's file and the submission files that it imports, or all files if the node's file is unknown.
+    """The node's file and the submission files that it imports, or all Python files if this file is unknown.
 
     Tests, launch files and setup.py are left out.
     """
@@ -153,8 +153,8 @@ def _sets(node: ast.AST, path: tuple[str, ...]) -> list[int]:
 def read_code(files: Mapping[str, bytes], first: str | None) -> Code:
     """Parse the node's file `first` and the submission's files that it imports.
 
-    Without `first`, parse all files except tests, launch files and setup.py. Other nodes of the package do not affect
-    the node in `first`.
+    The files of other nodes are not needed, because they do not affect this node. Without `first`, parse all files
+    except tests, launch files and setup.py.
     """
     paths = {path: None for path in sorted(files) if path.endswith(".py") and not _left_out(path)}
     modules: dict[str, Module] = {}

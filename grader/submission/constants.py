@@ -49,7 +49,10 @@ def dotted(node: ast.expr) -> str | None:
 
 
 def single_names(tree: ast.AST) -> Names:
-    """Return each assigned name or attribute with its expression, or with None if it is not assigned exactly once."""
+    """Return each assigned name or attribute with its expression, or with None if it has not exactly one expression.
+
+    A loop or an assignment such as `+=` gives it no expression. Names that are assigned as a tuple are left out.
+    """
     names = Names()
     for node in ast.walk(tree):
         targets: list[ast.expr] = []

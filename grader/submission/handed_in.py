@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 ENDING = ".ipynb"
 MOST_NOTEBOOKS = 20
-"""The maximum number of notebooks that are read in a submission."""
+"""The maximum number of notebooks that are read in one folder."""
 MOST_NESTED = 4
 """A notebook without a package may be inside up to this many nested folders, if each contains only the next one."""
 MOST_NAME = 255
@@ -39,7 +39,7 @@ MOST_NAME = 255
 
 
 def open_handed_in(path: str | os.PathLike[str], exercise: Exercise, *, exactly: bool = False) -> Submission:
-    """Read the package or answers.toml below this folder, and complete it with the cells of the notebook beside it.
+    """Read the package below this folder, or its answers.toml, and add the files that only the notebook contains.
 
     `exactly` has the same meaning as in `open_submission`, which raises the same exceptions.
     """
@@ -77,9 +77,9 @@ def _handed_in(name: str, path: Path, exercise: Exercise, exactly: bool) -> Subm
 
 
 def _beside(exercise: Exercise, root: Path, package: Path) -> tuple[list[Part], str]:
-    """Return what `_chosen` returns for the nearest folder with a notebook, from the package up to `root`.
+    """Return what `_chosen` returns for the nearest folder above the package in which it finds a notebook.
 
-    If there is no such folder, the result for the package itself is returned.
+    The search ends at `root`. If there is no such folder, the result for the package itself is returned.
     """
     for folder in (*(root / each for each in package.parents), root / package):
         parts, remark = _chosen(exercise, folder)
@@ -89,7 +89,7 @@ def _beside(exercise: Exercise, root: Path, package: Path) -> tuple[list[Part], 
 
 
 def _only_folder(folder: Path) -> Path:
-    """Return the folder in which a notebook without a package may be: the first that contains more than a folder."""
+    """Return the folder in which a notebook without a package may be: the first that contains not only one folder."""
     for _ in range(MOST_NESTED):
         with tree.open_folder(os.fspath(folder)) as opened:
             listing = [each for each in tree.entries(opened) or [] if not each.name.startswith((".", "__"))]
@@ -115,8 +115,9 @@ def _started(exercise: Exercise, folder: Path) -> dict[str, bytes]:
 def _chosen(exercise: Exercise, folder: Path) -> tuple[list[Part], str]:
     """Return the files from the cells that count, and a remark about the notebooks whose cells do not count.
 
-    The notebook with the name of the exercise comes first. A browser adds "(1)" to the name of a second download, so
-    any other notebook is used if it is the only one. A notebook of another exercise is ignored.
+    The notebook with the name of the exercise comes first, then those whose names begin with it, because a browser adds
+    "(1)" to the name of a second download, then all others. Several notebooks that rank equally are used only if they
+    write the same files. A notebook whose name begins with that of another exercise is ignored.
     """
     groups: dict[int, dict[str, list[Part]]] = {}
     broken: list[str] = []
@@ -144,7 +145,10 @@ def _chosen(exercise: Exercise, folder: Path) -> tuple[list[Part], str]:
 
 
 def _notebooks(folder: Path) -> Iterator[tuple[str, bytes]]:
-    """Yield the names and contents of the notebooks in a folder. Links, hidden files and large files are left out."""
+    """Yield the names and contents of the notebooks in a folder, without links and hidden files.
+
+    The content of a file that is too large or cannot be read is empty.
+    """
     with tree.open_folder(os.fspath(folder)) as opened:
         tree.require_path(opened, folder)
         names = [each for each in tree.entries(opened) or [] if each.is_file and each.name.endswith(ENDING)]

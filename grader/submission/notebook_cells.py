@@ -4,7 +4,7 @@ A student hands in the package (or the answers) next to the notebook. A magic wr
 
     %%node draw_circle.py    <package>/<package>/draw_circle.py
     %%package package.xml    <package>/package.xml
-    %%answers                answers.toml
+    %%answers                answers.toml, or <package>/answers.toml if the exercise has a package
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def part_path(magic: str, name: str, exercise: Exercise) -> str:
     """Return the path of the file that a cell writes, relative to the notebook's folder.
 
     Raises:
-        UsageError: the name is not valid for such a file.
+        UsageError: the name is not valid for such a file, or the exercise has no package.
     """
     package = exercise.package
     if magic == "answers":
@@ -47,7 +47,10 @@ def part_path(magic: str, name: str, exercise: Exercise) -> str:
         raise UsageError(message)
     if magic == "node":
         if not re.fullmatch(r"[A-Za-z_]\w*\.py", name):
-            message = f"%%node needs the name of a Python file, as in `%%node draw_circle.py`, not {name!r}."
+            message = (
+                "%%node needs the name of a Python file with only letters, digits and underscores, as in `%%node "
+                f"draw_circle.py`, not {name!r}."
+            )
             raise UsageError(message)
         return f"{package}/{package}/{name}"
     if not name or name.startswith("/") or posixpath.normpath(name) != name or name.split("/")[0] == "..":

@@ -22,13 +22,14 @@ if TYPE_CHECKING:
 
 ANSWERS = "answers.toml"
 """The file that contains the answers to an exercise."""
+GIVE_ANSWERS = f"Give the folder that contains your {ANSWERS}."
 MAX_REJECTED = 20
-"""The maximum number of lines in `rejected`. Further files are only counted."""
+"""The maximum number of files that `rejected` names. Further files are only counted."""
 
 
 @dataclass(frozen=True)
 class Submission:
-    """A package.
+    """A package, or an answers.toml if the exercise has no package.
 
     `package_dir` is the folder of the package, and `files` maps POSIX paths relative to that folder to the contents of
     the files.
@@ -53,7 +54,7 @@ class Submission:
     student: str | None = None
     """The student, if known (when a class is graded)."""
     remark: str = ""
-    """A sentence about notebooks whose cells were not used, or an empty string."""
+    """Sentences about notebooks whose cells were not used, or an empty string."""
 
 
 def open_submission(path: str | os.PathLike[str], *, exactly: bool = False) -> Submission:
@@ -118,13 +119,14 @@ def _answers(name: str, path: Path, exactly: bool) -> Submission:
         with _opened(path, exactly) as root:
             found = tree.read_tree(root)
     except OSError as error:
-        message = why_not_opened(error, name)
+        message = why_not_opened(error, name, GIVE_ANSWERS)
         raise UsageError(message) from error
+    if ANSWERS in found.rejected:
+        message = f"{shown(name)}/{ANSWERS} {found.rejected[ANSWERS]}."
+        raise UsageError(message)
     if ANSWERS not in found.files:
-        why = found.rejected.get(ANSWERS)
-        problem = f"{shown(name)}/{ANSWERS} {why}." if why else f"There is no {ANSWERS} in {shown(name)}."
-        message = f"{problem} Give the folder that contains your {ANSWERS}."
-        raise (UsageError if why else NoPackageError)(message)
+        message = f"There is no {ANSWERS} in {shown(name)}. {GIVE_ANSWERS}"
+        raise NoPackageError(message)
     files = {ANSWERS: found.files[ANSWERS]}
     return Submission(name, path.resolve(), files, (), digest(files))
 
@@ -148,7 +150,7 @@ def write_copy(submission: Submission, destination: Path) -> None:
     All users can read these files, because the processes in a sandbox run as another user.
 
     Raises UsageError if a path leads out of the folder (in a submission that is not from `open_submission`), and
-    MachineError if the disk is full or cannot be written.
+    MachineError if the folder exists, or the disk is full or cannot be written.
     """
     made: set[Path] = set()
     try:

@@ -57,7 +57,7 @@ _STANDARD = {
     "markupsafe": ("Markup",),
     "numpy": ("_frombuffer", "_reconstruct", "dtype", "ndarray", "scalar"),
 }
-"""The names of the types that a result may contain, by package, in addition to our dataclasses and errors."""
+"""The types and functions that a result may refer to besides our dataclasses, enumerations and errors, by package."""
 
 
 class _Child:
@@ -69,13 +69,13 @@ class _Child:
 def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> T:
     """Call the function in a child process and return its result, which may contain our dataclasses and built-in types.
 
-    The function can open only `program_files` and the files and folders that are arguments of the function (as
-    instances of Path), if the machine has Landlock or lets this user create a mount namespace.
+    The function can open only `program_files` and the files and folders that are positional arguments (instances of
+    Path, also in a list or tuple), if the machine has Landlock or lets this user create a mount namespace.
 
     Raises:
         TooLargeError: the function took too much CPU time, memory or stack, or its result is too large.
-        UnreadableError: the function raised an exception other than the grader's own errors.
-        MachineError: a module that the function needs is not installed, or the machine was too busy.
+        UnreadableError: the function raised an exception other than the grader's own errors, or its process crashed.
+        MachineError: a module that the function needs is not installed, or the machine was too busy or out of memory.
         GraderError: the function itself raised this error.
     """
     if _Child.inside:
@@ -176,8 +176,8 @@ def _refuse_pipes(event: str, arguments: tuple[Any, ...]) -> None:
 def _close_all_but(sends: int) -> None:
     """Close the parent's files: the child needs none of them, and an open copy would keep a pipe open.
 
-    The terminal is closed as well. If the child had access to the terminal, it could type commands in place of the
-    user.
+    The terminal is closed as well (except stderr with GRADER_DEBUG). If the child had access to the terminal, it could
+    type commands in place of the user.
     """
     empty = os.open(os.devnull, os.O_RDWR)
     for number in range(2 if os.environ.get("GRADER_DEBUG") else 3):
@@ -279,17 +279,17 @@ class _Packer(pickle.Pickler):
     """Pickles enumeration members and our errors as calls to their classes, even if other reducers are registered."""
 
     def reducer_override(self, obj: object) -> Any:  # noqa: ANN401 - as the base class
-        """Return the function call that recreates the object."""
+        """Return the function call that recreates the object, or NotImplemented to pickle the object as usual."""
         if isinstance(obj, Enum):
             return type(obj), (obj.value,)
         return (type(obj), obj.args) if isinstance(obj, GraderError) else NotImplemented
 
 
 class _Unpacker(pickle.Unpickler):
-    """Accepts only our dataclasses, our errors and their parts, because the child has read untrusted files."""
+    """Accepts only _STANDARD and our dataclasses, enumerations and errors: the child has read untrusted files."""
 
     def find_class(self, module: str, name: str) -> Any:  # noqa: ANN401 - a class
-        """Return the class with this name if it is allowed."""
+        """Return the class or function with this name if it is allowed."""
         if name in _STANDARD.get(module.partition(".")[0], ()):
             return super().find_class(module, name)
         found = getattr(import_module(module), name, None) if module.startswith("grader.") else None

@@ -39,7 +39,7 @@ class _Search:
 
     packages: list[str] = field(default_factory=list)
     nearly: list[str] = field(default_factory=list)
-    """Files whose names are almost right: package.xml or setup.py with capital letters or with a second suffix."""
+    """Files whose names are almost right: package.xml or setup.py in capital letters or with a longer ending."""
     linked: list[str] = field(default_factory=list)
     """Links to folders. Such links are not followed."""
     ignored: list[str] = field(default_factory=list)
@@ -52,7 +52,8 @@ def find_package(root: int, name: str) -> str:
 
     `name` is the path as the user typed it.
 
-    Raises NoPackageError if there is no package, and SeveralPackagesError if there is more than one package.
+    Raises NoPackageError if there is no package, SeveralPackagesError if there is more than one package, and UsageError
+    if there are too many folders.
     """
     search = _Search()
     _visit(search, root, ".", 0, name)
@@ -65,16 +66,16 @@ def find_package(root: int, name: str) -> str:
     raise SeveralPackagesError(message)
 
 
-def why_not_opened(error: OSError, name: str) -> str:
-    """Return a message about a path that is not a folder or cannot be read."""
+def why_not_opened(error: OSError, name: str, give: str = GIVE) -> str:
+    """Return a message about a path that is not a folder or cannot be read. `give` says which folder is needed."""
     path = shown(name)
     if error.errno not in (errno.ENOENT, errno.ENOTDIR):
         return f"{path} cannot be opened: it {tree.reason(error, name)}."
     if Path(name).is_file():
-        return f"{path} is a file. {_for_a_file(name)}"
+        return f"{path} is a file. {_for_a_file(name) if give == GIVE else give}"
     if Path(name).is_symlink():
-        return f"{path} is a symlink to a path that does not exist. {GIVE}"
-    return f"There is no folder {path}{_nearest_parent(name)}. {GIVE}"
+        return f"{path} is a symlink to a path that does not exist. {give}"
+    return f"There is no folder {path}{_nearest_parent(name)}. {give}"
 
 
 def _visit(search: _Search, folder: int, path: str, depth: int, name: str) -> None:
@@ -143,7 +144,10 @@ def _none(search: _Search, root: int, name: str) -> str:
     for above in list(Path(name).resolve().parents)[:2]:
         if any((above / file).is_file() for file in PACKAGE_FILES):
             return f"{none} It is inside the package {shown(str(above))}: give that folder."
-    names = [shown(entry.name) + ("/" if entry.is_folder else "") for entry in tree.entries(root) or []]
+    listing = tree.entries(root)
+    if listing is None:
+        return f"{none} The folder contains more than {tree.MAX_ENTRIES} files and folders. {GIVE}"
+    names = [shown(entry.name) + ("/" if entry.is_folder else "") for entry in listing]
     if not names:
         return f"{none} The folder is empty. Give the folder of your package."
     return f"{none} It contains {_listed(names)}. {GIVE}"
@@ -167,7 +171,7 @@ def _for_a_file(name: str) -> str:
 
 
 def _nearest_parent(name: str) -> str:
-    """Return a remark that says which part of the path exists, or an empty string if the parent folder exists."""
+    """Return a remark that names the last folder of the path that exists, or "" if this is the parent folder."""
     above = Path(name).absolute().parent
     if above.is_dir():
         return ""

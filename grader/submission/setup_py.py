@@ -24,7 +24,7 @@ MOST_ENTRY_POINTS = 1000
 
 @dataclass(frozen=True)
 class EntryPoint:
-    """A string in console_scripts. `target` is "module:attribute", or None if the string has another form."""
+    """An entry point as a string. `target` is "module:attribute", or None if the string has another form."""
 
     text: str
     line: int

@@ -74,11 +74,11 @@ class Tree:
     files: dict[str, bytes] = field(default_factory=dict)
     executable: set[str] = field(default_factory=set)
     rejected: dict[str, str] = field(default_factory=dict)
-    """Maps a path to the reason why the file is missing from `files`, if the student's folder is at fault."""
+    """Maps a path to the reason why the file or folder is missing from `files`, if the student's folder is at fault."""
     links: dict[str, str] = field(default_factory=dict)
     """Maps the path of a link to its target, as written in the link."""
     total: int = 0
-    """The total size of all files (bytes). A file that is reached through links counts once per link."""
+    """The total size of all files (bytes). A link to a file adds the size of the file once more."""
     entries: int = 0
 
 
@@ -183,7 +183,7 @@ def read_folder(folder: str | os.PathLike[str], *, follow: bool = True) -> Tree:
 
 
 def read_tree(folder: int) -> Tree:
-    """Return all regular files below the folder, and the links to those files."""
+    """Return the regular files below the folder that are within the limits, and the links to those files."""
     tree = Tree()
     _read_folder(tree, folder, "", 0)
     for path in tree.links:
@@ -194,14 +194,14 @@ def read_tree(folder: int) -> Tree:
 def _read_folder(tree: Tree, folder: int, prefix: str, depth: int) -> None:
     listing = entries(folder)
     if listing is None or tree.entries + len(listing) > MAX_ENTRIES:
-        tree.rejected[prefix.rstrip("/") or "."] = f"contains more than {MAX_ENTRIES} entries"
+        tree.rejected[prefix.rstrip("/") or "."] = f"is beyond the limit of {MAX_ENTRIES} files and folders"
         return
     tree.entries += len(listing)
     for entry in listing:
         path = prefix + entry.name
         if not entry.name.isprintable():
             # Python's tools fail on these names, and nobody can import or type them.
-            tree.rejected[path] = "has a name with control characters, or one that is not UTF-8"
+            tree.rejected[path] = "has a name with characters that cannot be printed, or one that is not UTF-8"
         elif len(os.fsencode(path)) > MAX_PATH_BYTES:
             tree.rejected[path] = f"has a path of more than {MAX_PATH_BYTES} bytes"
         elif entry.target is not None:
@@ -271,7 +271,7 @@ def _resolve(tree: Tree, path: str) -> None:
     for _ in range(len(tree.links)):
         target = tree.links[at]
         if target.startswith("/"):
-            tree.rejected[path] = f"is a link to {shown(target)}, an absolute path that exists only on one machine"
+            tree.rejected[path] = f"is a link to {shown(target)}, an absolute path, which can differ on another machine"
             return
         at = posixpath.normpath(posixpath.join(posixpath.dirname(at), target))
         if at == ".." or at.startswith("../"):

@@ -96,7 +96,7 @@ def _reached(files: Sequence[_File], names: Collection[str]) -> dict[Top, str]:
 
 
 def _below_top(module: Module) -> Iterator[tuple[set[Top], ast.AST]]:
-    """Yield every syntax node of a file, together with the names that the top-level statement around it defines."""
+    """Yield the syntax nodes of each top-level statement that defines names, except imports, with these names."""
     for statement in module.body:
         bound = {(module.file, name) for name in _bound([statement])}
         if bound and not isinstance(statement, ast.Import | ast.ImportFrom):

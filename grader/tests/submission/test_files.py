@@ -37,7 +37,7 @@ def test_what_tools_leave_behind_is_no_file_of_the_package(package: Path, folder
     [
         ("../../secret.txt", "outside the package"),
         ("pkg/../../secret.txt", "outside the package"),
-        ("/etc/passwd", "only on one machine"),
+        ("/etc/passwd", "can differ on another machine"),
         ("gone.txt", "not a file of the package"),
         ("pkg", "not a file of the package"),
         ("itself", "not a file of the package"),
@@ -185,7 +185,9 @@ def test_names_that_cannot_be_printed_are_rejected_in_characters_that_can(
     (package / os.fsdecode(name)).write_bytes(b"")
     submission = open_submission(package)
     assert set(submission.files) == set(PACKAGE)
-    assert submission.rejected == (f"{shown} has a name with control characters, or one that is not UTF-8.",)
+    assert submission.rejected == (
+        f"{shown} has a name with characters that cannot be printed, or one that is not UTF-8.",
+    )
 
 
 def test_contents_are_bytes_and_kept_as_they_are(package: Path) -> None:
@@ -202,7 +204,7 @@ def test_contents_are_bytes_and_kept_as_they_are(package: Path) -> None:
         ("MAX_FILES", 3, "beyond the limit of 3 files"),
         ("MAX_PATH_BYTES", 14, "more than 14 bytes"),
         ("MAX_DEPTH", 0, "more than 0 folders deep"),
-        ("MAX_ENTRIES", 4, "more than 4 entries"),
+        ("MAX_ENTRIES", 4, "beyond the limit of 4 files and folders"),
     ],
 )
 def test_limits_leave_out_and_say_so(
@@ -212,6 +214,13 @@ def test_limits_leave_out_and_say_so(
     submission = open_submission(package)
     assert any(why in line for line in submission.rejected)
     assert set(submission.files) < set(PACKAGE)
+
+
+def test_a_folder_with_too_many_entries_is_left_out(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tree, "MAX_ENTRIES", 4)
+    for number in range(5):
+        (package / "pkg" / f"{number}.txt").write_text("")
+    assert open_submission(package).rejected == ("pkg is beyond the limit of 4 files and folders.",)
 
 
 def test_links_count_towards_the_limits(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.errors import UsageError
-from grader.submission.package import open_submission
+from grader.submission import tree
+from grader.submission.package import open_answers, open_submission
 from grader.tests.submission.folder import PACKAGE, make
 
 if TYPE_CHECKING:
@@ -99,6 +100,26 @@ def test_no_package_says_what_is_there(tmp_path: Path) -> None:
     message = refused(tmp_path)
     assert message.startswith("There is no package in ")
     assert "It contains draw_circle.py, notes/." in message
+
+
+def test_a_folder_with_too_many_entries_is_not_called_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tree, "MAX_ENTRIES", 2)
+    make(tmp_path, dict.fromkeys("abc", ""))
+    assert "contains more than 2 files and folders" in refused(tmp_path)
+
+
+@pytest.mark.parametrize("path", ["answers.toml", "nope"])
+def test_no_package_is_asked_for_if_the_exercise_has_none(tmp_path: Path, path: str) -> None:
+    make(tmp_path, {"answers.toml": ""})
+    with pytest.raises(UsageError, match=r"Give the folder that contains your answers\.toml\.$") as caught:
+        open_answers(tmp_path / path)
+    assert "package" not in str(caught.value).replace(str(tmp_path), "")
+
+
+def test_rejected_answers_are_not_asked_for_again(tmp_path: Path) -> None:
+    (tmp_path / "answers.toml").symlink_to("/answers.toml")
+    with pytest.raises(UsageError, match=r"an absolute path, which can differ on another machine\.$"):
+        open_answers(tmp_path)
 
 
 def test_an_empty_folder_is_called_empty(tmp_path: Path) -> None:
