@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     from grader.trial.recording import Recording
 
 MOST_ROWS = 100
-"""The maximum number of rows in a table."""
+"""The maximum number of calls, and of goals, in a table and in a replay."""
 MOST_TEXT = 120
 """The maximum length of a request, a response, a goal or a result (characters)."""
 
 
 def call_rows(recording: Recording) -> list[tuple[str, ...]]:
-    """Return each service call as strings: the time, the caller, the service, the request and the response."""
+    """Return the first service calls as strings: the time, the caller, the service, the request and the response."""
     return [
         (f"{call.t_s:.2f}", _caller(call), call.service, _fields(call.request), _fields(call.response))
         for call in recording.calls[:MOST_ROWS]
@@ -27,7 +27,7 @@ def call_rows(recording: Recording) -> list[tuple[str, ...]]:
 
 
 def goal_rows(recording: Recording) -> list[tuple[str, ...]]:
-    """Return each goal as strings: the start time, the goal, its status, the end time, the result and the action."""
+    """Return the first goals as strings: start time, goal, status, end time, result and action."""
     return [
         (
             f"{goal.t_s:.2f}",
@@ -42,7 +42,7 @@ def goal_rows(recording: Recording) -> list[tuple[str, ...]]:
 
 
 def moments(recording: Recording) -> list[tuple[float, str]]:
-    """Return the events of a replay as (time in s, text): calls, goals, cancel requests and ends of goals."""
+    """Return the events of a replay as (time in s, text): the first calls and goals, and what happened to these."""
     found = [(call.t_s, f"{_caller(call)} calls {shorten(call.service)}") for call in recording.calls[:MOST_ROWS]]
     for goal in recording.goals[:MOST_ROWS]:
         found += _moments_of(goal)

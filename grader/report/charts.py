@@ -1,8 +1,7 @@
 """Charts over time as SVG: the intervals between commands, and the values in the commands.
 
 All charts have the same time axis. If there are more values than a chart can show, only the lowest and the highest
-value of each short period are drawn. Colour is never the only cue: a value outside its band is drawn as a
-cross.
+value of each short period are drawn. Colour is never the only cue: a value that is not allowed is drawn as a cross.
 """
 
 from __future__ import annotations
@@ -11,7 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.common.words import number
+from grader.common.words import count, number
 from grader.evidence import activity
 from grader.report.expectations import requested_interval, requested_values
 from grader.report.svg import coordinate, picture, points, tag, words
@@ -86,7 +85,7 @@ class Area:
 
 
 def ticks(low: float, high: float, most: int = 5) -> list[float]:
-    """Return at most `most` round numbers from low to high."""
+    """Return at most `most` + 1 round numbers from low to high."""
     rough = (high - low) / most
     power = 10.0 ** math.floor(math.log10(rough))
     step = next(power * nice for nice in (1.0, 2.0, 5.0, 10.0) if power * nice >= rough * 0.999)
@@ -97,7 +96,7 @@ def ticks(low: float, high: float, most: int = 5) -> list[float]:
 def thin(series: Series, end_s: float, bins: int = BINS) -> Series:
     """Return the series, or only the lowest and the highest value of each bin if the series is long.
 
-    Values that are not finite are omitted.
+    Values that are not finite are omitted, and all others are limited to the range from -HUGE to HUGE.
     """
     finite = tuple((t, min(max(value, -HUGE), HUGE)) for t, value in series if math.isfinite(value))
     if len(finite) <= 2 * bins:
@@ -127,7 +126,7 @@ def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> 
     top = max(1.25 * middle_s, 1.1 * max(measured.intervals), 1.15 * wanted.high_s if wanted else 0.0)
     area = Area(end_s, 0.0, max(top, 1e-3))
     low, high = min(measured.intervals), max(measured.intervals)
-    caption = f"{len(series)} intervals, {_s(measured.mean_s)} s on average, from {_s(low)} to {_s(high)} s."
+    caption = f"{count(len(series), 'interval')}, {_s(measured.mean_s)} s on average, from {_s(low)} to {_s(high)} s."
     if stalled:
         others, them = ("1 interval is", "it") if stalled == 1 else (f"{stalled} intervals are", "them")
         caption += (

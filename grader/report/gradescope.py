@@ -1,6 +1,6 @@
 """A report as Gradescope's results.json (see "Autograder Specifications", "Output Format" in its documentation).
 
-Students can see results.json. For a hidden check, results.json contains only whether the check passed.
+Students can see results.json. For a hidden check, results.json contains only the result and the points.
 """
 
 from __future__ import annotations

@@ -32,14 +32,14 @@ NARROW_SIDE, NARROW_MIDDLE = 124.0, 184.0
 CHAR = 7.0
 """The approximate width of a character."""
 ASIDE = 8.0
-"""If arrows in both directions touch the same side of a box, each of them is moved up or down by this distance."""
+"""In the narrow picture, arrows in both directions touch the same side of a box. They are moved up or down by this."""
 
 
 @dataclass(frozen=True)
 class GraphDrawing:
     """The graph as a wide picture, as a narrow one, and as rows.
 
-    `left_out` is the number of topics and nodes that did not fit.
+    `left_out` is the number of boxes (topics and nodes) that did not fit into the wide picture.
 
     A row is (node, "publishes on" or "subscribes to", topic, type).
     """

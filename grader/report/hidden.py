@@ -1,6 +1,7 @@
-"""A report as students may see it: for a hidden check, the report shows only whether the check passed.
+"""A report as students may see it: for a hidden check, the report shows only the result and the points.
 
-Ids, titles and findings of hidden checks are left out, and so are trials that only hidden checks use.
+Ids, titles and findings of hidden checks are left out, and so are trials (except the first) that only hidden checks
+use.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ def _without_change(outcome: Outcome) -> Outcome:
 
 
 def _covered(outcome: Outcome, number: int) -> Outcome:
-    # A hidden check that was not judged counts as failed, and the reason stays hidden too.
+    # A hidden check that was skipped counts as failed, and the reason stays hidden too.
     status = Status.FAILED if outcome.status is Status.SKIPPED else outcome.status
     verdict = "passed" if status is Status.PASSED else "could not be judged" if status is Status.ERROR else "failed"
     return replace(

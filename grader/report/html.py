@@ -83,7 +83,7 @@ def save_html(evidence: Evidence, report: Report, file: Path) -> None:
 def html_page(evidence: Evidence, report: Report) -> str:
     """Return the page as a string.
 
-    If the output of a submission cannot be drawn, the page contains the verdict, but no code, drawings or logs.
+    If the output of a submission cannot be drawn, the page contains verdict and checks, but no code, drawings or logs.
     """
     compiled(TEMPLATE)
     try:
@@ -125,7 +125,7 @@ def _page(evidence: Evidence, report: Report) -> str:
 
 
 def shown_checks(evidence: Evidence, report: Report) -> list[ShownCheck]:
-    """Return all checks for a page. The same lines of code are shown only once."""
+    """Return all checks for a page. A check has no code if an earlier check shows the same line."""
     shown: list[ShownCheck] = []
     room = CODE_BYTES
     for number, outcome in enumerate(report.outcomes, 1):

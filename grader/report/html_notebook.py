@@ -1,6 +1,6 @@
 """The verdict as HTML for the output of a notebook cell: a table with reasons, and then the drawings of each run.
 
-The HTML has no script, and its style sheet affects nothing else on the page. Every id begins with a key for this
+The HTML has no script, and its style sheet affects nothing else on the page. Every id contains a key for this
 verdict, because one notebook can show many verdicts.
 """
 

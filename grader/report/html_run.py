@@ -45,7 +45,8 @@ class Run:
     """A trial in the form that the page's template needs.
 
     `data` is the input of the player. `end` describes how the node's process exited. `idle` is true if the exercise
-    requires commands but no command arrived.
+    requires commands but no command arrived. `amount`, `all_calls` and `all_goals` count all commands, calls
+    and goals. The tables show only the first of them.
     """
 
     key: str
@@ -60,7 +61,9 @@ class Run:
     amount: int
     idle: bool
     calls: tuple[tuple[str, ...], ...]
+    all_calls: int
     goals: tuple[tuple[str, ...], ...]
+    all_goals: int
     graph: GraphDrawing | None
     graph_svg: Markup
     graph_narrow: Markup
@@ -70,7 +73,7 @@ class Run:
 def runs_of(evidences: Sequence[Evidence], key: str = "run") -> list[Run]:
     """Return the trials that ran, in order. If there are several trials, each trial has a title.
 
-    `key` is the prefix of all ids.
+    Every id contains `key`.
     """
     several = len(evidences) > 1
     drawn = [evidence for evidence in evidences if not evidence.trial.beside]
@@ -99,7 +102,9 @@ def _run(evidence: Evidence, key: str, several: bool, among: int) -> Run:
         rows=tuple(_rows(evidence)),
         amount=len(evidence.commands),
         calls=tuple(call_rows(recording)),
+        all_calls=len(recording.calls),
         goals=tuple(goal_rows(recording)),
+        all_goals=len(recording.goals),
         idle=must_drive(evidence) and not evidence.commands,
         graph=graph,
         graph_svg=Markup(graph.svg if graph else ""),
@@ -131,7 +136,7 @@ def _end(evidence: Evidence) -> str:
 
 
 def _rows(evidence: Evidence) -> list[tuple[str, ...]]:
-    """Return each command as strings: time, time since the previous command, linear.x, angular.z."""
+    """Return the first commands as strings: time, time since the previous command, linear.x, angular.z."""
     rows: list[tuple[str, ...]] = []
     before: float | None = None
     for command in evidence.commands[:MOST_ROWS]:
@@ -142,7 +147,7 @@ def _rows(evidence: Evidence) -> list[tuple[str, ...]]:
 
 
 def _data(evidence: Evidence, among: int) -> dict[str, object]:
-    """Return the data for the player: poses (m, rad) by time (s), and the commands.
+    """Return the data for the player: poses (m, rad) by time (s), commands, calls and goals.
 
     A value that is not finite becomes None.
     """

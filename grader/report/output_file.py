@@ -26,7 +26,7 @@ def check_writable(file: Path | None) -> None:
     Raises UsageError if the file could not be written, or if it is `-`, which many programs use for standard output.
     """
     if str(file) == "-":
-        message = "The file cannot be -, since standard output contains the verdict. Choose a file name."
+        message = "The file cannot be -, since the command prints its own text on standard output. Choose a file name."
         raise UsageError(message)
     if file is not None and not file.absolute().parent.is_dir():
         message = f"There is no folder {file.absolute().parent} to write {file.name} to."

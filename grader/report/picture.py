@@ -61,8 +61,9 @@ def _png(evidence: Evidence, report: Report) -> bytes:
 
 
 def draw_picture(evidence: Evidence, report: Report) -> Image.Image:
-    """Return one image with the pictures of all trials.
+    """Return one image with a picture of each trial, except trials without a simulator.
 
+    A program that runs beside another one is in the picture of the other one.
     If there is no trajectory to draw, the picture shows the reason.
     """
     trials = [each for each in evidence.views() if not each.trial.calls and not each.trial.beside] or [evidence]

@@ -114,7 +114,7 @@ def _remark(evidence: Evidence) -> tuple[Outcome, ...]:
 
 PASSES = "With a fix for this cause, a copy of the submission passes the check."
 FURTHER = "With a fix for this cause, the node gets further in a copy of the submission."
-REFUTED = "The supposed cause was fixed in a copy of the submission, but the check still failed."
+REFUTED = "The supposed cause was fixed in a copy of the submission, but the check still did not pass."
 
 
 def _with_try(outcome: Outcome, evidence: Evidence) -> Outcome:

@@ -54,7 +54,7 @@ def scene_of(evidence: Evidence) -> Scene:
     trajectory = evidence.trajectory
     shapes: list[Line | Ring | Arrow] = []
     legend: list[tuple[Role, str]] = []
-    facts = [f"{len(evidence.commands)} commands in {activity.end_s(recording):.1f} s", *_goals(recording)]
+    facts = [f"{count(len(evidence.commands), 'command')} in {activity.end_s(recording):.1f} s", *_goals(recording)]
     points = finite_points(trajectory)
     moved = trajectory.finite and len(trajectory.points[0]) > 1
     if len(points) > 1:
@@ -121,7 +121,7 @@ def _bag_scene(evidence: Evidence) -> Scene | None:
             legend: tuple[tuple[Role, str], ...] = (("trajectory", f"the path in {shorten(folder)}"),)
             facts = (f"{len(points)} messages on {shorten(topic)}",)
             return Scene((Line("trajectory", points),), legend, facts)
-    return Scene(notice=f"There are no poses in {shorten(folder)}.")
+    return Scene(notice=f"There is no path in {shorten(folder)}.")
 
 
 def _goals(recording: Recording) -> list[str]:

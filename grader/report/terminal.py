@@ -25,7 +25,11 @@ if TYPE_CHECKING:
     from grader.evidence.tries import Tries
     from grader.report.report import Report
 
-RESULTS = {"passes": "the check then passes", "further": "the node gets further", "refuted": "the check still fails"}
+RESULTS = {
+    "passes": "the check then passes",
+    "further": "the node gets further",
+    "refuted": "the check still does not pass",
+}
 HIDDEN = "This check is hidden, so the report shows no details."
 SAME = "The reason is the same as for the previous check."
 NARROW = 50

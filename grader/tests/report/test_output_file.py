@@ -29,7 +29,7 @@ def test_a_file_that_may_not_be_written_is_named_before_any_work(
 
 
 def test_a_dash_is_not_a_file_name() -> None:
-    with pytest.raises(UsageError, match=r"cannot be -, since standard output contains the verdict\."):
+    with pytest.raises(UsageError, match=r"cannot be -, since the command prints its own text on standard output\."):
         output_file.check_writable(Path("-"))
 
 
