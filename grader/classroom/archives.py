@@ -75,8 +75,8 @@ def _write_all(members: Iterable[Member], folder: Path) -> None:
     except OSError as error:
         if error.errno in OF_THE_DISK:
             message = (
-                f"A submission could not be unpacked: {error.strerror}. Free some space in {tempfile.gettempdir()} and "
-                "try again."
+                f"A submission could not be unpacked: {error.strerror}. Free some space in {tempfile.gettempdir()}, or "
+                "set another folder with TMPDIR, and try again."
             )
             raise DiskError(message) from error
         message = f"is damaged, or contains a file name that the disk does not accept ({error.strerror})"

@@ -150,6 +150,8 @@ def _why_again(old: Result, key: Key) -> str:
         return "graded by another version of the grader"
     if "exercise" in parts:
         return "judged with different checks"
+    if "ros" in parts:
+        return "graded with another ROS 2"
     if parts:
         return "graded with different options"
     return "not judged last time" if old.report.with_status(Status.ERROR) else ""

@@ -24,7 +24,7 @@ def why_not(folder: Path, student: str, *, owned: bool) -> str:
     machine.
     """
     if not folder.name.isprintable():
-        return "the name has control characters"
+        return "the name has characters that cannot be printed"
     if WILDCARDS.intersection(folder.name):
         return "nbgrader would use the name as a pattern for the names of other students"
     try:

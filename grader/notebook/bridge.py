@@ -28,7 +28,7 @@ IDENTITY = b"bridge"
 RETRY_MS = 10
 """The interval between attempts to connect to a kernel that is starting (ms)."""
 LAST_MS = 100
-"""The maximum time to wait for the last messages of a kernel that has exited (ms)."""
+"""The maximum time to wait for each further message of a kernel that has exited (ms)."""
 _IOPUB = CHANNELS.index("iopub")
 
 

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from grader.exercise.own_numbers import NumbersSpec
 
 KEPT = ".kept"
-"""The folder for the old versions of files whose content the kernel that replaced them had not written. This folder is
-hidden, so its files are not graded."""
+"""The folder for the old versions of files that a cell replaced, if this kernel had not written these versions. The
+folder is hidden, so its files are not graded."""
 SOLUTIONS = "solutions"
 """The folder with the notebooks that contain the solutions. This folder has the same name in the course and in a class
 of nbgrader."""

@@ -1,8 +1,8 @@
 """The source notebook of a step: text written by hand, with inserted parts of the solution and of exercise.toml.
 
 A cell that begins with `%%node`, `%%package` or `%%answers` gets the text of its file in the solution, including the
-markers. The cells `begin` and `check` get the id of the step. Each check in exercise.toml gets a grade cell with the
-same id and points at the end of the notebook.
+markers. The cells `begin` and `check` get the id of the step. At the end of the notebook, each check in
+exercise.toml gets a grade cell with its id and points.
 """
 
 from __future__ import annotations

@@ -96,6 +96,8 @@ def test_a_submission_that_kills_two_workers_is_an_error_and_the_others_are_grad
     # An error is not a final result, so the next run grades the submission again.
     with opened(tmp_path / "grades") as results:
         kept, todo = sort_out(order, results)
+        _, other = sort_out(dataclasses.replace(order, ros="another"), results)
+    assert {one.why for one in other} == {"graded with another ROS 2"}
     assert sorted(result.student for result in kept) == ["anna", "ben", "clara"]
     assert [(one.found.student, one.why) for one in todo] == [("deadly", "not judged last time")]
 

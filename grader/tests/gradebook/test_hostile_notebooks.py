@@ -263,7 +263,7 @@ def test_collect_takes_only_regular_files_of_the_submission(hostile: Hostile) ->
     assert sorted(path.name for path in submitted.iterdir()) == sorted(["anna", "links", "when", *BESIDE])
     assert not (submitted.parent / HOMEWORK).exists()
     assert TITLE not in hostile.collected
-    for why in ("it is not a folder", "the name has control characters"):
+    for why in ("it is not a folder", "the name has characters that cannot be printed"):
         assert f"Not collected, because {why}" in hostile.collected
     assert not (submitted / "when" / HOMEWORK).exists()
     files = {path.name for path in (submitted / "links" / HOMEWORK).iterdir()}
