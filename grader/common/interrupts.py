@@ -17,7 +17,7 @@ _SOON_S = 0.01
 
 @contextmanager
 def stops_deferred() -> Iterator[None]:
-    """Until the end of the context, defer the signals that stop the command.
+    """Until the end of the context, defer SIGINT, SIGTERM and SIGHUP if a Python function handles them.
 
     Some objects of rclpy cannot be destroyed without a traceback if an exception interrupts their `__init__`.
     """

@@ -55,9 +55,10 @@ _UNKNOWN = "_NODE_NAME_UNKNOWN_"
 
 @contextmanager
 def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bool = False) -> Iterator[Node]:
-    """Create a hidden node without services, and remove it from the graph properly on exit from the context.
+    """Create a node without services, and remove it from the graph properly on exit from the context.
 
-    A `patient` node announces itself less often than other nodes, because it runs for hours.
+    Without a `name`, the node is hidden. A `patient` node announces itself less often than the nodes of other commands,
+    because it runs for hours.
 
     Raises:
         Ros2Error: the node could not be created, for example because the domain id is wrong; or, inside the context, a
@@ -114,7 +115,7 @@ def _remove(node: Node) -> None:
 
 
 def _leave_shared_memory_out(profile: Path) -> None:
-    """Set the environment variables so that Fast DDS uses this profile, without shared memory.
+    """If ROS 2 is set up for this machine only, with our profile, let Fast DDS use this profile without shared memory.
 
     The file loopback.xml explains why the nodes of `ros2` verbs do not use LOCALHOST with its shared memory.
     """
@@ -149,7 +150,7 @@ def _domain() -> int:
 
 
 class Settling:
-    """Waits until the graph that a node sees no longer changes, up to a deadline."""
+    """Waits until nothing new appears in the graph that a node sees, up to a deadline."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -169,6 +170,8 @@ class Settling:
 
     def settle(self, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> bool:
         """Wait until nothing new has arrived for 0.1 s and all participants on this machine have sent their data.
+
+        If nodes on other machines can take part, also wait at least NOTHING_THERE_S, or `deadline_s` if it is set.
 
         The wait ends earlier if `enough` returns true. `deadline_s` is the maximum waiting time (s), or None for the
         default. Return False if the deadline passes first.

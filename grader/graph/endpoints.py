@@ -1,7 +1,4 @@
-"""The part of the graph that a node has discovered: other nodes, publishers and subscriptions.
-
-This module needs rclpy.
-"""
+"""The part of the graph that a node has discovered: other nodes, publishers and subscriptions."""
 
 from __future__ import annotations
 

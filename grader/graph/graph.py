@@ -45,7 +45,7 @@ class Show:
     hidden: bool = False
     """Whether to show names with a part that begins with "_", such as the topics of actions."""
     dead_ends: bool = True
-    """Whether to show topics that have no subscribers or no publishers."""
+    """Whether to show topics that have no subscribers or no publishers among the nodes shown."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Node:
 
 @dataclass(frozen=True)
 class Topic:
-    """A topic with the full names of its publishers and subscribers, sorted and without duplicates."""
+    """A topic with the full names of the shown nodes that publish or subscribe, sorted and without duplicates."""
 
     name: str
     publishers: tuple[str, ...]
@@ -69,7 +69,7 @@ class Topic:
 
     @property
     def dead_end(self) -> bool:
-        """Whether no message can arrive, because the topic has no publisher or no subscriber."""
+        """Whether the topic has no publisher or no subscriber among the nodes shown."""
         return not (self.publishers and self.subscribers)
 
 

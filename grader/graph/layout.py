@@ -1,4 +1,4 @@
-"""Draw a graph in DOT with Graphviz, always with the same font.
+"""Draw a graph in DOT with Graphviz, with the same font on every machine that has matplotlib.
 
 Graphviz runs in a separate process, because fontconfig reads its settings from the environment and writes warnings to
 standard error. The settings and the warnings must not affect the caller.
@@ -43,8 +43,8 @@ def render(dot: str, kind: Format) -> bytes:
     if done.returncode != 0:
         last = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
         message = (
-            f"The graph could not be drawn ({last}). pygraphviz is needed: run `make demo` in the course's folder to "
-            "install it. Without it, --text and --output graph.dot still work."
+            f"The graph could not be drawn ({last}). This needs pygraphviz, which `make demo` in the course's folder "
+            "installs. Without it, --text and --output graph.dot still work."
         )
         raise MachineError(message)
     if kind == "svg":
@@ -55,7 +55,10 @@ def render(dot: str, kind: Format) -> bytes:
 
 
 def _our_font(folder: Path) -> dict[str, str]:
-    """Limit fontconfig to matplotlib's fonts, so that text has the same width on every machine."""
+    """Return environment variables that limit fontconfig to matplotlib's fonts, or {} if matplotlib is not installed.
+
+    With these fonts, text has the same width on every machine.
+    """
     spec = find_spec("matplotlib")
     if spec is None or spec.origin is None:
         return {}

@@ -38,7 +38,7 @@ def valid(found: Iterable[tuple[str, list[str]]]) -> Named:
 
 
 class ObservingNode(Node):  # type: ignore[misc]
-    """A node whose methods return only the valid names in the graph."""
+    """A node whose lists of all nodes, topics and services contain only valid names."""
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
         """Return the name and the namespace of each node."""

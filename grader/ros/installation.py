@@ -230,7 +230,7 @@ def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str
 
 
 def _users_path(ros: Ros, env: Mapping[str, str]) -> str:
-    """Return PATH with our folder of commands: where it is, else last if a ROS 2 is sourced, else first."""
+    """Return PATH with our folder of commands. If it is missing, add it: last if a ROS 2 is sourced, else first."""
     path = env.get("PATH", "/usr/local/bin:/usr/bin:/bin")
     ours = str(Path(sys.prefix, "bin"))
     if ours in path.split(os.pathsep):

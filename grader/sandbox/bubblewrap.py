@@ -2,8 +2,8 @@
 
 bubblewrap creates two kinds of containers:
 
-- a **room** contains the grader's own processes for one trial (the simulator). These processes run as an ordinary user,
-  with separate pid and network namespaces, and only the loopback interface. The simulator reads the messages of a
+- a **room** contains the grader's own processes, such as the simulator of a trial. These processes run as an ordinary
+  user, with separate pid and network namespaces, and only the loopback interface. The simulator reads the messages of a
   student's node with libraries that may have security holes;
 - a **cell** contains a student's process. A cell has its own user, pid, ipc, uts, cgroup and mount namespaces. It has
   no network except the network of the room, and no files from the disk except the system's programs (/usr, a few files
@@ -182,8 +182,8 @@ def require(*, trusted: bool = False) -> bool:
         return why is None
     message = (
         f"No sandbox is available, so the grader does not run other people's code: {why}. On "
-        "a machine without important data, --trust-submissions runs this code with limits on time, memory and output "
-        "only."
+        "a machine without important data, --trust-submissions runs this code with limits on time, memory, processes "
+        "and file size only."
     )
     raise MachineError(message)
 

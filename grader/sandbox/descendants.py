@@ -20,7 +20,7 @@ _AGAIN_S = 0.01
 
 
 def kill_descendants(pid: int) -> None:
-    """Kill all descendants of the process, until none is left that has not exited.
+    """Kill all descendants of the process, until all of them have exited or _MOST_S has passed.
 
     Orphans are included if the process has called `grader.common.linux_calls.adopt_orphans`.
     """

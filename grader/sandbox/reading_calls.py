@@ -50,7 +50,7 @@ class _Program(ctypes.Structure):
 
 
 def forbid_all_but_reading() -> bool:
-    """Install the filter in this process permanently. Return False if the kernel does not support the filter."""
+    """Install the filter in this process permanently. Return False if this machine does not support the filter."""
     if platform.machine() != "x86_64":
         return False
     filter_ = program()

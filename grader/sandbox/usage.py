@@ -89,7 +89,7 @@ class Guard:
         self._thread.join()
 
     def worked_s(self, begin: float, end: float) -> float:
-        """Return about the CPU time (s) that the cell used between two times of CLOCK_MONOTONIC.
+        """Return approximately the CPU time (s) that the cell used between two times of CLOCK_MONOTONIC.
 
         The CPU time is read every EVERY_S, so time shortly before and after may count too.
         """

@@ -1,5 +1,7 @@
 """Run a student's tests on the correct node several times and on each broken node once, in random order.
 
+Runs that are no longer needed are left out (see `_Queue.take`).
+
 The student's process reports whether the tests passed, and its report could be false. This process does not know which
 node it tests, so a false report gains little. Tests that always pass or always fail get no points for broken nodes, and
 tests that pass by chance get few points (docs/security.md).

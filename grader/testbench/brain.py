@@ -44,7 +44,7 @@ class _State:
 
 
 class Brain:
-    """Controls all nodes that are created in one run of the tests. `node` is the name of these nodes."""
+    """Controls the first MOST_NODES nodes that are created in one run of the tests. `node` is their name."""
 
     def __init__(self, behaviour: Behaviour, node: str) -> None:
         self._behaviour = behaviour

@@ -142,7 +142,7 @@ class Lane:
         Each test may take `test_s` seconds.
 
         Raises:
-            MachineError: pytest or rclpy could not be imported, or no cell could be created.
+            MachineError: the sandbox, pytest or rclpy does not work on this machine.
         """
         self._wait_until_ready()
         brain = Brain(behaviour, self._package.node)
@@ -164,7 +164,11 @@ class Lane:
             selector.register(self._process.stdout, selectors.EVENT_READ)
             self._ready = bool(selector.select(START_S)) and self._process.stdout.read(len(READY)) == READY
         if not self._ready and not self._killed:
-            raise MachineError("pytest and rclpy could not be imported. `grader doctor` shows what is missing.")  # noqa: EM101
+            message = (
+                "The tests could not be started, because the sandbox, pytest or rclpy does not work. `grader doctor` "
+                "shows what is missing."
+            )
+            raise MachineError(message)
 
     def kill(self) -> None:
         """Kill all processes of the room and of its cells, or the session and all its descendants."""

@@ -60,7 +60,7 @@ class Patience:
         self._waited_before_s = self._waited_s()
 
     def answered(self) -> None:
-        """Record that a response has been sent. Call this method after each response."""
+        """Record that responses have been sent. Call this method whenever requests have been handled."""
         self._moved, self._seen = time.monotonic(), None
         now_ns = self._callers_waited_ns()
         self._callers_waits_ns += now_ns - self._callers_last_ns

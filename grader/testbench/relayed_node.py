@@ -66,7 +66,7 @@ class RelayedNode(Node):
         _ask(b"p", self._number, self._now_ns(), pose.x, pose.y)
 
     def send(self) -> None:
-        """Publish one command."""
+        """Publish one command, if the grader returns one."""
         values = _ask(b"t", self._number, self._now_ns())
         if values is not None:
             command = self._type()

@@ -40,11 +40,11 @@ class NodeEvents:
 class NodeRun:
     """One run of all tests. `node` is the id of the broken node, or "" for the correct node.
 
-    `exit_code` is the exit code of pytest, or None if the run did not finish on its own. `collected` is the number of
-    tests that pytest found. The other fields describe the first test that did not pass: its name, the message, the
-    file, the line, and what failed. This is the test itself ("failed"), a fixture ("setup") or the import of its file
-    ("import"). A student's process may have changed all values except `node`, `over` and `events`. Therefore, only the
-    success or failure of a run counts, and only in combination with the other runs.
+    `exit_code` is the exit code of pytest, or None if the run did not finish on its own. `collected`, `passed` and
+    `skipped` are numbers of tests. `test` (a name), `message`, `file`, `line` and `outcome` describe the first test
+    that failed. `outcome` is what failed: the test itself ("failed"), a fixture ("setup" or "teardown") or the import
+    of its file ("import"). A student's process may have changed all values except `node`, `over` and `events`.
+    Therefore, only the success or failure of a run counts, and only in combination with the other runs.
     """
 
     node: str

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Runs(Protocol):
-    """A trial whose node has not been started yet, or is already running."""
+    """A trial whose node may or may not have been started yet."""
 
     def run(self, package: str, executable: str, tree: bytes) -> Recording:
         """Run the executable and return the recording, like `Trial.run`."""
@@ -28,7 +28,7 @@ class Runs(Protocol):
 
 
 class _UnderWay:
-    """A trial whose node is already running."""
+    """A trial whose node has already been started."""
 
     def __init__(self, recording: Future[Recording]) -> None:
         self._recording = recording

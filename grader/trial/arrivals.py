@@ -27,7 +27,7 @@ def take_messages(subscription: Subscription) -> None:
 
 
 def take_requests(service: Service) -> int:
-    """Respond to the requests that have arrived, at most MOST_AT_ONCE, with the callback. Return their number."""
+    """Handle the requests that have arrived, at most MOST_AT_ONCE, with the callback. Return their number."""
     with service.handle:
         for count in range(MOST_AT_ONCE):
             request, header = service.handle.service_take_request(service.srv_type.Request)

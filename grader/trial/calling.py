@@ -49,7 +49,7 @@ def make_calls(
     to the program's current folder.
 
     Raises:
-        MachineError: the sandbox does not work.
+        MachineError: no call could be made, for example because the sandbox does not work.
     """
     with ExitStack() as stack:
         if in_cell:

@@ -1,11 +1,11 @@
 """Call a student's function or program in a sandbox cell, once per input, in a new process each time.
 
 This file runs as a separate script. The script reads one line of JSON (`calls`, `script`, `function`, `python_path`,
-`env`, `install`, `files`, `ahead`) and then the install tree, a tar stream, from standard input. The script writes one
-line of JSON for each call. In a cell, a call cannot write such lines itself. This process is not dumpable, so its child
-processes cannot open its standard output. It is also the first process of the cell, so no other process has this
-standard output. All processes that a call has started are killed before the next call, because they could change its
-result.
+`env`, `install`, `files`, `ahead`) and then the install tree, a tar stream, from standard input. The script writes the
+line "ready", and then one line of JSON for each call that it makes. In a cell, a call cannot write such lines itself.
+This process is not dumpable, so its child processes cannot open its standard output. It is also the first process of
+the cell, so no other process has this standard output. All processes that a call has started are killed before the next
+call, because they could change its result (without a cell, only those in the call's process group).
 """
 
 from __future__ import annotations

@@ -185,7 +185,7 @@ def _conduct(order: dict[str, Any], answers: IO[str], nodes: socket.socket | Non
 
 
 def _run(trial: SimulatedTrial | WallTrial, duration_s: float) -> float:
-    """Run the scenario, and return the time of SIGINT (s).
+    """Run the scenario, and return the time (s) of SIGINT, or of the node's exit if it exited on its own.
 
     After the start of the scenario, the node is considered the cause of every failure, except for failures of the
     machine.

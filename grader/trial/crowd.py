@@ -105,7 +105,10 @@ class Others:
         self._before = _machine_worked_s() - time.process_time()
 
     def worked_s(self, *, but_s: float) -> float:
-        """Return the CPU time (s) of all other processes since the creation of this object, minus `but_s` (s)."""
+        """Return the CPU time (s) of all other processes since the creation of this object, minus `but_s` (s).
+
+        The time that other virtual machines on the same hardware used counts, too.
+        """
         return _machine_worked_s() - time.process_time() - self._before - but_s
 
 

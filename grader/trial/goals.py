@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class GoalLog:
-    """Records the events of each goal."""
+    """Records the events of the first MOST_GOALS goals."""
 
     def __init__(self, now: Callable[[], float]) -> None:
         """Create an empty log. `now` returns the current time on the trial's clock (s)."""

@@ -76,7 +76,7 @@ class Inputs:
 
 
 def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
-    """Return the inputs of a trial, with random speeds.
+    """Return the inputs of a trial, with random speeds and random places of targets.
 
     The speeds are drawn, at most MOST_DRAWS times, until they keep the turtle at least MARGIN_M away from every wall.
     """

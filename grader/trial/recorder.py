@@ -1,4 +1,4 @@
-"""Recorder: record every topic of the ROS graph and the graph itself, in the conductor's process."""
+"""Recorder: record the topics of the ROS graph (up to a limit) and the graph itself, in the conductor's process."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ MOST_JUDGED_BYTES = 4 * 1024 * 1024
 class Recorder(Node):
     """A hidden node that subscribes to the topics in the graph, up to a limit.
 
-    Exceptions are the topics whose messages the simulator itself reports.
+    Exceptions are the topics whose messages the simulator itself reports, unless other nodes publish on them, too.
     """
 
     def __init__(
@@ -137,7 +137,7 @@ class Recorder(Node):
 
     @property
     def offers(self) -> tuple[Offer, ...]:
-        """The services that other nodes offered when a snapshot was taken, if `follows_services` is set."""
+        """The services that other nodes offered when `follow_services` ran, up to a limit."""
         return tuple(sorted(self._offers, key=lambda offer: (offer.service, offer.type, offer.node)))
 
     def follow_services(self) -> None:

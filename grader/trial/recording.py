@@ -135,8 +135,9 @@ class ProcessEnd:
     `by` is what stopped the process: "itself" (before the scenario was over), or a signal that the grader sent to end
     the scenario. `out_of` is set if the grader or the kernel stopped the process because it used more "memory",
     "processes" or "files" than a node may use. `stop_s` is the time from SIGINT to the exit of the process (s of wall
-    time), or None if the process exited on its own. `t_s` is the time of the exit on the trial's clock. `exit_code` is
-    negative for a signal, as in subprocess.
+    time, without the time for which it waited for a processor), or None if the process exited on its own. `t_s` is the
+    time on the trial's clock (s) of SIGINT or, if the process exited on its own, of its exit. `exit_code` is negative
+    for a signal, as in subprocess.
     """
 
     by: Literal["itself", "SIGINT", "SIGTERM", "SIGKILL"]
@@ -213,7 +214,7 @@ class Recording:
     seconds: dict[str, float] = field(default_factory=dict)
     """The wall time of each part of the trial: start, discovery, run, stop (s)."""
     stalls: tuple[tuple[float, float], ...] = ()
-    """The periods of a trial in wall time in which the machine gave no processor time to the simulator or the node:
+    """The periods of a trial in wall time in which the machine let the simulator or the node wait for a processor:
     (from, to) on the trial's clock (s). If the system's clock was set, the whole trial is such a period."""
     crowded: bool = False
     """Whether, in a trial in wall time, other programs used the processors so much that the simulator and the node

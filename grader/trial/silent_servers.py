@@ -21,7 +21,7 @@ MOST_SERVICES = 20
 
 
 class SilentServers:
-    """Servers of the recorder, one for each service that a node of the submission offers.
+    """Servers of the recorder, one for each service that a node of the submission offers, up to MOST_SERVICES.
 
     A silent server is created only after the node's own server has been discovered, so that a client never finds the
     silent server alone.

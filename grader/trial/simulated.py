@@ -83,7 +83,7 @@ class SimulatedTrial(Simulation):
         return self._now_s
 
     def run(self, duration_s: float) -> float:
-        """Run the scenario, and return the time of SIGINT on the trial's clock (s).
+        """Run the scenario, and return the time of SIGINT, or of the node's own exit, on the trial's clock (s).
 
         Raises:
             DoubtError: the node may follow wall time, and the plan sets `stop_at_doubt`.
@@ -245,9 +245,9 @@ class SimulatedTrial(Simulation):
         return waits and self.all_nodes_found() and self._clock.get_subscription_count() >= amount
 
     def _wake(self) -> None:
-        """Publish time 0 until each node has woken up twice.
+        """Publish time 0 until each node has woken up twice, or WAKE_S has passed.
 
-        After that, the simulator and the nodes have discovered each other.
+        When each node has woken up twice, the simulator and the nodes have discovered each other.
         """
         rest = GroupThreads(self.node.pids, not_of_dds)
         try:

@@ -249,7 +249,7 @@ class Simulation:
 
     @property
     def calls(self) -> tuple[Call, ...]:
-        """The calls to the simulator and to the node, in order."""
+        """All recorded service calls, in the order in which they were made."""
         made = self.caller.calls if self.caller is not None else ()
         return tuple(sorted((*self._calls.calls, *made), key=lambda call: call.t_s))
 

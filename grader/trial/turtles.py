@@ -1,4 +1,4 @@
-"""The tracks of the turtles other than turtle1, and all changes to the turtles' pens."""
+"""The tracks of the turtles other than turtle1, and the changes to the turtles' pens, up to a limit."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ class TurtleWatch:
         self._count = 0
 
     def look(self, now_s: float, world: World) -> None:
-        """Record all changes since the last frame."""
+        """Record the changes since the last frame."""
         for name, turtle in world.turtles.items():
-            if self._pens.get(name) is not turtle.pen and len(self._changes) < MOST_CHANGES:
-                if name in self._pens:
+            if self._pens.get(name) is not turtle.pen:
+                if name in self._pens and len(self._changes) < MOST_CHANGES:
                     pen = turtle.pen
                     self._changes.append(PenChange(now_s, name, pen.color, pen.width, pen.down))
                 self._pens[name] = turtle.pen

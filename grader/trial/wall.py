@@ -36,7 +36,7 @@ class WallTrial(Simulation):
         return 0.0 if self._begun is None else time.monotonic() - self._begun
 
     def run(self, duration_s: float) -> float:
-        """Run the scenario, and return the time of SIGINT on the trial's clock (s)."""
+        """Run the scenario, and return the time of SIGINT, or of the node's own exit, on the trial's clock (s)."""
         self.lap("start")
         clock = SystemClock()
         self._discover()

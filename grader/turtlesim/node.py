@@ -96,7 +96,7 @@ class TurtlesimNode(Node):
         self._log_spawned("turtle1")
 
     def frame(self, now_s: float) -> None:
-        """Compute one frame (16 ms) at `now_s` on the caller's clock (s), and publish the poses and colours."""
+        """Compute one frame (16 ms) at `now_s` on the caller's clock (s), and send the messages that are due."""
         self._frames += 1
         if self._late is not None:
             self._late.tick(now_s)
@@ -123,7 +123,7 @@ class TurtlesimNode(Node):
     def _show(self, name: str) -> None:
         """Create the topics, services and action of a turtle.
 
-        If a turtle of the same name was killed, use its topics, services and action again.
+        If those of a killed turtle of the same name still exist, use them again.
         """
         for waiting in self._leaving:
             if waiting[1].name == name:

@@ -22,7 +22,7 @@ _EVENTS_QOS = {"depth": 1000, "durability": "volatile", "history": "keep_last", 
 
 
 def declare(node: Node) -> None:
-    """Declare the parameters. rclpy raises an error for an initial value that is out of range."""
+    """Declare the parameters. rclpy raises an error for an initial value of the wrong type or out of range."""
     for name, color, value in zip(CHANNELS, ("Red", "Green", "Blue"), BACKGROUND, strict=True):
         descriptor = ParameterDescriptor(
             description=f"{color} channel of the background color",
@@ -45,7 +45,7 @@ def declare(node: Node) -> None:
 
 
 def refusal(node: Node, parameters: Iterable[Parameter]) -> SetParametersResult | None:
-    """Return the reason why these parameters cannot be set, in the words of rclcpp, or None if they can be set.
+    """Return a result with the reason why these parameters cannot be set, as rclcpp words it, or None if they can.
 
     rclpy's own messages are worded differently.
 

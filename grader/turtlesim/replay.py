@@ -66,7 +66,7 @@ class _Input:
 
 
 def _frames(inputs: Path) -> Iterator[tuple[Turtle, Rotation | None]]:
-    """After each frame, yield turtle1 and the rotation that it had after the inputs of the frame, without an end."""
+    """After each frame, yield turtle1 and the rotation that it had after the frame's inputs. This never ends."""
     world = World()
     turtle = world.turtles["turtle1"]
     by_frame = _inputs(inputs)

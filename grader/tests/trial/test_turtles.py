@@ -56,3 +56,17 @@ def test_a_crowd_of_turtles_does_not_hide_a_target(monkeypatch: pytest.MonkeyPat
     watch.look(FRAME_S, world)
     rows = {track.turtle: len(track.rows) for track in watch.tracks}
     assert (rows["target"], sum(rows.values())) == (2, 5)
+
+
+def test_many_changes_to_pens_do_not_hide_that_a_new_turtle_was_killed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(turtles, "MOST_CHANGES", 1)
+    world, watch = World(), TurtleWatch()
+    for frame in range(3):
+        world.turtles["turtle1"].pen = Pen(width=frame + 1)
+        watch.look(frame * FRAME_S, world)
+    world.spawn("other", Start())
+    watch.look(3 * FRAME_S, world)
+    world.kill("other")
+    watch.look(4 * FRAME_S, world)
+    assert len(watch.pens) == 1
+    assert [(track.turtle, track.gone_s) for track in watch.tracks] == [("other", 4 * FRAME_S)]

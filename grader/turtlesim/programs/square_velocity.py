@@ -9,8 +9,8 @@ SIDE_M = 2.0
 _FORWARD_M_S = 1.0
 _TURN_RAD_S = 0.4
 _NEAR_PER_S = 4.0
-"""The gain (1/s): the speed is the remaining distance (m) or angle (rad) times the gain. The gain must not be too
-large, because the last pose that the node received may be a few frames old."""
+"""The gain (1/s): the speed is the remaining distance (m) or angle (rad) times the gain, up to the maximum speed. The
+gain must not be too large, because the last pose that the node received may be a few frames old."""
 _CLOSE_M = 0.002
 _CLOSE_RAD = 0.001
 

@@ -33,9 +33,8 @@ The arrow keys drive the turtle, for one second per key press.
     C V B
 F stops turning, Q quits."""
 _NO_TERMINAL = (
-    "turtle_teleop_key reads keys from a terminal, but its standard input is not a terminal (but, for example, a pipe "
-    "or a file). Start the program in a separate terminal: "
-    "ros2 run turtlesim turtle_teleop_key"
+    "turtle_teleop_key reads keys from a terminal, but its standard input is not a terminal. It may be a pipe or a "
+    "file. Start the program in a separate terminal: ros2 run turtlesim turtle_teleop_key"
 )
 _DISCOVERY_S = 2.0
 """The node waits for the discovery of turtlesim until this time (s) after its start."""
@@ -92,7 +91,7 @@ class Teleop(Node):
             time.sleep(0.01)
         there = somebody()
         if not there:
-            domain = os.environ.get("ROS_DOMAIN_ID", "0")
+            domain = os.environ.get("ROS_DOMAIN_ID") or "0"
             self._tell(
                 f"No subscription or action server for {name} was found (ROS_DOMAIN_ID is {domain}). "
                 "Is turtlesim running?"
