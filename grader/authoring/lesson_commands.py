@@ -1,4 +1,4 @@
-"""Check the commands in the console blocks of a lesson without running them.
+"""Check the commands in the console and shell blocks of a lesson without running them.
 
 Each command line of `grader`, `ros2` or `colcon` is parsed by the parser of this command: the subcommand and the
 options must exist. A step that is named must exist in the course.
@@ -37,7 +37,7 @@ _HELP = ("-h", "--help")
 
 
 def command_problems(markdown: str, course: Path, app: typer.Typer) -> Iterator[str]:
-    """Yield a sentence for each command in the console blocks that is not valid.
+    """Yield a sentence for each command in the console and shell blocks that is not valid.
 
     `course` is the folder course/, and `app` is the command `grader`.
     """

@@ -4,8 +4,8 @@
 
 First, source notebooks are updated from the files and checks of the solution. Then each marked region of the solution
 is replaced with the text that students start from (grader/exercise/markers.py). Notebooks are converted in the same way
-as nbgrader converts them (grader/notebook/released.py). All other files are copied. A file that would be empty without
-its solution is not written, because students create this file themselves.
+as nbgrader converts them (grader/notebook/released.py). All other files are copied. Recorded bags, and files that would
+be empty without their solutions, are not written, because students create them.
 """
 
 from __future__ import annotations

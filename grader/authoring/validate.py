@@ -40,6 +40,7 @@ def validate(
 ) -> list[str]:
     """Return the problems of the exercises in `names` (or of all exercises if `names` is empty), as one sentence each.
 
+    Files that are out of date in solutions/ or exercises/ are reported for all exercises.
     `app` is the command `grader`, whose parser checks the commands in the lessons. `tell` is called with progress
     messages. `course` is the folder course/. The default is the folder of this checkout or installation.
 

@@ -15,7 +15,7 @@ Each statement is checked in two ways: against the diagnoses that the operators 
 depend on diagnoses (the difference between the two packages, the source and the recording;
 grader/tests/operators/facts.py). The benchmark also lists each wrong package whose report missed the cause or has a
 false statement, with the difference from the correct package. `--keep` stores recordings, and `--again` judges stored
-recordings again without running anything. If a run with `--keep` is stopped, the next run continues from there. At the
+recordings instead of running packages. If a run with `--keep` is stopped, the next run continues from there. At the
 end, the benchmark checks a few wrong packages without and with `--explain`, and prints the ratio of the CPU times.
 """
 
@@ -194,7 +194,7 @@ def cost_of_explain(mades: Iterable[Made], folder: Path) -> float:
 
 
 def tell(all_: Iterable[Judged], *, everything: bool = False) -> None:
-    """Print each package whose report missed the cause or has a false statement, and the statistics."""
+    """Print the packages whose report missed the cause or has a false statement (or all), and the statistics."""
     every = list(all_)
     wrong = [each for each in every if each.failed]
     for each in wrong:
@@ -239,7 +239,7 @@ def main() -> None:
     parser.add_argument("--keep", type=Path, help="keep the recordings in this folder")
     parser.add_argument("--all", action="store_true", help="list all wrong packages, even those with a right report")
     parser.add_argument(
-        "--again", type=Path, help="judge the recordings in this folder again, without running packages"
+        "--again", type=Path, help="judge the recordings in this folder again, instead of running packages"
     )
     parser.add_argument(
         "--explained", type=int, default=8, help="number of packages for measuring the cost of --explain"

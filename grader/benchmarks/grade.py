@@ -176,7 +176,7 @@ def _alone(command: list[str]) -> Cost:
 def _cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[int]]]:
     """Start a scheduler, and workers with one thread each.
 
-    Yield the scheduler's address and the process ids of the workers.
+    Yield the scheduler's address, and the process ids of the scheduler and of the workers.
     """
     folder.mkdir()
     file = folder / "scheduler.json"

@@ -30,7 +30,10 @@ _NEIGHBOURS = re.compile(r"(Previous|Next): ")
 
 @dataclass(frozen=True)
 class Section:
-    """A heading with its level (2 or 3) and its anchor, and the plain text below it for the search index."""
+    """A heading with its level (2 or 3) and its anchor, and the plain text below it for the search index.
+
+    The first section is that of the lesson's title, which has the level 1 and the anchor "".
+    """
 
     level: int
     title: str
@@ -169,7 +172,7 @@ def _inner(tokens: list[Token]) -> Iterator[Token]:
 
 
 def _sections(tokens: list[Token], title: str) -> Iterator[Section]:
-    """Yield a section for the lesson's title and the text before the first heading, then one section per heading."""
+    """Yield a section for the lesson's title and the text before the first heading, then one per h2 and h3."""
     level, heading, anchor = 1, title, ""
     texts: list[str] = []
     heads = {id(inline) for opening, inline in pairwise(tokens) if opening.type == "heading_open"}

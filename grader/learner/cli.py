@@ -146,7 +146,7 @@ def place(path: Path | None, exercise: str | None, workspace: Path | None = None
     """Return the exercise and the folder that contains the learner's work on the exercise.
 
     Raises:
-        UsageError: neither the path nor the learner's progress determines the exercise.
+        UsageError: the exercise cannot be determined, or its folder does not exist.
     """
     from grader.learner.exercise_argument import meant
 

@@ -36,7 +36,7 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
     """Print the differences from the solution, and the answers to the questions under "To think about".
 
     Raises:
-        UsageError: the learner has not passed the step yet.
+        UsageError: the learner has not passed the step yet, or this copy of the course has no solutions.
     """
     exercise = find_exercise(step)
     root = progress.workspace_of(folder)
@@ -80,7 +80,7 @@ def _solution_files(exercise: Exercise) -> Mapping[str, bytes]:
 
 
 def _texts(folder: Path) -> dict[str, str]:
-    """Return the text of each file by path."""
+    """Return the text of each UTF-8 file by path, without the markers of the solution."""
     files = read(tree.read_folder, folder).files
     texts = {}
     for path in sorted(files, key=tree.sort_key):

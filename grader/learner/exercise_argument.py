@@ -1,4 +1,4 @@
-"""Determine the exercise and the folder from the arguments of `grader check` and `grader watch`."""
+"""Determine the exercise and the folder from the arguments of `grader check`, `grader run` and `grader watch`."""
 
 from __future__ import annotations
 
@@ -16,14 +16,18 @@ if TYPE_CHECKING:
     from grader.exercise.model import Exercise
     from grader.submission.package import Submission
 
+NAME_IT = "Name the exercise with --exercise"
 
-def meant(path: Path | None, exercise: str | None, folder: Path | None = None) -> tuple[Exercise, Path]:
+
+def meant(
+    path: Path | None, exercise: str | None, folder: Path | None = None, *, advice: str = NAME_IT
+) -> tuple[Exercise, Path]:
     """Return the exercise and the folder that contains the learner's work on the exercise.
 
-    See `guessed` for the arguments.
+    See `guessed` for the arguments. `advice` is the part of the message that says how to name the exercise.
 
     Raises:
-        UsageError: the arguments do not determine the exercise, or the step was never started.
+        UsageError: the arguments do not determine the exercise, no exercise has that name, or there is no such folder.
     """
     known, place = guessed(path, exercise, folder)
     if known is None and not place.exists():
@@ -31,7 +35,7 @@ def meant(path: Path | None, exercise: str | None, folder: Path | None = None) -
         raise UsageError(message)
     if known is None:
         message = (
-            f"Which exercise is {place.resolve().name} for? Name the exercise with --exercise, one of: "
+            f"Which exercise is {place.resolve().name} for? {advice}, one of: "
             f"{', '.join(catalogue())}. "
             "Or start a step in your workspace: `grader start 01`."
         )
@@ -49,7 +53,7 @@ def guessed(path: Path | None, exercise: str | None, folder: Path | None = None)
         guessed(Path("03"), None)  # step 03 and the package in the workspace
 
     Raises:
-        UsageError: no exercise has that name, or the step was never started.
+        UsageError: no exercise has that name, or the folder of the step does not exist.
     """
     root = progress.workspace_of(folder)
     if path is not None and not path.exists() and _is_step(str(path)):

@@ -25,7 +25,7 @@ def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
     If `step` is a single letter, it is a part of the current step.
 
     Raises:
-        UsageError: no step was started, or the step does not have the part.
+        UsageError: no step was named or started, or the step or its part does not exist.
     """
     if step is not None and part is None and re.fullmatch("[A-Za-z]", step):
         step, part = None, step
@@ -36,7 +36,7 @@ def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
     wanted = [index for index, each in enumerate(exercise.hints) if part is None or each.part == _part(exercise, part)]
     known = progress.load(root).step(exercise.id)
     index = _next(exercise, wanted, known)
-    if index is None and (part or known.passed):
+    if index is None and (part or (known.passed and not known.failed)):
         return f"{_whole(exercise, part)} has passed, so you do not need more hints."
     if index is None:
         return f"{exercise.id} has no hints for the checks that have not passed. `grader check` shows these checks."

@@ -35,21 +35,24 @@ def _sentence(begin: str, names: list[str]) -> str:
 
 
 def _parts(text: str) -> dict[str, str] | None:
-    """Return the code of each function by name, without comments and docstrings, or None if the text has errors.
+    """Return the code of each function and method by name, without its docstring, or None if the text has errors.
 
-    The code outside functions is included as one more item.
+    The code outside functions is included as one more item, without docstrings.
     """
     try:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError):
         return None
-    found = {}
+    found: dict[str, str] = {}
     rest = []
     for node in tree.body:
-        members = node.body if isinstance(node, ast.ClassDef) else [node]
+        members = [node]
+        if isinstance(node, ast.ClassDef):
+            members, node.body = node.body, []
+            rest.append(ast.dump(node))
         for member in members:
             if isinstance(member, ast.FunctionDef | ast.AsyncFunctionDef):
-                found[member.name] = ast.dump(_without_docstring(member))
+                found[member.name] = found.get(member.name, "") + ast.dump(_without_docstring(member))
             elif not _is_text(member):
                 rest.append(ast.dump(member))
     return {**found, "the lines outside functions": "\n".join(rest)}

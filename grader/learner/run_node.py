@@ -1,4 +1,4 @@
-"""Run the node of a step together with a turtlesim and its view. Ctrl-C stops all of them."""
+"""Run the node of a step with a turtlesim and its view. Ctrl-C stops them, but not a turtlesim that already ran."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ class Program:
 
 
 def program_of(step: str | None, executable: str | None, workspace: Path | None) -> Program:
-    """Return the program to run. The default is the first program of the current step.
+    """Return the program to run. The defaults are the current step and the first program of the step.
 
     Raises:
         UsageError: the step has no node, was not started, or does not run this executable.
     """
     if step and executable is None and not Path(step).exists():
         _refuse_program_as_step(step)
-    exercise, place = meant(Path(step) if step else None, None, workspace)
+    exercise, place = meant(Path(step) if step else None, None, workspace, advice="Type `grader run STEP`")
     names = executables(exercise)
     if not names:
         message = f"{exercise.id} has no node to run. `grader sim --view` starts turtlesim without a node."
@@ -75,7 +75,7 @@ def _refuse_program_as_step(name: str) -> None:
 
 
 def executables(exercise: Exercise) -> list[str]:
-    """Return the names of the executables that the exercise's trials run, without duplicates."""
+    """Return the names of the executables that the trials run as nodes, without duplicates."""
     return list(dict.fromkeys(trial.executable for trial in exercise.trials if trial.executable and not trial.calls))
 
 
@@ -176,7 +176,7 @@ def _turtlesim(env: Mapping[str, str], *, view: bool) -> Iterator[None]:
     """Run turtlesim, and stop it at the end of the `with` block.
 
     Raises:
-        MachineError: turtlesim did not start. Its output has been printed.
+        MachineError: turtlesim did not start within READY_S. Its output has been printed.
     """
     options = ["--view"] if view else []
     with tempfile.TemporaryDirectory(prefix="grader-run-") as place:

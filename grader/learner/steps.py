@@ -41,10 +41,11 @@ class Begun:
 
 
 def start(step: str, folder: Path | None, *, student: str | None = None, fresh: bool = False) -> Begun:
-    """Start a step in the workspace. The name "next" stands for the step after the current one.
+    """Start a step in the workspace. "next" stands for the first step after the current one that has not passed.
 
     Raises:
-        UsageError: the step does not exist, or `step` is "next" and the learner has not passed the current step yet.
+        UsageError: the step does not exist, `student` is empty, or `step` is "next" and the learner has not passed the
+            current step yet or there is no later step.
     """
     root = progress.workspace_of(folder)
     exercise = _next(progress.load(root)) if step == "next" else find_exercise(step)
@@ -62,7 +63,7 @@ def start(step: str, folder: Path | None, *, student: str | None = None, fresh: 
 
 
 def begin_message(begun: Begun) -> str:
-    """Return the text that `start` prints: the added and unchanged files, and the next commands."""
+    """Return the text that `start` prints: the added and unchanged files, the tasks, and the next commands."""
     started = begun.started
     lines = [f"{begun.exercise.id}: {begun.exercise.title}, in {started.folder}"]
     if started.kept:
@@ -101,7 +102,7 @@ def _setup_file() -> Path:
 
 
 def current(folder: Path | None) -> tuple[Exercise, Path] | None:
-    """Return the current step and the folder with the learner's work, or None before the first `start`."""
+    """Return the current step and the folder with the learner's work, or None if there is no such step."""
     root = progress.workspace_of(folder)
     name = progress.load(root).current
     if name is None or name not in catalogue():
@@ -129,16 +130,22 @@ def note(exercise: Exercise, submission: Path, report: Report, folder: Path | No
     if all(known.step(name).passed for name in catalogue()):
         last = "" if all(begun.step(name).passed for name in catalogue()) else "That was the last step. "
         return f"{last}You have passed all steps."
-    waiting = _waiting(known)
     part = next((title for title, names in parts().items() if exercise.id == names[-1]), "")
     lines = [f"That was the last step of {part.lower()}."] if part else []
     return "\n".join(
         [
             *lines,
-            "The next step: grader start next" if waiting else _open_steps(known),
+            _following(known),
             f'Our solution next to yours, and the answers to "To think about": grader solution {exercise.id[:2]}',
         ]
     )
+
+
+def _following(known: progress.Progress) -> str:
+    """Return the line that names the next step, or the current step if it has not passed yet."""
+    if known.current is not None and not known.step(known.current).passed:
+        return f"Your current step, {known.current}, has not passed yet."
+    return "The next step: grader start next" if _waiting(known) else _open_steps(known)
 
 
 def keep_picture(evidence: Evidence, report: Report, folder: Path | None = None) -> str:

@@ -59,7 +59,7 @@ class _Sources(DefaultFilter):
 
 
 def folders(top: Path) -> list[str]:
-    """Return the folder and those of its subfolders that can contain sources, without following symbolic links.
+    """Return the folder and its subfolders that can contain sources: at most MOST_FOLDERS, and no symbolic links.
 
     A link to `/` in a package would otherwise use up the user's inotify watches.
     """
@@ -210,7 +210,7 @@ class Watched:
         `prepare`.
 
         Raises:
-            UsageError: there is no package in the folder.
+            UsageError: the folder does not contain one package, or its files cannot be read.
         """
         try:
             submission = self._open()

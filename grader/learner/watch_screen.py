@@ -73,7 +73,7 @@ class _Screen:
 
         Return the step that the learner has started in the meantime, or None to quit.
 
-        On a terminal, every report clears the screen. `notice` is printed below the first report.
+        On a terminal, each grading clears the screen. `notice` is printed below the first report.
         """
         self._grade(notice)
         self._prove(events)
@@ -135,10 +135,7 @@ class _Screen:
         self._shown = proved.report
 
     def _render(self, report: Report, more: int) -> None:
-        """Print the full report if the report and the lines below it fit into the window.
-
-        If there is too little space, print only what failed.
-        """
+        """Print the report, or a brief report if the full one and the lines below it do not fit into the terminal."""
         with self._console.capture() as whole:
             terminal.render(report, self._console)
         fits = whole.get().count("\n") + more + BELOW <= self._console.height

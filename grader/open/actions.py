@@ -44,7 +44,7 @@ class Actions:
         return {**threaded, "turtlesim": self.turtlesim, "node": self.node}
 
     def start(self, request: Request) -> object:
-        """Start a step, or the step after the current one. Files of the learner are not overwritten."""
+        """Start a step, or the next one (see `steps.start`). Files of the learner are not overwritten."""
         step = request.get("step")
         if not isinstance(step, str) or (step != "next" and step not in catalogue()):
             message = "The step does not exist."

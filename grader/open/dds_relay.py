@@ -74,7 +74,10 @@ class Relay:
         self._inside[0].sendto(datagram, (HOST, port))
 
     def _as_seen_inside(self, locator: re.Match[bytes]) -> bytes:
-        """Return the locator with the address of this relay, which is the only address that the cell can reach."""
+        """Return the locator with the address of this relay, which is the only address that the cell can reach.
+
+        If its port is one of the OTHERS ports from FIRST_OWN on, also allow datagrams to this port.
+        """
         (port,) = struct.unpack("<I", locator[2])
         if FIRST_OWN <= port < FIRST_OWN + OTHERS:
             self._reachable.add(port)

@@ -28,7 +28,7 @@ OPEN = "open"
 
 @dataclass(frozen=True)
 class Verdict:
-    """The last verdict: its checks by id, its summary line, and the HTML of its details."""
+    """The last verdict: its checks by id, its summary line and its tone, and the HTML of its details."""
 
     checks: dict[str, dict[str, object]]
     line: str
@@ -120,7 +120,7 @@ def from_json(text: str | bytes) -> Content:
 
 
 def page_data(now: Content, workspace: Path) -> dict[str, object]:
-    """Return all data for a page: the content, and the learner's progress in the workspace."""
+    """Return the data for a page except for its programs: the content, and the progress in the workspace."""
     known = progress.load(workspace)
     exercise = find_exercise(now.exercise) if now.exercise else None
     step = known.step(now.exercise)

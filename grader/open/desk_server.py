@@ -1,8 +1,8 @@
 """The server of the page: lessons, verdict, updates and actions, protected by grader.view.guard.
 
 Lessons are public. A request for the learner's data must contain the token in a header, which pages of other sites
-cannot send. The connection for updates has the token in its address, and the guard checks the Origin of this
-connection.
+cannot send. The connections for updates and for the turtle have the token in their address (for updates, it can be a
+code that works once), and the guard checks their Origin.
 """
 
 from __future__ import annotations

@@ -48,7 +48,7 @@ class Program:
     def __init__(self, changed: Callable[[], object]) -> None:
         self.lines: deque[str] = deque(maxlen=KEPT)
         self.was_stopped = False
-        """Whether `stop` has ended the program since it was last started."""
+        """Whether `stop` was called since the program was last started."""
         self._changed = changed
         self._process: asyncio.subprocess.Process | None = None
         self._reading: asyncio.Task[None] | None = None
@@ -132,7 +132,10 @@ class Programs:
         """The step of the node, and the digest of its code when the node was started."""
 
     def address(self) -> Address | None:
-        """Return the address of the view of a turtlesim that was started here or in a terminal, or None."""
+        """Return the address of the view of the turtlesim that was started here, or else last in a terminal, or None.
+
+        The view at this address may no longer be running.
+        """
         return self._address or remembered("turtlesim")
 
     def _printed_address(self) -> Address | None:
@@ -161,7 +164,7 @@ class Programs:
         self._changed()
 
     async def start_turtlesim(self) -> None:
-        """Start `grader sim --view`."""
+        """Start `grader sim --view`. Wait at most READY_S until turtlesim is ready or has exited."""
         if not self.turtlesim.running:
             self._address = None
         await self.turtlesim.start("-m", "grader.cli", "sim", "--view")

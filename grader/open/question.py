@@ -22,7 +22,7 @@ VERBS: Mapping[str, tuple[str, ...]] = {
     "node": ("list", "info"),
     "service": ("list", "info", "type", "find"),
     "param": ("list", "get", "describe"),
-    "action": ("list", "info", "type"),
+    "action": ("list", "info", "type", "find"),
 }
 """The allowed groups and verbs."""
 _REFUSED: Mapping[str, tuple[str, ...]] = {
@@ -125,5 +125,6 @@ def answer(words: list[str], env: Mapping[str, str]) -> Answer:
             process.kill()
             output, _ = process.communicate()
     if stopped and not output and words[:2] in (["topic", "echo"], ["topic", "hz"]):
-        return Answer(f"No message arrived within {patience_s:.0f} s.", stopped=False)
+        few = "Too few messages to measure a rate" if endless else "No message"
+        return Answer(f"{few} arrived within {patience_s:.0f} s.", stopped=False)
     return Answer(output[:LONGEST].decode("utf-8", "replace"), stopped and not endless)

@@ -22,7 +22,7 @@ _MOST = 2000
 
 
 def find(package: str, unknown: str) -> None:
-    """Raise Ros2Error if the package is in a workspace, but not installed in this terminal's ROS 2 environment.
+    """Raise Ros2Error if the package, or one with a similar name, is in a workspace, but not sourced in this terminal.
 
     The error begins with the text `unknown`, and says what to type.
     """

@@ -80,7 +80,7 @@ def write_stamp(stamp: Stamp, path: Path = STAMP) -> None:
 
 
 def digest() -> str:
-    """Return a hash of the files that determine what is installed, and of those that are copied into .venv."""
+    """Return a hash of the lock file, of pyproject.toml, and of the files that are copied into .venv."""
     whole = hashlib.sha256()
     for name in ("requirements.lock", "pyproject.toml", *COPIED):
         place = ROOT / name

@@ -12,10 +12,10 @@ _FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitign
 
 
 class CourseHook(BuildHookInterface):  # type: ignore[type-arg]
-    """Adds the course's folders to the wheel. An editable install uses the folders in the repository instead."""
+    """Adds the course's folders and files to the wheel. An editable install uses those in the repository instead."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Add the folders. hatchling calls this method before the build."""
+        """Add the folders and files, except to an editable install. hatchling calls this method before the build."""
         if version == "standard":
             # The repository for students has no solutions.
             there = [name for name in _FOLDERS if Path(self.root, name).is_dir()]

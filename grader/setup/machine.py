@@ -214,7 +214,7 @@ def choose_python(
 
 
 def missing_tools(path: str, ros: Optional[SourcedRos]) -> List[Need]:
-    """Return the missing programs. A compiler, cmake and make are needed only if the sourced ROS 2 has no turtlesim."""
+    """Return the missing programs. A compiler, cmake and make are not needed if the sourced ROS 2 has turtlesim."""
     tools = {"bwrap": Need("bubblewrap, the sandbox that student code runs in", "bubblewrap", NO_SANDBOX)}
     limits = Need("setpriv, prlimit and choom, which set the sandbox's limits", "util-linux")
     tools.update({"setpriv": limits, "prlimit": limits, "choom": limits})

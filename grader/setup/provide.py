@@ -18,7 +18,7 @@ _ERROR = re.compile(r"(E:|W:|Err:|error|problem|fatal|no package|nothing provide
 
 
 def provide(needs: Sequence[package_managers.Need], env: Mapping[str, str], say: Callable[[str], None]) -> str:
-    """Print a line with `say`, and then install the packages that are needed.
+    """Install the packages that are needed, if this is allowed. Before that, print a line with `say`.
 
     Return the reason why something could not be installed, or an empty string if everything was installed.
 

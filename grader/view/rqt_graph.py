@@ -75,7 +75,7 @@ def _parse(argv: Sequence[str]) -> argparse.Namespace:
         prog="rqt_graph",
         description="Show the running nodes with the topics that they publish and subscribe to.",
         epilog="Without --output, the graph is live in a browser until Ctrl-C. Without a browser, it is printed as "
-        "text. Over ssh, or with --port, it is served for a browser on another machine. "
+        "text, or, over ssh or with --port, served for a browser on another machine. "
         "Example: rqt_graph --output graph.svg",
     )
     parser.add_argument(

@@ -141,7 +141,7 @@ class Ears:
         self._executor.create_task(self._drive, turtle, key)
 
     def leave(self) -> None:
-        """Stop driving. The driving node leaves the graph about a second later, so that its last command can arrive."""
+        """Remove the driving node from the graph about a second later, so that its last command can arrive."""
         self._leave_s = time.monotonic() + _LAST_WORD_S
 
     async def _drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:

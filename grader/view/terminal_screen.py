@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from grader.view.system import System
 
 BESIDE = 38
-"""The number of columns next to the canvas."""
+"""The minimum number of columns next to the canvas. A terminal that is too narrow has only the canvas."""
 _BELOW = 6
 """The number of rows for the title, the simulator's output and the keys."""
 _LEAST = 8
@@ -57,7 +57,7 @@ class Shown(Protocol):
 
 
 def side_for(console: Console) -> int:
-    """Return the width of the canvas in columns: the largest even number that fits into the terminal."""
+    """Return the width of the canvas in columns: the largest even number that fits, but at least 8."""
     width, height = console.size
     beside = BESIDE if width >= 2 * BESIDE else 0
     return max(min(width - beside, 2 * (height - _BELOW)), _LEAST) // 2 * 2
@@ -101,7 +101,7 @@ class Screen:
         turtle = state.turtles.get(name)
         if turtle is None:
             return [Text(f"{name} does not exist. Press Tab to choose another turtle.")]
-        others = f"  (1 of {len(state.turtles)})" if len(state.turtles) > 1 else ""
+        others = f"  ({list(state.turtles).index(name) + 1} of {len(state.turtles)})" if len(state.turtles) > 1 else ""
         lines = [
             Text.assemble((printable(name), "bold"), others),
             Text(f"x {turtle.x:6.2f} m   y {turtle.y:6.2f} m"),

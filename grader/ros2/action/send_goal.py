@@ -30,7 +30,10 @@ def add(parser: argparse.ArgumentParser) -> None:
     completes(kind, action_types)
     source = parser.add_mutually_exclusive_group()
     given = source.add_argument(
-        "goal", nargs="?", default="{}", help='the goal, such as "{theta: 1.57}"; all values are zero by default'
+        "goal",
+        nargs="?",
+        default="{}",
+        help='the goal, such as "{theta: 1.57}"; missing fields get their default values',
     )
     completes(given, prototype("action_type", "action", "Goal"))
     source.add_argument("--stdin", action="store_true", help="read the goal from standard input")

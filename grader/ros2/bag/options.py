@@ -25,7 +25,7 @@ def add_bag(parser: argparse.ArgumentParser) -> None:
         "--storage",
         default="",
         choices=STORAGES,
-        help="the storage format of the bag (default: detected)",
+        help="the storage format of the bag (no effect, since it is detected)",
     )
 
 

@@ -37,7 +37,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o",
         "--output",
-        help="the new folder (default: rosbag2_ and the time in the current folder)",
+        help="the new folder (default: in the current folder, named rosbag2_ and the time)",
     )
     parser.add_argument(
         "-s", "--storage", default="mcap", choices=STORAGES, help="storage format of the bag (default: mcap)"

@@ -19,7 +19,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
     completes(parser.add_argument("node_name", help="full name of the node, such as /turtlesim"), nodes)
-    parser.add_argument("--include-hidden", action="store_true", help="include hidden topics, services and actions")
+    parser.add_argument("--include-hidden", action="store_true", help="include hidden nodes, topics, services, actions")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -23,7 +23,7 @@ def run(args: argparse.Namespace) -> int:
     """Print the value.
 
     Raises:
-        Ros2Error: the node or the parameter does not exist.
+        Ros2Error: the node or the parameter does not exist, or the node does not respond.
     """
     from grader.ros2.param.parameter_client import parameters_of, value_text
 

@@ -31,7 +31,7 @@ def run(args: argparse.Namespace) -> int:
     """Print the names of the parameters, sorted.
 
     Raises:
-        Ros2Error: the node does not exist.
+        Ros2Error: a node does not exist or does not respond, or the filter is not a regular expression.
     """
     from grader.graph.discovery import cli_node, settle
     from grader.ros2.param.parameter_client import Parameters, parameters_of, with_parameters

@@ -137,8 +137,8 @@ def _advice(wanted: NewPackage) -> list[str]:
     if odd:
         advice.append(
             f"The {' and the '.join(odd)} can cause problems. Begin with a letter, and use only lower-case letters, "
-            "digits and _. Python cannot import a name with other characters such as -, and colcon warns about the "
-            "names of such packages."
+            "digits and _. Python cannot import a name with a character such as -, and colcon warns about upper-case "
+            "letters in the name of a package."
         )
     if wanted.build_type != "ament_python":
         advice.append(

@@ -27,7 +27,10 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     source = parser.add_mutually_exclusive_group()
     given = source.add_argument(
-        "values", nargs="?", default="{}", help='the request, such as "{x: 2.0}"; all values are zero by default'
+        "values",
+        nargs="?",
+        default="{}",
+        help='the request, such as "{x: 2.0}"; missing fields get their default values',
     )
     completes(given, prototype("service_type", "srv", "Request"))
     source.add_argument("--stdin", action="store_true", help="read the request from standard input")

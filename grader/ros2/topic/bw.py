@@ -70,7 +70,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the bandwidth every second until Ctrl-C."""
+    """Print the bandwidth every second until Ctrl-C, beginning with the second message."""
     import rclpy
     from rclpy.qos import qos_profile_sensor_data
 

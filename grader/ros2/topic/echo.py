@@ -24,7 +24,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
     completes(parser.add_argument("topic_name", help="name of the topic, such as /turtle1/pose"), topics)
-    kind = parser.add_argument("message_type", nargs="?", help="type of the topic, required if no publisher is running")
+    kind = parser.add_argument("message_type", nargs="?", help="type of the topic, required if it does not exist")
     completes(kind, topic_types)
     qos.add_qos(parser, "sensor_data")
     parser.add_argument(
@@ -35,7 +35,9 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-lost-messages", action="store_true", help="do not report lost messages")
     parser.add_argument("--raw", action="store_true", help="print the bytes of the messages")
     parser.add_argument(
-        "--filter", dest="filter_expr", help="print only the messages m for which this Python expression is true"
+        "--filter",
+        dest="filter_expr",
+        help="print only the messages m for which this Python expression is true (with one --field, m is that field)",
     )
     parser.add_argument("--once", action="store_true", help="print one message and exit")
     parser.add_argument("--timeout", metavar="N", type=positive_float, help="exit after N seconds")

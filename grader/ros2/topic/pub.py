@@ -41,7 +41,10 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     source = parser.add_mutually_exclusive_group()
     given = source.add_argument(
-        "values", nargs="?", default="{}", help='the values, such as "{linear: {x: 2.0}}"; by default, all are zero'
+        "values",
+        nargs="?",
+        default="{}",
+        help='the values, such as "{linear: {x: 2.0}}"; missing fields get their default values',
     )
     completes(given, prototype("message_type", "msg"))
     source.add_argument("--stdin", action="store_true", help="read the values from standard input")

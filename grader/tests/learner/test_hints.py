@@ -104,6 +104,13 @@ def test_a_part_has_hints_of_its_own(words: tuple[str, ...]) -> None:
     assert reported.startswith("Hint 1 of 1: d) ")
 
 
+def test_a_passed_step_in_which_a_check_without_hints_fails_again_is_not_called_passed() -> None:
+    step = find_exercise("04-package-files")
+    hinted = tuple(check for hint in step.hints for check in hint.checks)
+    verdict("04-package-files", passed=True, done=hinted, failed=("another",))
+    assert hints.hint(None, None).startswith("04-package-files has no hints for the checks that have not passed.")
+
+
 def test_a_part_that_has_passed_needs_no_hint() -> None:
     verdict(LAST, done=("goal", "goal-subscription", "goal-turn", "goal-first-pose"), failed=("square",))
     assert hints.hint("07", None, "d") == "Part d) of 07-challenges has passed, so you do not need more hints."

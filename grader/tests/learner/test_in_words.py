@@ -34,11 +34,21 @@ REST = "The code is the same in __init__ and the lines outside functions."
             OURS.replace("def step", "def go"),
             f"{REST} Only your file has go. Only the solution has step.",
         ),
+        (
+            OURS.replace("class Node:", "class Node(Base):"),
+            "The code is the same in __init__ and step. The code is different in the lines outside functions.",
+        ),
         ("", "Your work does not contain this file, or the file is empty."),
     ],
 )
 def test_it_is_said_in_words(theirs: str, said: str) -> None:
     assert difference(theirs, OURS, "node.py") == said
+
+
+def test_methods_of_the_same_name_in_two_classes_are_all_compared() -> None:
+    second = OURS + "\n\nclass Other:\n    def step(self):\n        return 1\n"
+    theirs = second.replace("return self.speed", "return 0")
+    assert "The code is different in step." in difference(theirs, second, "node.py")
 
 
 def test_other_files_are_compared_by_their_lines() -> None:

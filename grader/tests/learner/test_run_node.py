@@ -73,6 +73,11 @@ def test_a_crash_shows_the_learners_own_file(learner: Learner) -> None:
     assert "draw_circle has ended with exit code 1." in printed
 
 
+def test_a_folder_that_names_no_step_asks_for_a_step(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"Type `grader run STEP`, one of: 01-first-node"):
+        program_of(str(tmp_path), None, tmp_path / "no_ws")
+
+
 def test_it_says_what_colcon_says(learner: Learner) -> None:
     setup = learner.home / "ros2_ws/src/my_robot_controller/setup.py"
     right = setup.read_text("utf-8")

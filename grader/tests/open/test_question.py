@@ -23,6 +23,7 @@ from grader.open.question import arguments
         ("interface show geometry_msgs/msg/Twist", ["interface", "show", "geometry_msgs/msg/Twist"]),
         ("param get /turtlesim background_r", ["param", "get", "/turtlesim", "background_r"]),
         ("'action' list", ["action", "list"]),
+        ("action find turtlesim/action/RotateAbsolute", ["action", "find", "turtlesim/action/RotateAbsolute"]),
     ],
 )
 def test_a_question(text: str, words: list[str]) -> None:
@@ -100,6 +101,9 @@ def test_only_a_command_that_waits_for_messages_reports_that_none_arrived(monkey
     monkeypatch.setattr(question, "PATIENCE_S", 0.2)
     none = question.Answer("No message arrived within 0 s.", stopped=False)
     assert question.answer(["topic", "echo", "/a", "--once"], {}) == none
+    monkeypatch.setattr(question, "HZ_S", 0.2)
+    few = question.Answer("Too few messages to measure a rate arrived within 0 s.", stopped=False)
+    assert question.answer(["topic", "hz", "/a"], {}) == few
     stopped = question.answer(["topic", "list"], {})
     assert stopped.stopped
     assert "No message" not in stopped.output

@@ -44,7 +44,7 @@ def numeric(message: Any, path: str) -> list[str]:  # noqa: ANN401 - a message o
 
 
 def fields_of(observed: Observed) -> list[str]:
-    """Return the names of all published numeric fields. Fields of unknown types are omitted."""
+    """Return the names of all published numeric fields. Elements of arrays and fields of unknown types are omitted."""
     types = {end.topic: end.type for end in observed.ends if end.kind == "publisher"}
     found = []
     for topic, type_name in types.items():

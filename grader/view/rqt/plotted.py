@@ -54,7 +54,7 @@ class Plotted:
         self._told: dict[str, str] = {}
 
     def add(self, typed: str) -> None:
-        """Plot another field, or the numbers of a message. Do nothing if there are MOST_FIELDS fields already."""
+        """Plot the typed fields, or the numbers of typed messages, until there are MOST_FIELDS of them."""
         for name in expand(typed):
             if len(self._wanted) < MOST_FIELDS:
                 self._wanted.setdefault(name, "Waiting for this topic.")

@@ -22,7 +22,7 @@ TIMEOUT_S = 5.0
 MOST_WAITING = 20
 """The maximum number of pending calls."""
 _EVERY_NODES = "rcl_interfaces/srv/"
-"""The beginning of the types of the parameter services, which every node has. These services are listed last."""
+"""The beginning of the types of the parameter services, which most nodes have. These services are listed last."""
 
 Answer = dict[str, object]
 """The `id` of a call, whether there was a response (`ok`), and a `text`: the response as YAML, or the error message."""

@@ -1,0 +1,23 @@
+"""The command that is named after a step has passed."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.checks.exercises import find_exercise
+from grader.learner import progress, steps
+from grader.tests.report.reports import report
+
+FIRST, SECOND = "01-first-node", "02-discover-topics"
+
+pytestmark = pytest.mark.usefixtures("home")
+
+
+def test_the_next_step_is_named_only_if_the_current_step_has_passed() -> None:
+    own = steps.start(FIRST, None).started.folder
+    steps.start(SECOND, None)
+    said = steps.note(find_exercise(FIRST), own, report("passed"))
+    assert f"Your current step, {SECOND}, has not passed yet." in said
+    assert "start next" not in said
+    progress.update(progress.workspace_of(None), lambda before: before.graded(SECOND, report("passed")))
+    assert "The next step: grader start next" in steps.note(find_exercise(FIRST), own, report("passed"))
