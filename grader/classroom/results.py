@@ -109,8 +109,8 @@ class Results:
             with suppress(OSError):
                 partial.unlink()
             message = (
-                f"{file} could not be written: {error.strerror}. The results so far are kept. Free some space, "
-                "then run the same command again to continue."
+                f"{file} could not be written: {error.strerror}. The results so far are kept. If the disk is "
+                "full, free some space. Then run the same command again to continue."
             )
             raise DiskError(message) from error
         return file

@@ -38,7 +38,7 @@ Steps = Annotated[
 Course = Annotated[
     Optional[Path],  # noqa: UP045
     typer.Option(
-        help="Folder of the class or its course/. Default: the current folder, if `grader class new` created it.",
+        help="Folder of the class or its course/. Default: the current folder, if it is this course or your class.",
         metavar="DIR",
     ),
 ]

@@ -233,14 +233,13 @@ def _write(
         if grade is None:
             without_cell += [outcome.id] if outcome.max else []
             continue
-        # A check that could not be judged has no points.
         name = f"{step} {outcome.id}"
         if grade.cell.max_score != outcome.max:
             maxima[name] = f"{grade.cell.max_score:g} to {outcome.max:g}"
             grade.cell.max_score = outcome.max
         changed = grade.auto_score != outcome.points
         tally["changed"] += changed
-        grade.auto_score = outcome.points
+        grade.auto_score = outcome.points  # 0 if the check could not be judged
         if grade.manual_score is None:
             grade.needs_manual_grade = outcome.status is Status.ERROR
         else:
