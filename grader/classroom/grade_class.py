@@ -94,8 +94,8 @@ def grade_found(
         unlisted = [shown_name(each.student) for each in found if roster and normal_id(each.student) not in roster]
         if unlisted:
             say(
-                "These submissions are not in the roster, so their individual numbers are derived from the names of "
-                f"their folders or archives: {a_list(unlisted)}."
+                "These submissions are not in the roster, so individual numbers, if the exercise has any, are derived "
+                f"from the names of their folders or archives: {a_list(unlisted)}."
             )
         graded: list[Result] = []
         if todo:
