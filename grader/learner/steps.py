@@ -218,13 +218,19 @@ def _next(known: progress.Progress) -> Exercise:
     if not known.step(known.current).passed:
         message = (
             f"You have not passed {known.current} yet: `grader check` shows what is missing, and `grader hint` helps. "
-            "To skip this step for now, name another step, as in `grader start 04`."
+            f"To skip this step for now, name another step, as in `grader start {_after(known.current)[:2]}`."
         )
         raise UsageError(message)
     waiting = _waiting(known)
     if not waiting:
         raise UsageError(_open_steps(known))
     return find_exercise(waiting[0])
+
+
+def _after(name: str) -> str:
+    """Return the step after the step `name`, or the first step of the course after the last one."""
+    names = list(catalogue())
+    return names[(names.index(name) + 1) % len(names)]
 
 
 def _waiting(known: progress.Progress) -> list[str]:

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 def look(args: argparse.Namespace) -> Look:
     """Return the current graph, either from the daemon or from a node in this process.
 
-    If no daemon is running, start one for the next command. With `args.no_daemon`, do not use or start a daemon.
+    If no daemon responds, start one for the next command (unless GRADER_ROS2_DAEMON=0). With `args.no_daemon`, do not
+    use or start a daemon.
 
     Raises:
         Ros2Error: the node could not be created.

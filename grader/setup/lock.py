@@ -1,7 +1,7 @@
 """The lock file: the version and hashes of every package that the set-up installs, for all versions of Python.
 
-The file is in pip's format and has sections. `# part: NAME` starts the list of packages that only one part needs, and
-`# part: NAME NAME` starts a list of packages that several parts need. Each set-up installs exactly the packages of its
+The file is in pip's format and has sections. `# part: NAME` starts the list of packages of one part, and
+`# part: NAME NAME` starts a list of packages that several optional parts need. Each set-up installs the packages of its
 parts. `python -m grader.setup.lock` (`make lock`) writes the file. This module uses only the standard library, because
 the set-up reads the lock file before anything is installed.
 """

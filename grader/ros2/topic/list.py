@@ -26,7 +26,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the sorted names of the topics, or only their number."""
+    """Print the sorted names of the topics, or their number. With --verbose, count their publishers and subscribers."""
     graph = look(args)
     found = shown(graph.topics, all_of_them=args.include_hidden_topics)
     if args.count_topics:

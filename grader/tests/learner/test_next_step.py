@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from grader.checks.exercises import find_exercise
+from grader.errors import UsageError
 from grader.learner import progress, steps
 from grader.tests.report.reports import report
 
@@ -21,3 +22,10 @@ def test_the_next_step_is_named_only_if_the_current_step_has_passed() -> None:
     assert "start next" not in said
     progress.update(progress.workspace_of(None), lambda before: before.graded(SECOND, report("passed")))
     assert "The next step: grader start next" in steps.note(find_exercise(FIRST), own, report("passed"))
+
+
+@pytest.mark.parametrize(("current", "another"), [("04", "05"), ("13", "01")])
+def test_a_step_that_has_not_passed_can_be_skipped_for_another_one(current: str, another: str) -> None:
+    steps.start(current, None)
+    with pytest.raises(UsageError, match=f"To skip this step for now, .*`grader start {another}`"):
+        steps.start("next", None)
