@@ -68,6 +68,8 @@ OURS = {
     ("launcher", "run"): "a request of the conductor",
     ("node_in_cell", "main"): "a request of the desk",
     ("page_process", "main"): "a request of the desk",
+    ("parse_colcon", "_main"): "the commands of a lesson, from validate",
+    ("parse_colcon", "colcon_faults"): "the output of a process that parses the commands of a lesson",
     ("predicted", "tree"): "a stream that we write",
     ("progress", "_read"): "the learner's state",
     ("relay", "main"): "a request of confined_autograde.py",

@@ -69,7 +69,9 @@ def test_every_link_on_a_page_for_students_leads_somewhere(students: Path) -> No
 
 
 def test_the_makefile_for_students_has_only_their_targets(students: Path) -> None:
-    done = subprocess.run(["make", "help"], cwd=students, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        ["make", "--no-print-directory", "help"], cwd=students, capture_output=True, text=True, check=True
+    )
     assert [line.split()[1] for line in done.stdout.splitlines()] == ["help", "demo", "notebooks", "clean"]
     done = subprocess.run(["make", "-n", "demo", "notebooks"], cwd=students, capture_output=True, text=True, check=True)
     assert "grader.setup.demo" in done.stdout

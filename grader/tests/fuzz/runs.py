@@ -25,7 +25,7 @@ class Tally:
 
     def __init__(self, target: Path) -> None:
         (target / "runs").mkdir(parents=True, exist_ok=True)
-        self._begun = time.monotonic()
+        self._begun, self._begun_cpu_s = time.monotonic(), time.process_time()
         self._file = target / "runs" / f"{time.strftime('%Y-%m-%dT%H-%M-%S')}-{os.getpid()}.json"
         self._written, self._executions = -EVERY_S, 0
 
@@ -36,7 +36,8 @@ class Tally:
         if now >= self._written + EVERY_S:
             self._written = now
             wall_s = round(now - self._begun, 1)
-            run = {"wall_s": wall_s, "cpu_s": round(time.process_time(), 1), "executions": self._executions}
+            cpu_s = round(time.process_time() - self._begun_cpu_s, 1)
+            run = {"wall_s": wall_s, "cpu_s": cpu_s, "executions": self._executions}
             # The file is replaced, because a run that is killed while it writes would leave an empty file.
             new = self._file.with_suffix(".new")
             new.write_text(json.dumps(run))
