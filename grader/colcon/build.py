@@ -23,6 +23,6 @@ class Build:
     """The sandbox limit that was reached, such as "disk" or "memory", or None."""
     installed: tuple[str, ...] = ()
     executables: tuple[str, ...] = ()
-    """The names of the files in lib/<package>, which `ros2 run` can start."""
+    """The names of the files in lib/<package>, where `ros2 run` looks for executables."""
     entry_points: dict[str, str] = field(default_factory=dict)
     seconds: float = 0.0

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 READY = b"colcon-is-ready\n"
-"""This line is printed before the submission is read. An error after this line is never the machine's fault."""
+"""This line is printed before the submission is read. The machine is not blamed for an error after this line."""
 _MOST_OPEN = 4096
 _MOST_REQUEST = 1024 * 1024
 _IGNORE = re.compile(r"ignore:([^:]*)")

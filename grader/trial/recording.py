@@ -194,14 +194,14 @@ class Recording:
     """The service calls, in order: from nodes to the simulator and to each other, and from the trial to the node. Their
     number is limited."""
     goals: tuple[Goal, ...] = ()
-    """The goals that the node sent to the actions of the simulator, in order, up to a limit."""
+    """The goals that nodes sent to the actions of the simulator, in order, up to a limit."""
     offers: tuple[Offer, ...] = ()
     """The services of the submission's nodes. They are recorded only if the trial calls services or has several
     nodes."""
     pens: tuple[PenChange, ...] = ()
-    """The changes to the pens, in order. A new turtle has turtlesim's default pen."""
+    """The changes to the pens, in order, up to a limit. A new turtle has turtlesim's default pen."""
     tracks: tuple[Track, ...] = ()
-    """The tracks of the turtles other than turtle1."""
+    """The tracks of the turtles other than turtle1. Their length is limited, except for targets."""
     withdrawn: tuple[str, ...] = ()
     """The targets that the trial itself removed, although no node had caught them."""
     catch_from_s: float | None = None

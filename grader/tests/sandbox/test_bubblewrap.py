@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from grader import cli
 from grader.errors import MachineError
 from grader.sandbox import bubblewrap, process
 from grader.sandbox.limits import MIB, Limits
@@ -203,6 +204,15 @@ def test_grading_for_marks_refuses_without_a_sandbox(monkeypatch: pytest.MonkeyP
     with pytest.raises(MachineError, match=r"install -y bubblewrap.*--trust-submissions"):
         bubblewrap.require()
     assert bubblewrap.require(trusted=True) is False
+
+
+def test_grader_check_without_a_sandbox_names_only_its_own_option(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bubblewrap, "program", lambda: None)
+    monkeypatch.setattr(cli, "_opened", lambda *_: (None, None))
+    with pytest.raises(MachineError) as raised:
+        cli.check(confined=True)
+    assert "Without --sandbox, this code runs with limits on time" in str(raised.value)
+    assert "--trust-submissions" not in str(raised.value)
 
 
 def test_trusted_code_runs_in_the_sandbox_if_there_is_one() -> None:
