@@ -80,7 +80,7 @@ class NodeGroup:
 class GroupThreads:
     """The threads of several processes, with the methods of `Threads`.
 
-    All methods except `close` and `runs` raise GoneError if one of the processes has exited.
+    All methods except `close` and `runs` can raise GoneError, which means that one of the processes has exited.
     """
 
     def __init__(self, pids: Sequence[int], wanted: Callable[[str], bool] = lambda _: True) -> None:

@@ -17,8 +17,8 @@ MOST_GOALS = 1000
 class Call:
     """A service call, with its request and response as plain data, at the time `t_s` of the trial's clock.
 
-    If `by_trial` is False, a node called one of the grader's nodes or another node of the submission. In a call to a
-    node of the submission, `response` and `answered_s` are always None. If `by_trial` is True, the trial called the
+    If `by_trial` is False, a node called one of the grader's nodes or another node of the submission. In a call between
+    nodes of the submission, `response` and `answered_s` are always None. If `by_trial` is True, the trial called the
     node. In a call by the trial, `response` and `answered_s` are None until the response arrives, and `missing` is True
     if no node offered the service.
     """

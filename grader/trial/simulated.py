@@ -2,8 +2,8 @@
 
 The clock stays at 0 until the simulator and the node have discovered each other (the handshake). After this handshake,
 the clock advances in frames of 16 ms. The threads of a node show whether the node follows wall time. Any sign that the
-node follows wall time is called a doubt, and leads to a trial in wall time (grading/clock.py; docs/design.md, decision
-3).
+node follows wall time, or never becomes idle, is called a doubt. With `--clock auto`, a doubt usually leads to a trial
+in wall time (grading/clock.py; docs/design.md, decision 3).
 """
 
 from __future__ import annotations
