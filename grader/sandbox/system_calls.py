@@ -56,8 +56,8 @@ DENIED = {
     },
 }  # fmt: skip
 FLUSHES = {"fsync": 74, "fdatasync": 75}
-"""In a cell, these calls do nothing and succeed. The disks of a cell are in memory. For a file of the machine, even one
-that is open for reading only, these calls would flush a disk of the machine."""
+"""In a cell, these calls do nothing and succeed. The disks of a cell are in memory. If these calls were executed for a
+file outside the cell, even one that is open for reading only, they would flush a disk of the host."""
 _MMAP, _SOCKET, _SOCKETPAIR, _SETSOCKOPT, _CLONE, _CLONE3, FCNTL, PRCTL, PRLIMIT = 9, 41, 53, 54, 56, 435, 72, 157, 302
 _OWN = 0
 """The process id with which prlimit(2) sets the limits of the calling process. The limits of other processes stay."""

@@ -93,7 +93,7 @@ class ConductorProcess(ABC):
 
 
 class PlainConductor(ConductorProcess):
-    """A conductor without a sandbox, which is the leader of a process group."""
+    """A conductor that runs without a sandbox and leads its own process group."""
 
     def __init__(self, ros: installation.Ros, home: Path, domain: int | None, errors: IO[bytes]) -> None:
         """Start the conductor, with this folder as HOME and in this ROS domain."""
