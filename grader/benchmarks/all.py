@@ -2,10 +2,10 @@
 
     python -m grader.benchmarks.all [--times N] [--class N] [--sync N]
 
-F is the sum of the wall times of a `colcon build` of the package and of a process with one rclpy node, both run without
-the grader. grader.benchmarks.check uses the same F. F is measured again for each cost in F, so that other programs slow
-down F and the cost alike. The first line shows the load of the machine. Results from a busy machine can be compared
-only with each other.
+F is the cost of a `colcon build` of the package and of a process with one rclpy node, both run without the grader. Wall
+times are divided by the wall time of F, and CPU times by its CPU time. grader.benchmarks.check divides both by the wall
+time of F. F is measured again for each cost in F, so that other programs slow down F and the cost alike. The first line
+shows the load of the machine. Results from a busy machine can be compared only with each other.
 """
 
 from __future__ import annotations

@@ -34,7 +34,7 @@ class DrawStarNode(Node):
         if self.publisher.get_subscription_count() == 0 or not self.client.server_is_ready():
             return  # the simulator is not running yet
         # TODO 10: what happens in each state? "corner": send the goal, once. "turn": nothing at all; a command would
-        # abort the goal. "drive": a side in TICKS calls, then a command with zeros, then the next corner or the end.
+        # abort the goal. "drive": publish the speed TICKS times, then zeros once, then the next corner or the end.
 
     def drive(self, speed):
         msg = Twist()

@@ -56,7 +56,7 @@ class DrawStarNode(Node):
         # END SOLUTION
         # BEGIN STARTER
         # # TODO 10: what happens in each state? "corner": send the goal, once. "turn": nothing at all; a command would
-        # # abort the goal. "drive": a side in TICKS calls, then a command with zeros, then the next corner or the end.
+        # # abort the goal. "drive": publish the speed TICKS times, then zeros once, then the next corner or the end.
         # END STARTER
 
     def drive(self, speed):
