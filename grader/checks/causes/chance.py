@@ -15,22 +15,21 @@ if TYPE_CHECKING:
 
 GENERATORS = frozenset({"Random", "RandomState", "default_rng"})
 """Functions of `random` and `numpy.random` that create a generator of random numbers."""
-MODULES = frozenset({"random", "numpy.random"})
+SEED = "seed"
+NUMPY = "numpy.random"
+MODULES = frozenset({"random", NUMPY})
 
 
 def is_seeded(code: TestCode, names: Collection[str]) -> bool:
-    """Return whether the tests draw random numbers only after `seed`, or from generators with a fixed seed.
+    """Return whether the tests draw random numbers only from modules and generators that have a fixed seed.
 
-    `names` are the functions that return random numbers.
+    `names` are the functions that return random numbers. Whether `seed` is called before the numbers are drawn is not
+    examined.
     """
     calls = [(_last(node), node) for node in _nodes(code) if isinstance(node, ast.Call)]
-    seeds = [node for name, node in calls if name == "seed"]
-    generators = [node for name, node in calls if name in GENERATORS]
-    if not all(_has_fixed_seed(call) for call in (*seeds, *generators)):
-        return False
-    if seeds:
-        return True
-    return bool(generators) and not any(_draws_without_generator(module, names) for module in code.modules)
+    fixed = [_has_fixed_seed(node) for name, node in calls if name in GENERATORS | {SEED}]
+    drawn, seeded = _modules_of(code, names), _modules_of(code, (SEED,))
+    return bool(fixed) and all(fixed) and drawn <= seeded
 
 
 def _nodes(code: TestCode) -> Iterator[ast.AST]:
@@ -49,21 +48,21 @@ def _has_fixed_seed(call: ast.Call) -> bool:
     return not any(isinstance(node, ast.Call) for node in ast.walk(arguments[0]))
 
 
-def _draws_without_generator(module: Module, names: Collection[str]) -> bool:
-    """Return whether a file uses the functions of `random` or `numpy.random` themselves."""
-    local = set()
+def _modules_of(code: TestCode, names: Collection[str]) -> set[str]:
+    """Return the modules in MODULES whose own functions with these names are used, rather than those of a generator."""
+    return {found for module in code.modules for found in _modules_in(module, names)}
+
+
+def _modules_in(module: Module, names: Collection[str]) -> Iterator[str]:
+    local: dict[str, str] = {}
     for node in module.nodes:
         if isinstance(node, ast.Import):
-            local |= {alias.asname or alias.name for alias in node.names if alias.name in MODULES}
-            local |= {f"{alias.asname or alias.name}.random" for alias in node.names if alias.name == "numpy"}
+            local |= {alias.asname or alias.name: alias.name for alias in node.names if alias.name in MODULES}
+            local |= {f"{alias.asname or alias.name}.random": NUMPY for alias in node.names if alias.name == "numpy"}
         elif isinstance(node, ast.ImportFrom) and node.module == "numpy":
-            local |= {alias.asname or alias.name for alias in node.names if alias.name == "random"}
-        elif isinstance(node, ast.ImportFrom) and node.module in MODULES and _imports(node, names):
-            return True
-    return any(
-        isinstance(node, ast.Attribute) and node.attr in names and dotted(node.value) in local for node in module.nodes
-    )
-
-
-def _imports(node: ast.ImportFrom, names: Collection[str]) -> bool:
-    return any(alias.name in names for alias in node.names)
+            local |= {alias.asname or alias.name: NUMPY for alias in node.names if alias.name == "random"}
+        elif isinstance(node, ast.ImportFrom) and node.module in MODULES:
+            yield from (node.module for alias in node.names if alias.name in names)
+    for node in module.nodes:
+        if isinstance(node, ast.Attribute) and node.attr in names and (owner := dotted(node.value)) in local:
+            yield local[owner]

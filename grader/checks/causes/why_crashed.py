@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.comma_for_dot import comma_for_dot
 from grader.checks.causes.crash_scene import CrashScene
+from grader.checks.causes.refused_calls import why_refused
 from grader.checks.causes.trailing_comma import trailing_comma
 from grader.checks.causes.why_attributes import why_no_attribute
 from grader.checks.causes.why_calls import why_type
@@ -20,7 +21,6 @@ from grader.checks.causes.why_names import why_no_name, why_unbound
 from grader.checks.causes.why_none import why_none
 from grader.checks.causes.why_passed import why_passed
 from grader.checks.causes.why_rate import callbacks_of
-from grader.checks.causes.why_refused import why_refused
 from grader.checks.causes.why_response import why_response
 from grader.checks.causes.why_transition import why_no_transition
 from grader.checks.outcome import Finding, failed

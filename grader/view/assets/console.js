@@ -79,6 +79,6 @@ export class Console {
     if (follows) this.place.scrollTop = this.place.scrollHeight;
     const hidden = all.length - found.length;
     const older = found.length > SHOWN ? `; only the last ${SHOWN} are in the table` : "";
-    this.count.textContent = `${found.length} messages${hidden ? `, ${hidden} hidden by the filters` : ""}${older}.`;
+    this.count.textContent = `${found.length} ${found.length === 1 ? "message" : "messages"}${hidden ? `, ${hidden} hidden by the filters` : ""}${older}.`;
   }
 }

@@ -106,6 +106,9 @@ def test_a_sentence_about_steady_tests_is_true(words: str, true: str, near: str)
     [
         ("import random\nrandom.seed(7)\nx = random.randint(1, 2)\n", True),
         ("import random\nrandom.seed()\nx = random.randint(1, 2)\n", False),
+        ("import random\nimport numpy as np\nrandom.seed(7)\nx = np.random.randint(1, 2)\n", False),
+        ("import random\nimport numpy as np\nnp.random.seed(7)\nx = np.random.randint(1, 2)\n", True),
+        ("from random import randint, seed\nseed(7)\nx = randint(1, 2)\n", True),
         ("import random, time\nrandom.seed(time.time())\nx = random.randint(1, 2)\n", False),
         ("import random\ndice = random.Random(7)\nx = dice.randint(1, 2)\n", True),
         ("import random\ndice = random.Random(x=None)\nx = dice.randint(1, 2)\n", False),
