@@ -196,6 +196,6 @@ ASSERTS = Kind(
     "Every test asserts something",
     NoParams,
     asserts,
-    about="Every test function asserts something, or uses a function or fixture that does. No assert tests a tuple, "
-    "which is always true.",
+    about="Every test function asserts something, or uses a function or fixture that does. No assert is always true "
+    "because it tests a tuple, has a constant after `or`, or compares a value with itself.",
 )
