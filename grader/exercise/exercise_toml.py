@@ -198,7 +198,7 @@ def _check(
     points = table.number("points", 0.0, 1000.0, "a number from 0 to 1000")
     needs, hidden = table.strings("needs"), table.flag("hidden")
     kind = kinds.get(name)
-    title = table.string("title", default=kind.title if kind else "?")
+    title = table.string("title", default=kind.title if kind and "title" not in table.values else "?")
     if kind is None:
         if name:
             guess = nearest(name, kinds)
@@ -207,19 +207,32 @@ def _check(
         return CheckSpec(id_, name, title, points, needs, hidden, {}, trial)
     if kind.advice and points != 0.0:
         table.problem(f'"points" is {points:g}; the kind "{name}" is advice, which is worth 0.')
-    params: dict[str, Param] = dict(kind.defaults())
-    for key, allowed in kind.parameters().items():
+    parameters = kind.parameters()
+    params = {} if parameters is None else _params(table, name, parameters, kind.defaults(), numbers)
+    return CheckSpec(id_, name, title, points, needs, hidden, params, trial)
+
+
+def _params(
+    table: Table,
+    kind: str,
+    parameters: Mapping[str, Allowed],
+    defaults: Mapping[str, Param],
+    numbers: NumbersSpec | None,
+) -> dict[str, Param]:
+    """Return the values of all parameters of a check. A key that is not a parameter is recorded as a mistake."""
+    params = dict(defaults)
+    for key, allowed in parameters.items():
         if key not in table.values:
             if key not in params:
-                table.problem(f'the key "{key}" is missing; the kind "{name}" needs it: {allowed.words}.')
+                table.problem(f'the key "{key}" is missing; the kind "{kind}" needs it: {allowed.words}.')
             continue
         value = _param(table.values[key], allowed, numbers)
         if value is None:
             table.problem(f'"{key}" is {shown(table.values[key])}; it must be {allowed.words}.')
         else:
             params[key] = value
-    table.finish(also=kind.parameters())
-    return CheckSpec(id_, name, title, points, needs, hidden, params, trial)
+    table.finish(also=parameters)
+    return params
 
 
 def _param(value: object, allowed: Allowed, numbers: NumbersSpec | None) -> Param | None:

@@ -38,8 +38,8 @@ class KindSpec(Protocol):
     def advice(self) -> bool:
         """Whether checks of this kind are worth no points and never fail a submission."""
 
-    def parameters(self) -> Mapping[str, Allowed]:
-        """Return the names of all parameters, with their allowed values."""
+    def parameters(self) -> Mapping[str, Allowed] | None:
+        """Return the names of all parameters, with their allowed values, or None if no parameter is to be read."""
 
     def defaults(self) -> Mapping[str, Param]:
         """Return the names of the optional parameters, with their default values."""

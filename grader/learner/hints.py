@@ -70,8 +70,8 @@ def flowing(text: str) -> str:
 
 def _exercise(step: str | None, folder: Path | None) -> Exercise:
     if step is not None:
-        return find_exercise(step)
-    at = steps.current(folder)
+        return find_exercise(step, outline=True)
+    at = steps.current(folder, outline=True)
     if at is None:
         message = "No step has been started. Name a step, as in `grader hint 03`, or start a step: `grader start 01`."
         raise UsageError(message)

@@ -101,13 +101,16 @@ def _setup_file() -> Path:
     return Path(sys.prefix, f"setup.{shell}")
 
 
-def current(folder: Path | None) -> tuple[Exercise, Path] | None:
-    """Return the current step and the folder with the learner's work, or None if there is no such step."""
+def current(folder: Path | None, *, outline: bool = False) -> tuple[Exercise, Path] | None:
+    """Return the current step and the folder with the learner's work, or None if there is no such step.
+
+    For `outline`, see `load_exercise`.
+    """
     root = progress.workspace_of(folder)
     name = progress.load(root).current
     if name is None or name not in catalogue():
         return None
-    exercise = find_exercise(name)
+    exercise = find_exercise(name, outline=outline)
     return exercise, workspace.work_folder(exercise, root)
 
 

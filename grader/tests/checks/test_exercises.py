@@ -1,5 +1,9 @@
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -50,6 +54,22 @@ def test_the_exercise_follows_from_a_folder_below_solutions_and_exercises() -> N
     assert exercise_of_folder(root / "exercises" / "03-circle-publisher") == found
     assert exercise_of_folder(root / "grader") is None
     assert exercise_of_folder(Path("/tmp/03-circle-publisher")) is None
+
+
+@pytest.mark.parametrize("name", catalogue())
+def test_an_outline_is_the_exercise_without_the_parameters_of_its_checks(name: str) -> None:
+    whole = find_exercise(name)
+    outline = find_exercise(name, outline=True)
+    assert outline == replace(whole, checks=tuple(replace(check, params={}) for check in whole.checks))
+
+
+def test_a_hint_imports_no_kind(tmp_path: Path) -> None:
+    command = [sys.executable, "-P", "-X", "importtime", "-c", "from grader.cli import main; main()", "hint", "03"]
+    environment = {**os.environ, "HOME": str(tmp_path), "XDG_STATE_HOME": str(tmp_path)}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("Hint 1 of")
+    assert "grader.checks.kinds" in done.stderr
+    assert "grader.checks.subjects" not in done.stderr
 
 
 def test_the_title_is_read_without_the_checks() -> None:
