@@ -19,6 +19,7 @@ from grader.common.log_commands import protect_output
 from grader.common.needed_command import needed_command
 from grader.common.own_process import prepare
 from grader.common.standard_streams import make_usable
+from grader.common.terminal_text import say
 from grader.exercise.completion import steps as known_steps
 from grader.gradebook import cli as gradebook
 from grader.learner import cli as learner
@@ -180,7 +181,7 @@ def class_page(
 
     file = out or folder / PAGE
     save_class_page(folder, file)
-    typer.echo(f"The class page: {file}")
+    say(f"The class page: {file}", sys.stdout)
 
 
 view.add_to(app)

@@ -7,22 +7,10 @@ A terminal executes the control sequences in its output. Such a sequence can hid
 from __future__ import annotations
 
 import io
-import re
 import sys
 from typing import TextIO
 
-_CONTROL = re.compile(r"(?!\x1b\[(?:0|1|31|33)m)[\x00-\x08\x0b-\x1f\x7f-\x9f]")
-"""The characters of Unicode's category Cc, except line feeds, tabs, and the colours of our own messages."""
-
-
-def without_control(text: str) -> str:
-    r"""Return the text with a question mark in place of each control character.
-
-    Example:
-        >>> without_control("/a\x1b[2K\tb\n")
-        '/a?[2K\tb\n'
-    """
-    return _CONTROL.sub("?", text)
+from grader.common.terminal_text import without_control
 
 
 class PlainText(io.TextIOWrapper):

@@ -16,17 +16,29 @@ BOLD, RED = "1", "31"
 _SPACE = "\0"
 """A placeholder for a space at which a line must not be broken: inside a command, and between an option and its
 value."""
+_CONTROL = re.compile(r"(?!\x1b\[(?:0|1|31|33)m)[\x00-\x08\x0b-\x1f\x7f-\x9f]")
+"""The characters of Unicode's category Cc, except line feeds, tabs, and the colours of our own messages."""
 
 
 def say(text: str, stream: Optional[TextIO] = None, style: str = "") -> None:
     """Print a message for users, to standard error by default.
 
-    On a terminal, lines are broken between words, and the message has the style (`BOLD` or `RED`) if the user wants
-    colours.
+    The message can contain the name of a student's folder, so control characters become question marks. On a terminal,
+    lines are broken between words, and the message has the style (`BOLD` or `RED`) if the user wants colours.
     """
     stream = stream or sys.stderr
-    shown = wrapped(text, columns(stream))
+    shown = wrapped(without_control(text), columns(stream))
     print(f"\033[{style}m{shown}\033[0m" if style and has_colours(stream) else shown, file=stream, flush=True)
+
+
+def without_control(text: str) -> str:
+    r"""Return the text with a question mark in place of each control character.
+
+    Example:
+        >>> without_control("/a\x1b[2K\tb\n")
+        '/a?[2K\tb\n'
+    """
+    return _CONTROL.sub("?", text)
 
 
 def has_colours(stream: TextIO) -> bool:

@@ -9,7 +9,7 @@ import subprocess
 import pytest
 
 from grader.common.interpreter import interpreter
-from grader.common.plain_output import without_control
+from grader.common.terminal_text import without_control
 
 LINK = "\x1b]8;;http://evil.example\x1b\\here\x1b]8;;\x1b\\"
 CLIPBOARD = "\x1b]52;c;ZXZpbA==\x07"

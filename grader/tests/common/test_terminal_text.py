@@ -11,12 +11,16 @@ import subprocess
 import sys
 import termios
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 from grader.common import xdg
 from grader.common.terminal_text import columns, example, hanging, wrapped
 from grader.tests.both_worlds import REAL_ROS2
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 BIN = Path(sys.executable).parent
 ERRORS = (
@@ -30,14 +34,13 @@ ERRORS = (
 )
 
 
-def on_terminal(line: str, width: int, home: Path, **settings: str) -> str:
-    """Return what a terminal with this number of columns would get from a command."""
+def on_terminal(line: str, width: int, home: Path, *, arguments: Sequence[str] = (), **settings: str) -> str:
+    """Return what a terminal with this number of columns would get from a command of the shell with these arguments."""
     above, below = pty.openpty()
     fcntl.ioctl(below, termios.TIOCSWINSZ, struct.pack("HHHH", 24, width, 0, 0))
     places = {"HOME": str(home), "PATH": f"{BIN}:/usr/bin:/bin", "XDG_CACHE_HOME": str(xdg.cache().parent)}
-    with subprocess.Popen(
-        ["sh", "-c", line], env={**places, "TERM": "xterm", **settings}, stdin=below, stdout=below, stderr=below
-    ):
+    env, argv = {**places, "TERM": "xterm", **settings}, ["sh", "-c", line, *arguments]
+    with subprocess.Popen(argv, env=env, stdin=below, stdout=below, stderr=below):
         os.close(below)
         shown = b""
         while True:
@@ -113,3 +116,12 @@ def test_an_example_stays_one_command() -> None:
 def test_a_pipe_has_no_columns() -> None:
     with Path("/dev/null").open("w") as file:
         assert columns(file) is None
+
+
+@pytest.mark.parametrize("command", ["class-page", "regrade", "check --exercise 03 --json"])
+def test_the_name_of_a_folder_in_an_error_cannot_control_the_terminal(tmp_path: Path, command: str) -> None:
+    hostile = tmp_path / "\x1b]52;c;ZXZpbA==\x07\x1b[2J"
+    hostile.mkdir()
+    shown = plain(on_terminal(f'grader {command} "$0"', 200, tmp_path, arguments=[str(hostile)], NO_COLOR="1"))
+    assert "?]52;c;ZXZpbA==??[2J" in shown
+    assert not {"\x1b", "\x07"} & set(shown)
