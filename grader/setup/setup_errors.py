@@ -40,6 +40,11 @@ _NO_LINK = re.compile(r"\[Errno (?:1|30|38|95)\] [^\n]*'lib' -> '")
 """Matches the error message of venv on a file system without symbolic links. In a folder that VirtualBox shares, the
 message is that the file system is read-only."""
 _CERTIFICATE = re.compile("certificate (?:(?:is )?not (?:yet valid|valid yet)|(?:has )?expired)")
+_UNTRUSTED = re.compile(
+    "certificate verify failed: (self[- ]signed certificate|unable to get local issuer certificate)"
+)
+"""Matches pip's error message for a certificate whose issuer is unknown. The messages of uv do not match, since pip may
+succeed after uv has failed."""
 _INDEXES = re.compile(r"^Looking in indexes: (.+)$", re.MULTILINE)
 _WRITE = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
 
@@ -102,6 +107,14 @@ def of_output(said: str, folder: Path) -> Optional[str]:
         return (
             f"A certificate of the package index is not valid at {now}, the time of this machine's clock. If this time "
             f"is wrong, set the clock; {AGAIN}."
+        )
+    untrusted = _UNTRUSTED.search(said)
+    if untrusted:
+        return (
+            f"This machine does not trust the certificate of the package index ({untrusted.group(1)}). The networks of "
+            "many schools and companies replace certificates with their own. Ask the network's administrators for the "
+            "file of their certificate, and set PIP_CERT and SSL_CERT_FILE to its path, or add it to the system's "
+            f"certificates; {AGAIN}."
         )
     return None
 

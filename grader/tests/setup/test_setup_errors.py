@@ -29,6 +29,14 @@ HERE = Path("/nowhere/course/.venv")
         ("certificate verify failed: certificate has expired (_ssl.c:992)", "If this time is wrong, set the clock"),
         ("certificate not valid yet: verification time 978307200 (UNIX)", "If this time is wrong, set the clock"),
         ("certificate expired: verification time 2682374400 (UNIX)", "If this time is wrong, set the clock"),
+        (
+            "[SSL: CERTIFICATE_VERIFY_FAILED] certificate verify failed: self-signed certificate in certificate chain",
+            "does not trust the certificate of the package index (self-signed certificate)",
+        ),
+        (
+            "certificate verify failed: unable to get local issuer certificate (_ssl.c:992)",
+            "set PIP_CERT and SSL_CERT_FILE to its path",
+        ),
         ("Error: [Errno 38] Function not implemented: 'lib' -> '/x/.venv/lib64'", "does not support symbolic links"),
         ("Error: [Errno 30] Read-only file system: 'lib' -> '/x/.venv/lib64'", "does not support symbolic links"),
         ("BlockingIOError: [Errno 11] Resource temporarily unavailable", "cannot start more processes for you"),
@@ -40,6 +48,10 @@ def test_what_an_installer_printed_is_one_sentence(said: str, reported: str) -> 
     assert reported in sentence
     assert sentence.endswith(".")
     assert "\n" not in sentence
+
+
+def test_a_certificate_that_only_uv_does_not_trust_is_left_to_pip() -> None:
+    assert setup_errors.of_output("error: invalid peer certificate: UnknownIssuer", HERE) is None
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can give a folder to another user")
