@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from grader.common.terminal_text import without_control
 from grader.gradebook.class_folders import CLASS, GRADEBOOK, ID
 
 COURSE_ID = "ros2-topics"
@@ -21,6 +24,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
 
     from grader.gradebook import converters
     from grader.gradebook.confined_autograde import CHECK_S, ConfinedExecute
+    from grader.gradebook.exchange import BoundedReleaseFeedback
     from grader.gradebook.export import ConfirmedCsv
     from grader.gradebook.feedback import GraderReasons, HideHiddenTests
     from grader.gradebook.pages import configure_pages
@@ -29,6 +33,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
     from grader.gradebook.unconfirmed import SaveUnconfirmed
 
     _see_own_commands()
+    _log_no_control_characters()
     converters.install()
     folders = config.CourseDirectory
     folders.root = str(root)
@@ -62,6 +67,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
     config.Autograde.exporter_class = converters.BoundedNotebook
     config.GenerateFeedback.exporter_class = converters.BoundedPage
     config.ExchangeFactory.collect = converters.BoundedCollect
+    config.ExchangeFactory.release_feedback = BoundedReleaseFeedback
     configure_pages(config)
     config.Autograde.sanitize_preprocessors = [
         steps.ClearOutput,
@@ -107,6 +113,19 @@ def _see_own_commands() -> None:
     path, ours = os.environ.get("PATH", os.defpath), str(Path(sys.prefix, "bin"))
     if ours not in path.split(os.pathsep):
         os.environ["PATH"] = f"{path}{os.pathsep}{ours}"
+
+
+def _log_no_control_characters() -> None:
+    """Replace control characters in all log messages, since nbgrader logs names that students have chosen."""
+    make = logging.getLogRecordFactory()
+
+    def plain(*about: Any, **more: Any) -> logging.LogRecord:  # noqa: ANN401 - as the factory of logging
+        record = make(*about, **more)
+        with suppress(Exception):  # logging itself reports a message with a wrong format
+            record.msg, record.args = without_control(record.getMessage()), None
+        return record
+
+    logging.setLogRecordFactory(plain)
 
 
 def _files(step: Path) -> list[str]:

@@ -51,6 +51,16 @@ class _Copying(BaseConverter):  # type: ignore[misc, unused-ignore]
 
     notebooks: list[str]
 
+    def init_notebooks(self) -> None:
+        """Find the submissions, except those of a folder whose name cannot be printed.
+
+        nbgrader would stop at a line break in the name.
+        """
+        super().init_notebooks()
+        for each in [each for each in self.assignments if not Path(each).parent.name.isprintable()]:
+            self.log.error("Not autograded, because the name of the folder cannot be printed: %s", tree.shown(each))
+            del self.assignments[each]
+
     def init_assignment(self, assignment_id: str, student_id: str) -> None:
         """Copy the files next to the notebooks."""
         source = Path(self._format_source(assignment_id, student_id))

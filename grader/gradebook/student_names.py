@@ -1,7 +1,7 @@
-"""Compare the names of students' folders with each other and with the ids in nbgrader's gradebook.
+"""Find folders of students whose names must not become ids in nbgrader's gradebook.
 
 nbgrader compares names byte by byte. With the folder `ada`, it would add a second student next to `Ada`, and the points
-would be in the wrong row.
+would be in the wrong row. nbgrader also prints ids as they are, including control characters.
 """
 
 from __future__ import annotations
@@ -9,37 +9,42 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from grader.classroom.duplicates import similar
+from grader.classroom.refused import Refused
 from grader.exercise.own_numbers import normal_id
 from grader.submission.tree import shown, sort_key
 
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-    from grader.classroom.refused import Refused
-
 
 def unclear(folders: Collection[str], enrolled: Collection[str]) -> dict[str, Refused]:
-    """Map each folder name that could mean another student to the reason why its submissions are not graded.
+    """Map each folder name that is not a clear student id to the reason why its submissions are not graded.
 
-    `enrolled` are the ids in the gradebook. A folder is clear if no other folder and no other id has the same normal
-    form.
+    `enrolled` are the ids in the gradebook. A folder is clear if its name can be printed, and no other folder and no
+    other id has the same normal form. A folder whose name is an id in the gradebook is also clear if only other folders
+    have this normal form: anybody can create such a folder in nbgrader's exchange.
     """
     spellings: dict[str, set[str]] = {}
     for name in (*folders, *enrolled):
         spellings.setdefault(normal_id(name), set()).add(name)
     known = set(enrolled)
-    return {
-        name: _reason(name, sorted(spellings[normal_id(name)], key=sort_key), known)
-        for name in folders
-        if len(spellings[normal_id(name)]) > 1
-    }
+    found: dict[str, Refused] = {}
+    for name in folders:
+        alike = spellings[normal_id(name)]
+        if len(alike) > 1 and alike & known != {name}:
+            found[name] = _reason(name, sorted(alike, key=sort_key), known)
+        elif not name.isprintable():
+            reason = f"The name {shown(name)} has characters that cannot be printed. Rename the folder."
+            found[name] = Refused(reason, "submission-name")
+    return found
 
 
 def _reason(name: str, alike: list[str], enrolled: set[str]) -> Refused:
-    if enrolled.isdisjoint(alike):
+    ids = enrolled.intersection(alike)
+    if not ids:
         return similar(alike, "Keep one of these folders, and remove or rename the others.")
-    if name not in enrolled and len(alike) == 2:
-        (other,) = set(alike) - {name}
-        rename = f"Rename the folder {shown(name)} to {shown(other)}."
-        return similar(alike, f"{shown(other)} is the id in the gradebook. {rename}")
+    if len(ids) == 1:
+        (other,) = ids
+        todo = f"{shown(other)} is the id in the gradebook. Rename the folder {shown(name)} to {shown(other)}."
+        return similar(alike, todo)
     return similar(alike, "Keep one of them, in the gradebook (`nbgrader db student remove ID`) and as a folder.")

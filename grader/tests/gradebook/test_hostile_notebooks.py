@@ -249,6 +249,8 @@ BESIDE: dict[str, Callable[[Path, Path], object]] = {
     "newer": of_version(99),
     "picture": with_a_picture,
     "*": lambda _, __: None,
+    TITLE: lambda folder, _: (folder / f"{HOMEWORK}.ipynb").unlink(),
+    "e\nforged": lambda _, __: None,
 }
 """Maps a student to what is wrong with the student's folder in submitted/."""
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.gradebook.student_names import unclear
-from grader.tests.gradebook.term import STEP, Term
+from grader.tests.gradebook.term import STEP, Term, solve
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,7 +21,8 @@ if TYPE_CHECKING:
         (["zoe\u0308"], ["zo\u00eb"], {"zoe\u0308": "is the id in the gradebook."}),
         (["Ada", "ada"], [], dict.fromkeys(["Ada", "ada"], "Keep one of these folders")),
         (["Ada"], ["Ada", "ada"], {"Ada": "Ada and ada are one student id"}),
-        (["Ada", "ada"], ["ada"], {"Ada": "Rename the folder Ada to ada.", "ada": "nbgrader db student remove"}),
+        (["Ada", "ada"], ["ada"], {"Ada": "Rename the folder Ada to ada."}),
+        (["ada", "ADA", "Ada"], ["ada"], dict.fromkeys(["ADA", "Ada"], "ada is the id in the gradebook.")),
     ],
 )
 def test_names_that_are_one_id_are_reported(folders: list[str], enrolled: list[str], reported: dict[str, str]) -> None:
@@ -30,6 +31,24 @@ def test_names_that_are_one_id_are_reported(folders: list[str], enrolled: list[s
     for name, part in reported.items():
         assert part in found[name].reason
         assert found[name].diagnosis == "similar-names"
+
+
+@pytest.mark.parametrize("name", ["\x1b]0;a title\x07", "two\nlines", "r\u202eight"])
+def test_a_name_that_cannot_be_printed_is_reported(name: str) -> None:
+    assert unclear([name, "ada"], ["ada"])[name].diagnosis == "submission-name"
+
+
+def test_another_spelling_of_an_id_does_not_take_the_points_of_the_student(tmp_path: Path) -> None:
+    """Anybody can create the folder `Ada` in the exchange."""
+    term = Term(tmp_path)
+    term.run("generate_assignment", STEP)
+    with term.gradebook() as gradebook:
+        gradebook.update_or_create_student("ada")
+    term.submit("ada", solve)
+    term.submit("Ada", lambda _: None)
+    assert "Not graded: Ada and ada are one student id" in term.run("grader", "gradebook", "sync")
+    with term.gradebook() as gradebook:
+        assert [(each.student.id, each.score) for each in gradebook.assignment_submissions(STEP)] == [("ada", 100.0)]
 
 
 def test_neither_autograde_nor_sync_adds_a_second_student(tmp_path: Path) -> None:
