@@ -25,7 +25,7 @@ class FigureEightNode(Node):
         if self.publisher.get_subscription_count() == 0:
             return  # no subscriber yet: the command would be lost
         msg = Twist()
-        # TODO b: drive a lobe with radius RADIUS to the left in TICKS calls, then one to the right; then stand still.
+        # TODO b: drive a circle of radius RADIUS to the left in TICKS calls, then one to the right; then stand still.
         self.publisher.publish(msg)
 
 

@@ -43,7 +43,7 @@ class LookoutNode(Node):
         pass
 
     def feedback_received(self, message):
-        # TODO 7: store the value of message.feedback.
+        # TODO 7: store the number that message.feedback contains.
         pass
 
     def goal_ended(self, future):

@@ -20,4 +20,4 @@ os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "OFF"  # no other program takes pa
 
 # TODO 4: write a fixture that gives each test a fresh bench.
 
-# TODO 5: write one test for each promise in wall_guard.py.
+# TODO 5: write tests for all promises in wall_guard.py.

@@ -36,7 +36,7 @@ class CatcherNode(Node):
         pass
 
     def listen(self, name):
-        # TODO 11: subscribe to the pose of this target. The callback stores it in self.places, under its name.
+        # TODO 11: subscribe to the pose of this target. The callback stores the pose in self.places under this name.
         pass
 
     def forget(self, name):

@@ -35,7 +35,7 @@ class SpawnerNode(Node):
         pass
 
     def spawned(self, future):
-        # TODO 5: the response contains the name of the new turtle.
+        # TODO 5: the response contains the name of the new turtle. Add the name to self.left.
         pass
 
     def announce(self):

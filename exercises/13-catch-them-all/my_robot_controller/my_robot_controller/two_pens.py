@@ -40,7 +40,7 @@ class TwoPensNode(Node):
         request.r, request.g, request.b, request.width = red, green, blue, 4
         # TODO 6: make the call without waiting, and let rclpy call `callback` when the response arrives.
 
-    # TODO 7: write a method for each response: what comes next? Your numbers are in my_numbers_08.toml.
+    # TODO 7: for each response, write a method that begins the next task. Your numbers are in my_numbers_08.toml.
 
 
 def main(args=None):

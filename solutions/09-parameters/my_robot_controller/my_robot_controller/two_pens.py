@@ -95,7 +95,7 @@ class TwoPensNode(Node):
         # END SOLUTION
         # BEGIN STARTER
 
-    # # TODO 7: write a method for each response: what comes next? Your numbers are in my_numbers_08.toml.
+    # # TODO 7: for each response, write a method that begins the next task. Your numbers are in my_numbers_08.toml.
     # END STARTER
 
 

@@ -34,7 +34,7 @@ class FigureEightNode(Node):
         self.ticks += 1
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO b: drive a lobe with radius RADIUS to the left in TICKS calls, then one to the right; then stand still.
+        # # TODO b: drive a circle of radius RADIUS to the left in TICKS calls, then one to the right; then stand still.
         # END STARTER
         self.publisher.publish(msg)
 

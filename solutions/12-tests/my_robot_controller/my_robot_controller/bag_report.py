@@ -35,7 +35,7 @@ def main():
     times, x, y = read_poses(sys.argv[1])
     # BEGIN SOLUTION
     if len(times) < 3:
-        sys.exit(f"{sys.argv[1]} has {len(times)} messages on {TOPIC}: too few for a circle.")
+        sys.exit(f"{sys.argv[1]} has too few messages on {TOPIC} for a circle: {len(times)}.")
     rate = (len(times) - 1) / (times[-1] - times[0])
     a, b, radius = fit_circle(x, y)
     print(f"messages={len(times)} rate={rate:.2f} x={a:.2f} y={b:.2f} radius={radius:.2f}")

@@ -113,5 +113,5 @@ def test_stops_when_no_pose_comes(bench):
 #
 # # TODO 4: write a fixture that gives each test a fresh bench.
 #
-# # TODO 5: write one test for each promise in wall_guard.py.
+# # TODO 5: write tests for all promises in wall_guard.py.
 # END STARTER

@@ -59,7 +59,7 @@ class CatcherNode(Node):
         self.listeners[name] = self.create_subscription(Pose, f"/{name}/pose", target_moved, 10)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 11: subscribe to the pose of this target. The callback stores it in self.places, under its name.
+        # # TODO 11: subscribe to the pose of this target. The callback stores the pose in self.places under this name.
         # pass
         # END STARTER
 

@@ -73,7 +73,7 @@ class LookoutNode(Node):
         self.remaining = message.feedback.remaining
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 7: store the value of message.feedback.
+        # # TODO 7: store the number that message.feedback contains.
         # pass
         # END STARTER
 

@@ -58,7 +58,7 @@ class SpawnerNode(Node):
         self.left.append(future.result().name)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 5: the response contains the name of the new turtle.
+        # # TODO 5: the response contains the name of the new turtle. Add the name to self.left.
         # pass
         # END STARTER
 
