@@ -75,11 +75,16 @@ def fingerprint(found: Found, exercise: Exercise) -> str:
     """
     archive = None if found.refused else _archive(found.path)
     if archive is not None:
-        return _of_archive(archive)
+        return _sha256(_of_archive(archive), found.alike) if found.alike else _of_archive(archive)
     content = read(found, exercise, "")
+    also = (found.alike,) if found.alike else ()
     if isinstance(content, Refused):
-        return hashlib.sha256(f"refused {content.reason}".encode("utf-8", "surrogateescape")).hexdigest()
+        return _sha256(f"refused {content.reason}", *also)
     parts = (content.digest, content.package_dir.name, content.remark, *content.rejected, *sorted(content.executable))
+    return _sha256(*parts, *also)
+
+
+def _sha256(*parts: str) -> str:
     return hashlib.sha256("\0".join(parts).encode("utf-8", "surrogateescape")).hexdigest()
 
 

@@ -1,7 +1,9 @@
-"""Submissions that are not graded because the student is not clear: there are several, or their names are too similar.
+"""Submissions whose student is not clear: there are several, or their names are too similar.
 
-Two names are one student id if they have the same normal form, as for the students' own numbers. One of the two could
-be a spelling mistake, so the submissions are neither merged nor graded.
+Two names are one student id if they have the same normal form, as for the students' own numbers. Both submissions are
+graded, with the same numbers, because a student who chooses the name of an archive could otherwise take the points of
+another student. The reports say that the names are one id. Several submissions with exactly the same name are not
+graded, because they have a single line in the table of the class.
 """
 
 from __future__ import annotations
@@ -22,21 +24,22 @@ if TYPE_CHECKING:
 
 
 def without_duplicates(found: Iterable[Found]) -> Iterator[Found]:
-    """Yield one submission per name and exercise. If the student is not clear, it has the reason why not."""
+    """Yield one submission per name and exercise.
+
+    If there are several submissions with the name, it has the reason why it is not graded. If another name is the same
+    student id, it has a remark.
+    """
     alike: dict[tuple[str, str], dict[str, list[Found]]] = {}
     for each in found:
         by_name = alike.setdefault((normal_id(each.student), each.exercise), {})
         by_name.setdefault(each.student, []).append(each)
     for by_name in alike.values():
-        if len(by_name) == 1:
-            yield from map(_one_of, by_name.values())
-        else:
-            why = similar(sorted(by_name, key=sort_key), "Remove or rename all of these submissions but one.")
-            yield from (replace(each[0], refused=why) for each in by_name.values())
+        why = similar(sorted(by_name, key=sort_key), "Each of them is graded.").reason if len(by_name) > 1 else ""
+        yield from (replace(_one_of(each), alike=why) for each in by_name.values())
 
 
 def similar(names: Sequence[str], todo: str) -> Refused:
-    """Return why nothing is graded if these different names are one student id. `todo` says what to do."""
+    """Return the statement that these different names are one student id. `todo` is the last sentence."""
     return Refused(f"{a_list([shown(name) for name in names])} are one student id: {SAME}. {todo}", "similar-names")
 
 

@@ -25,6 +25,8 @@ class Found:
     a student has replaced a folder with this link, so the submission is not graded."""
     refused: Refused | None = None
     """The reason why the submission cannot be graded, if the reason is already known."""
+    alike: str = ""
+    """The statement that the names of other submissions are the same student id, or an empty string."""
 
     @property
     def name(self) -> str:

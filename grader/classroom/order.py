@@ -105,6 +105,7 @@ class Order:
             explain=self.explain,
             trusted=self.trusted,
             grader=grader_key(),
+            alike=found.alike,
         )
 
     def _owner(self, found: Found) -> str:

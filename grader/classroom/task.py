@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -59,6 +59,8 @@ class Task:
     explain: bool = True
     trusted: bool = False
     grader: str = ""
+    alike: str = ""
+    """The statement that the names of other submissions are the same student id, or an empty string."""
 
     @property
     def name(self) -> tuple[str, str]:
@@ -95,7 +97,7 @@ def perform(
     if isinstance(task.content, Refused):
         if task.content.diagnosis is None:
             return set_aside(task, task.content.reason)
-        return _with_page(_refused(task, exercise, task.content.reason, task.content.diagnosis))
+        return _done(task, _refused(task, exercise, task.content.reason, task.content.diagnosis))
 
     class Waiting(Trial):
         """A trial that reports when a run in wall time begins and ends."""
@@ -112,7 +114,7 @@ def perform(
     # Run one trial at a time: other submissions use the processors, and memory is calculated per submission.
     options = Options(in_cell=in_cell, clock=task.clock, seed=task.seed, explain=task.explain, trials_at_once=1)
     try:
-        return _with_page(grade(exercise, _submission(task), options, tell, build=_builds(), trial=Waiting))
+        return _done(task, grade(exercise, _submission(task), options, tell, build=_builds(), trial=Waiting))
     except MachineError as error:  # other submissions can still be readable on this machine
         return set_aside(task, str(error))
 
@@ -127,7 +129,7 @@ def _confined(*, trusted: bool) -> bool:
 def set_aside(task: Task, why: str) -> Done:
     """Return a result with the status `error` for a submission that could not be graded."""
     exercise = exercise_from(task.sources)
-    return _with_page(_unjudged(task, exercise, Finding(Status.ERROR, why)))
+    return _done(task, _unjudged(task, exercise, Finding(Status.ERROR, why)))
 
 
 def _submission(task: Task, files: dict[str, bytes] | None = None) -> Submission:
@@ -165,8 +167,21 @@ def _unjudged(task: Task, exercise: Exercise, finding: Finding, *first: Outcome)
     return Graded(report_of(evidence, (*first, *outcomes), "none", {}), evidence, ())
 
 
+def _done(task: Task, graded: Graded) -> Done:
+    report = replace(graded.report, outcomes=(*_similar(task), *graded.report.outcomes))
+    return _with_page(replace(graded, report=report))
+
+
 def _with_page(graded: Graded) -> Done:
     from grader.report.html import html_page
 
     page = html_page(evidence_for_students(graded.evidence), for_students(graded.report))
     return Done(graded.report, page.encode("utf-8", "replace"))
+
+
+def _similar(task: Task) -> tuple[Outcome, ...]:
+    """Return an outcome without points if another submission has the same student id, or an empty tuple."""
+    if not task.alike:
+        return ()
+    finding = failed(task.alike, "One spelling of each student id.", Cause("similar-names"))
+    return (Outcome("name", "submission", "Only this submission has its student id", 0.0, 0.0, finding, advice=True),)

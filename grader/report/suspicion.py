@@ -1,4 +1,4 @@
-"""Find submissions that an instructor should check, because the grader could not judge or read them.
+"""Find submissions that an instructor should check: the grader could not judge or read them, or the student is unclear.
 
 Machine faults affect submissions at random. If the grader repeatedly fails to judge a submission but can judge other
 submissions, the submission may have been designed to break the grader.
@@ -19,8 +19,12 @@ ERRORS = "errors"
 """In the reports of a class, the value of this key is the number of consecutive gradings that ended with an error."""
 REPEATED = 2
 """The number of consecutive errors after which chance is an unlikely explanation."""
-UNREADABLE = "unreadable"
-"""The diagnosis of a submission that the grader could not read completely."""
+ATTENTION = {
+    "unreadable": "the grader could not read the whole submission",
+    "similar-names": "another spelling of its name is the same student id",
+    "several-submissions": "there are several submissions with its name",
+}
+"""Maps a diagnosis to the reason why an instructor should check the submission."""
 
 
 def suspicions(graded: Sequence[tuple[Report, int]]) -> list[str]:
@@ -35,6 +39,5 @@ def suspicions(graded: Sequence[tuple[Report, int]]) -> list[str]:
 def _suspicion(report: Report, errors: int, judged: int) -> str:
     if report.with_status(Status.ERROR) and errors >= REPEATED and judged:
         return f"suspicious: it could not be judged in {errors} consecutive attempts, but other submissions could"
-    if any(outcome.finding.diagnosis == UNREADABLE for outcome in report.outcomes):
-        return "the grader could not read the whole submission"
-    return ""
+    found = {outcome.finding.diagnosis for outcome in report.outcomes}
+    return next((text for diagnosis, text in ATTENTION.items() if diagnosis in found), "")

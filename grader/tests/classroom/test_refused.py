@@ -14,8 +14,9 @@ from grader.classroom.content import read
 from grader.classroom.find_submissions import find_submissions
 from grader.classroom.order import Order, sources_for
 from grader.classroom.refused import Refused
-from grader.classroom.task import perform
+from grader.classroom.task import perform, set_aside
 from grader.report.html_class import ClassReports, Entry, failures
+from grader.report.suspicion import suspicions
 from grader.submission import tree
 from grader.tests.case import copy_solution
 
@@ -130,20 +131,37 @@ def test_a_name_that_is_almost_the_exercise_has_a_diagnosis(tmp_path: Path) -> N
         ("carl", "carl\N{ZERO WIDTH SPACE}"),
     ],
 )
-def test_names_that_differ_only_in_their_spelling_are_neither_merged_nor_graded(
+def test_names_that_differ_only_in_their_spelling_are_both_graded_and_marked(
     tmp_path: Path, one: str, other: str
 ) -> None:
-    for name in (one, other, "dora"):
+    """Where students choose the names of their archives, one name must not cost another student all points."""
+    copy_solution(STEP, tmp_path / one)
+    before = order_of(tmp_path)
+    for name in (other, "dora"):
         copy_solution(STEP, tmp_path / name)
-    found = find_submissions([tmp_path], STEP, tmp_path / "grades")
-    assert {each.student: each.refused.diagnosis if each.refused else "" for each in found} == {
-        one: "similar-names",
-        other: "similar-names",
-        "dora": "",
-    }
-    (reason,) = {each.refused.reason for each in found if each.refused}
-    assert tree.shown(one) in reason
-    assert tree.shown(other) in reason
+    after = order_of(tmp_path)
+    assert [each.refused for each in after.found] == [None, None, None]
+    assert before.key(before.found[0]) != after.key(next(each for each in after.found if each.student == one))
+    reports = {each.student: set_aside(after.task(each), "-").report for each in after.found}
+    for name in (one, other):
+        first = reports[name].outcomes[0]
+        assert (first.finding.diagnosis, first.max) == ("similar-names", 0)
+        assert tree.shown(one) in first.finding.observed
+        assert tree.shown(other) in first.finding.observed
+    attention = suspicions([(report, 1) for report in reports.values()])
+    assert [bool(why) for why in attention] == [name != "dora" for name in reports]
+
+
+def test_several_submissions_with_one_name_are_marked_for_the_instructor(tmp_path: Path) -> None:
+    two_submissions(tmp_path)
+    order = order_of(tmp_path, trusted=True)
+    report = perform(order.task(order.found[0])).report
+    assert suspicions([(report, 0)]) == ["there are several submissions with its name"]
+
+
+def order_of(folder: Path, *, trusted: bool = False) -> Order:
+    found = find_submissions([folder], STEP, folder / "grades")
+    return Order(found, {}, sources_for(found, None), "none", trusted=trusted)
 
 
 def test_names_with_different_bytes_that_are_not_utf8_are_different_students(tmp_path: Path) -> None:
