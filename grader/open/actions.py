@@ -39,7 +39,7 @@ class Actions:
     digest: Callable[[], str]
 
     def all(self) -> Mapping[str, Callable[[Request], Any]]:
-        """Return the actions by name. Some actions are coroutines."""
+        """Return the actions by name. Some of them are coroutine functions."""
         threaded = {"start": self.start, "hint": self.hint, "rerun": self.rerun, "ask": self.ask}
         return {**threaded, "turtlesim": self.turtlesim, "node": self.node}
 

@@ -36,8 +36,9 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
     """Serve the page and grade, until Ctrl-C or SIGTERM is received, or the terminal is closed.
 
     Raises:
-        UsageError: another program is using the port, or the user is not allowed to use the port.
-        MachineError: a library that the page needs is not installed, or the server has exited.
+        UsageError: `port` is not available, for example because another program is using it.
+        MachineError: a library that the page needs is not installed, the learner's progress cannot be read, or the
+            server has exited.
     """
     see_that_it_can_be_served("`grader watch` works without it")
     for number in (signal.SIGTERM, signal.SIGHUP):

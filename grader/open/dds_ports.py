@@ -24,8 +24,8 @@ OTHERS = 64
 """This number of ports, beginning with FIRST_OWN, is reserved for the other nodes of this machine."""
 _TRIED = 64
 OWN = 4
-"""The number of participants in a cell that other nodes can reach. A program has one participant for each context, and
-a node that the program starts as a child process has another participant."""
+"""The maximum number of participants in a cell that other nodes can reach. A program has one participant for each
+context, and a node that the program starts as a child process has another participant."""
 
 
 def participant_ports(domain: int, number: int) -> tuple[int, int]:

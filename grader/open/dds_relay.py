@@ -76,7 +76,7 @@ class Relay:
     def _as_seen_inside(self, locator: re.Match[bytes]) -> bytes:
         """Return the locator with the address of this relay, which is the only address that the cell can reach.
 
-        If its port is one of the OTHERS ports from FIRST_OWN on, also allow datagrams to this port.
+        If the port in the locator is one of the OTHERS ports from FIRST_OWN on, also allow datagrams to this port.
         """
         (port,) = struct.unpack("<I", locator[2])
         if FIRST_OWN <= port < FIRST_OWN + OTHERS:

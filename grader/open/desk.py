@@ -54,7 +54,7 @@ class Content:
     digest: str = ""
     """The digest of the submission that was read last."""
     lacking: list[dict[str, object]] = field(default_factory=list)
-    """For each package file, the lines and tasks of the step that the learner's file does not have."""
+    """The lines to add to the learner's package files for this step, and the tasks to do in these files."""
 
 
 class Desk:
@@ -75,7 +75,7 @@ class Desk:
             self._set(replace(self._content, doing=doing))
 
     def read(self, digest: str, lacking: list[dict[str, object]]) -> None:
-        """Show the lines that the submission with this digest lacks."""
+        """Show the lines and tasks that are missing from the package files of the submission with this digest."""
         self._set(replace(self._content, digest=digest, lacking=lacking))
 
     def early(self, outcomes: Sequence[Outcome]) -> None:

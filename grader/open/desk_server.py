@@ -109,8 +109,9 @@ class DeskServer:
         except GraderError as error:
             return JSONResponse({"problem": str(error)}, 409)
         except Exception as error:
-            fault = f"Internal error in the grader, not a problem with your work: {type(error).__name__}: {error}"
-            return JSONResponse({"problem": refusal(error) or f"{fault}. Please report the error."}, 500)
+            what = f"{type(error).__name__}: {error}".removesuffix(": ")
+            fault = f"Internal error in the grader, not a problem with your work: {what}. Please report the error."
+            return JSONResponse({"problem": refusal(error) or fault}, 500)
         return JSONResponse(made)
 
     async def _live(self, socket: WebSocket) -> None:
@@ -145,7 +146,8 @@ def _refused() -> Response:
 async def _wanted(request: Request) -> dict[str, Any]:
     """Return the JSON object in the body of the request.
 
-    Raises OverflowError if the body is too large, or ValueError if it is not a JSON object.
+    Raises OverflowError if the body is too large, ValueError if it is not a JSON object, or RecursionError if it is
+    nested too deeply.
     """
     body = b""
     async for chunk in request.stream():

@@ -26,7 +26,7 @@ RERUN, STEP = "rerun", "step"
 
 
 def run(desk: Desk, events: Events, workspace: Path | None) -> None:
-    """Grade each new step, after each save that changes it, and on request, until there are no more events."""
+    """Grade each new step, and again after each save that changes the work and on request, until the events end."""
     options = Options(in_cell=bubblewrap.usable())
     current = steps.current(workspace)
     while True:
@@ -78,9 +78,9 @@ def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
 
 
 def lacking(exercise: Exercise, files: Mapping[str, bytes]) -> list[dict[str, object]]:
-    """Return the lines and the tasks of the step that are missing from the learner's package files.
+    """Return the lines and the tasks (TODO) of the step that are missing from the learner's package files.
 
-    Return nothing if the files of the step cannot be read.
+    Return an empty list if the files of the step cannot be read.
     """
     try:
         lines, tasks = lacking_lines(exercise, files), open_tasks(exercise, files)

@@ -1,4 +1,4 @@
-"""The files that the server sends: pages with a lesson and panes, and their pictures, style sheets and scripts."""
+"""What the server sends: lessons with panes, the contents, the search index, pictures, style sheets and scripts."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class LessonPages:
         self._assets |= {f"{FOLDER}/{file.name}": file for file in [*shared, *own]}
 
     def find(self, path: str) -> str | Path | None:
-        """Return the text of a page, the path of a file, or None if the path is unknown."""
+        """Return the text of a page or of the search index, the path of a file, or None if the path is unknown."""
         if path in self._assets:
             return self._assets[path]
         among = self._lessons()

@@ -86,7 +86,7 @@ class LinkedCell:
             await_launcher(self.process.stdout)
         except LaunchError as error:
             lines = str(error).splitlines() or ["no message"]
-            message = f"The sandbox did not start: {lines[-1]}. `grader doctor` shows what is missing."
+            message = f"The sandbox did not start: {lines[-1].rstrip('.')}. `grader doctor` shows what is missing."
             raise MachineError(message) from error
         # Only bubblewrap has forked so far, and each of its processes has one child.
         self.first = list(family(self.process.pid))[-1]
@@ -115,7 +115,7 @@ def linked_cell(ros: Ros, domain: int) -> Iterator[LinkedCell]:
     """Start trial/launcher.py in a cell, with a relay to this ROS domain. Leaving the context stops the cell.
 
     Raises:
-        MachineError: the cell could not be started, or all ports are in use.
+        MachineError: the cell could not be started, or too few ports are free.
     """
     with ExitStack() as stack:
         ports = reserve(domain)

@@ -1,7 +1,8 @@
 """`python -m grader.open.node_in_cell SETTINGS`: build a package and run one of its programs in the sandbox.
 
-The program can reach the turtlesim of this machine (linked_cell.py). The program is stopped by Ctrl-C, or when standard
-input closes because the process that started node_in_cell has exited.
+The program can reach the turtlesim of this machine (linked_cell.py). The program is stopped by Ctrl-C, SIGTERM or
+SIGHUP, when it exceeds a limit of its cell, or when standard input closes because the process that started node_in_cell
+has exited.
 """
 
 from __future__ import annotations
@@ -40,7 +41,10 @@ _CHUNK = 65536
 
 
 def run(program: Program) -> int:
-    """Build the package, and run the program until Ctrl-C. Return the exit code, as `grader.learner.run_node.run` does.
+    """Build the package, and run the program until Ctrl-C or until it exits. Return the exit code for the user.
+
+    The exit code is 0 if the program was stopped or exited without an error, and 1 if it failed or exceeded a limit, or
+    if the package could not be built.
 
     Raises:
         GraderError: the package cannot be read, it does not have the program, or the machine cannot build or run it.
@@ -133,7 +137,10 @@ class _Output:
         self._copies, self._own = f"{copies}/".encode(), f"{program.folder}/".encode()
 
     def pass_on(self) -> None:
-        """Read the available data, and print the complete lines."""
+        """Read the available data, and print the complete lines. At the end of the output, also print the last line.
+
+        A very long line is printed in parts.
+        """
         chunk = os.read(self.pipe.fileno(), _CHUNK)
         self.ended = not chunk
         whole, newline, rest = (self._rest + chunk).rpartition(b"\n")

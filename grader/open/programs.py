@@ -132,9 +132,10 @@ class Programs:
         """The step of the node, and the digest of its code when the node was started."""
 
     def address(self) -> Address | None:
-        """Return the address of the view of the turtlesim that was started here, or else last in a terminal, or None.
+        """Return the address of the view of turtlesim, or None.
 
-        The view at this address may no longer be running.
+        This is the view of the turtlesim that was started here, or else of the last turtlesim that was started in a
+        terminal. The view at this address may no longer be running.
         """
         return self._address or remembered("turtlesim")
 
@@ -144,7 +145,7 @@ class Programs:
         return Address(int(found[1]), found[2]) if found else None
 
     async def beside_another(self) -> bool:
-        """Return whether a turtlesim is running that was not started by this object.
+        """Return whether a turtlesim is running that this object has not started. If it has started one, return False.
 
         A second turtlesim would receive the same commands.
         """

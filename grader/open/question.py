@@ -59,7 +59,7 @@ def arguments(text: str) -> list[str]:
         arguments("ros2 topic echo /turtle1/pose")  # ["topic", "echo", "/turtle1/pose", "--once"]
 
     Raises:
-        UsageError: the command is not allowed.
+        UsageError: the command is not allowed, or it has a quote that is not closed or ends with a backslash.
     """
     try:
         words = shlex.split(text)
@@ -100,7 +100,10 @@ def _meant(words: list[str]) -> str:
 
 
 def answer(words: list[str], env: Mapping[str, str]) -> Answer:
-    """Run `ros2` with the arguments that `arguments` returned, and return its output."""
+    """Run `ros2` with the arguments that `arguments` returned. Return its output.
+
+    If `topic echo` or `topic hz` received too few messages, the output is a sentence that says so.
+    """
     start = interpreter("-m", "grader.ros2.main", *words, env=env, searches=True)
     endless = words[:2] == ["topic", "hz"]
     patience_s = HZ_S if endless else PATIENCE_S

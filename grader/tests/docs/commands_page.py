@@ -31,7 +31,7 @@ completes commands and options. `grader --help` also lists the commands for auth
 """
 PANELS = ("Learn", "Teach")
 NOT_USED = ("component", "daemon", "launch", "lifecycle", "multicast", "security", "wtf")
-"""Groups of `ros2` that no lesson needs; docs/ros2-differences.md describes them."""
+"""Groups of `ros2` that no lesson needs. The page leaves them out."""
 
 
 def page() -> str:
@@ -60,7 +60,8 @@ def ros2_table() -> list[str]:
     for group, about in sorted(GROUPS.items()):
         if group in NOT_USED:
             continue
-        for verb, words in sorted(about.verbs.items()) or [("", about.about)]:
+        itself = {} if about.verbs and not about.runs_itself else {"": about.about}
+        for verb, words in sorted({**itself, **about.verbs}.items()):
             lines.append(f"| `{f'ros2 {group} {verb}'.strip()}` | {words} |")
     lines += ["", "`rqt_graph` draws the nodes and topics of the running system (step 05)."]
     return lines

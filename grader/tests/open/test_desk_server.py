@@ -33,6 +33,7 @@ class Asked:
         (UsageError("The step does not exist."), 409, "The step does not exist."),
         (OSError(errno.ENOSPC, "full", "/state"), 500, "The disk is full for /state"),
         (ValueError("odd"), 500, "Internal error in the grader, not a problem with your work: ValueError: odd."),
+        (AssertionError(), 500, "not a problem with your work: AssertionError. Please report the error."),
         (TimeoutError("odd"), 500, "The system did not allow"),
     ],
 )

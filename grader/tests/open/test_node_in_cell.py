@@ -12,14 +12,16 @@ import subprocess
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from selectors import DefaultSelector
 from typing import TYPE_CHECKING
 
 import pytest
 
 from grader.common.interpreter import interpreter
+from grader.errors import MachineError
 from grader.open import programs
 from grader.open.dds_ports import FIRST_OWN, OTHERS, participant_ports
-from grader.open.linked_cell import linkable
+from grader.open.linked_cell import LinkedCell, linkable
 from grader.sandbox import bubblewrap
 from grader.tests.domains import own_domain
 from grader.tests.open.course import CIRCLE, Course
@@ -251,3 +253,12 @@ def test_a_message_of_turtlesim_cannot_lead_the_page_to_another_address(monkeypa
     asyncio.run(made.start_turtlesim())
     made.turtlesim.lines.extend(["See the turtle move: http://127.0.0.1:1/#forged"] * programs.KEPT)
     assert made.address() == Address(1234, "own")
+
+
+def test_the_reason_why_a_sandbox_does_not_start_ends_with_one_full_stop() -> None:
+    failing = ["sh", "-c", "echo 'bwrap: Not allowed.'"]
+    with (
+        subprocess.Popen(failing, stdout=subprocess.PIPE) as process,
+        pytest.raises(MachineError, match=r"did not start: bwrap: Not allowed\. `grader doctor`"),
+    ):
+        LinkedCell(process, DefaultSelector()).await_ready()
