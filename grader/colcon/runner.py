@@ -82,6 +82,7 @@ def build(submission: Submission, ros: installation.Ros, *, in_cell: bool, tell:
 
     Raises:
         MachineError: the sandbox or colcon itself does not work.
+        UnreadableError: the result of the build cannot be read.
     """
     tell("Building with colcon")
     with _workspace(in_cell=in_cell) as (workspace, home):

@@ -68,6 +68,7 @@ class SharedBuilds:
 
         Raises:
             MachineError: the sandbox or colcon itself does not work.
+            UnreadableError: the result of the build cannot be read.
         """
 
         def build(package: Submission) -> runner.Built:
@@ -119,7 +120,7 @@ class SharedBuilds:
 def build_for(*, marks: bool) -> Callable[..., runner.Built]:
     """Return the function that builds a single submission.
 
-    A build that counts for marks never depends on an earlier build.
+    With `marks`, a build never depends on a build of an earlier command.
     """
     return runner.build if marks else SharedBuilds(store=build_store())
 

@@ -48,7 +48,7 @@ def pidfd_send_signal(pidfd: int, number: int) -> None:
 def adopt_orphans() -> None:
     """Let each orphan among the descendants of this process become a child of this process (prctl(2)).
 
-    Otherwise, orphans become children of the first process of the system.
+    Otherwise, orphans usually become children of the first process of the system.
     """
     import ctypes
 

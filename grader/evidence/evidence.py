@@ -156,7 +156,7 @@ class Evidence:
 
     @cached_property
     def code(self) -> Code:
-        """The code of the node's file and of the submission's files that it imports."""
+        """The code of the node's file and of the submission's files that it imports (see `Code`)."""
         return read_code(self.submission.files, first=self.node_file)
 
     @cached_property

@@ -92,7 +92,7 @@ class Trajectory:
 
     @property
     def sides(self) -> int:
-        """The number of straight pieces. A turn on the spot ends a straight piece, but a stop does not."""
+        """The number of straight pieces. Any turn ends a straight piece, but a stop does not."""
         moves = self.steps > RESTS_M
         straight = moves & (np.abs(self.turn) <= STRAIGHT_RAD)
         turned = np.cumsum(np.abs(self.turn) > STRAIGHT_RAD)

@@ -92,7 +92,7 @@ def first_clock(choice: ClockChoice, evidence: Evidence) -> Clock:
 
 
 def stops_at_doubt(choice: ClockChoice) -> bool:
-    """Return whether a trial in simulated time stops at the first sign that the node follows wall time (rule 3)."""
+    """Return whether a trial in simulated time stops at the first sign that the node may be misjudged (rule 3)."""
     return choice == "auto"
 
 
@@ -102,7 +102,7 @@ def repeats(doubt: WallTimeNeeded) -> bool:
 
 
 def after_doubt(doubt: WallTimeNeeded) -> Clock:
-    """Return the clock for repeating a trial that stopped because the node seemed to follow wall time (rule 3)."""
+    """Return the clock for repeating a trial that stopped because the node may be misjudged (rule 3)."""
     return Clock("wall", str(doubt))
 
 
@@ -110,7 +110,7 @@ def after_simulated(choice: ClockChoice, attempt: Attempt) -> Clock | None:
     """Return the clock for repeating a trial that ran in simulated time (rule 4), or None if it is not repeated."""
     if choice == "simulated" or not any(outcome.finding.near_edge for outcome in attempt.outcomes):
         return None
-    return Clock("wall", "a measured value is near the edge of its tolerance, so the trial is repeated in wall time")
+    return Clock("wall", "in the trial in simulated time, a value was near its limit, or the node did not stop")
 
 
 def wants_another(attempts: Sequence[Attempt]) -> bool:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 MOST_TRIES = 6
 MOST_F = 1.5
 """The time for testing the fixes of a submission, relative to the time that a build and a minimal node take. After the
-first test, a test that would probably end later is not started."""
+first test, a test that would probably exceed this time is not started."""
 BARE_NODE_S = 0.35
 """The time that a minimal process with one node takes to start and exit (s)."""
 ENOUGH = f"at most {MOST_TRIES} fixes are tested"

@@ -68,7 +68,7 @@ class Trials:
             self._ahead.start(view.trial.id, self._trial(view, name))
 
     def run_predicted(self, evidence: Evidence) -> None:
-        """Start the nodes of these trials from the predicted install tree, if the package has the usual form.
+        """Start the nodes of the started trials from the predicted install tree, if the package has the usual form.
 
         A node in wall time waits for the build, because it needs the processors to itself.
         """

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def requested(evidence: Evidence) -> Iterator[Requested]:
-    """Yield what the checks of this trial, except hidden checks, require and a drawing can show, in their order."""
+    """Yield the requirements that a drawing can show, in the order of this trial's checks, without hidden checks."""
     for spec in evidence.exercise.checks:
         if spec.trial == evidence.trial.id and not spec.hidden:
             found = KINDS[spec.kind].request(evidence, spec.params)

@@ -3,7 +3,7 @@
 The summary and the annotations contain text from a student, which must never be interpreted as Markdown or as a
 command. In the summary, this text is always plain text. In a command, the text is escaped as described in GitHub's
 documentation ("Workflow commands for GitHub Actions") and as implemented by `escapeData` and `escapeProperty` in
-GitHub's toolkit. For a hidden check, only the result is included.
+GitHub's toolkit. For a hidden check, only the result and the points are included.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Status
-from grader.common.words import printable, shorten
+from grader.common.words import count, printable, shorten
 from grader.report.certainty import cause_sentence
 from grader.report.hidden import for_students
 from grader.report.verdict import verdict
@@ -43,7 +43,7 @@ def to_summary(rows: Sequence[tuple[str, Report]]) -> str:
         part = _details(student, for_students(report))
         size += len(part.encode())
         if size > MOST_SUMMARY:
-            parts.append(f"\nThe checks of {len(rows) - number} more submissions do not fit here.\n")
+            parts.append(f"\nThe checks of {count(len(rows) - number, 'more submission')} do not fit here.\n")
             break
         parts.append(part)
     return "".join(parts)

@@ -118,7 +118,7 @@ class ClassReports:
 
 
 def read_class(folder: Path) -> ClassReports:
-    """Read every report below the folder, sorted by name. Raises UsageError if there is no report."""
+    """Read every report below the folder, sorted by name. Raises UsageError if there is no folder or no report."""
     if not folder.is_dir():
         message = f"There is no folder {folder}. Give the folder that contains the reports from `grader check --json`."
         raise UsageError(message)
@@ -244,7 +244,7 @@ def counts(shares: Iterable[float]) -> list[int]:
 
 def _in_words(shares: Iterable[float]) -> str:
     groups = [f"{amount} got {name} %" for name, amount in zip(BINS, counts(shares), strict=True) if amount]
-    return f"Share of the points: {'; '.join(groups)}."
+    return f"Share of the points: {'; '.join(groups)}." if groups else "No submission was judged."
 
 
 def distribution(shares: Iterable[float]) -> str:

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.common.words import count
 from grader.report.plain import Cut, cut, plain_line, size
 
 if TYPE_CHECKING:
@@ -79,7 +80,8 @@ def _log(key: str, title: str, text: str, room: Size, note: str = "") -> Log:
 
 
 def _dropped(output: Output) -> str:
-    return f"{output.dropped} more bytes were written but not kept." if output.dropped else ""
+    were = "was" if output.dropped == 1 else "were"
+    return f"{count(output.dropped, 'more byte')} {were} written but not kept." if output.dropped else ""
 
 
 def errors_in(text: str, room: int = ERROR_BYTES) -> list[tuple[int, str]]:

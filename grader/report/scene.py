@@ -161,7 +161,8 @@ def _others(recording: Recording) -> Iterator[tuple[list[Line | Ring | Arrow], s
             shapes.append(Line("other", tuple((row[1], row[2]) for row in track.rows)))
         shapes.append(Arrow("other", (x, y), theta))
     if tracks:
-        yield shapes, f"other turtles: {a_list([shorten(track.turtle) for track in tracks], most=2)}"
+        others = "other turtle" if len(tracks) == 1 else "other turtles"
+        yield shapes, f"{others}: {a_list([shorten(track.turtle) for track in tracks], most=2)}"
 
 
 def finite_points(trajectory: Trajectory) -> list[Point]:

@@ -56,7 +56,7 @@ def render(report: Report, console: Console, *, brief: bool = False, verbose: bo
         amount = count(len(report.with_status(Status.PASSED)), "check")
         _line(
             console,
-            Text(f"{amount} passed. To see these checks, run `grader check` or make the window taller.", style="dim"),
+            Text(f"{amount} passed. To see all checks, run `grader check` or make the window taller.", style="dim"),
         )
     _line(console, _verdict(report))
     for text in _footnotes(report, verbose=verbose):

@@ -27,8 +27,8 @@ Answer = str | float | tuple[str, ...]
 class Answers:
     """The answers in the table [answers], by their ids: strings, numbers and lists of strings.
 
-    Answers of other types, empty answers and 0 are left out. `unusable` contains the ids of the answers of other types,
-    and of numbers that are nan or too large.
+    Answers of other types, empty answers, 0, and numbers that are nan or too large are left out. `unusable` contains
+    the ids of those that are neither empty nor 0.
 
     `lines` are the line numbers of the answers, counted from 1. `problem` is the reason why the file cannot be read.
     `line` is the line of this problem, if known.

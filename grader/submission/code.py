@@ -154,7 +154,7 @@ def read_code(files: Mapping[str, bytes], first: str | None) -> Code:
     """Parse the node's file `first` and the submission's files that it imports.
 
     The files of other nodes are not needed, because they do not affect this node. Without `first`, parse all files
-    except tests, launch files and setup.py.
+    except tests, launch files and setup.py. Raises TooLargeError if the files are too large or nested too deeply.
     """
     paths = {path: None for path in sorted(files) if path.endswith(".py") and not _left_out(path)}
     modules: dict[str, Module] = {}

@@ -77,9 +77,9 @@ def _handed_in(name: str, path: Path, exercise: Exercise, exactly: bool) -> Subm
 
 
 def _beside(exercise: Exercise, root: Path, package: Path) -> tuple[list[Part], str]:
-    """Return what `_chosen` returns for the nearest folder above the package in which it finds a notebook.
+    """Return the first result of `_chosen` that is not empty, or an empty result.
 
-    The search ends at `root`. If there is no such folder, the result for the package itself is returned.
+    `_chosen` is called for the folders that contain the package, from the innermost to `root`, then for the package.
     """
     for folder in (*(root / each for each in package.parents), root / package):
         parts, remark = _chosen(exercise, folder)
@@ -89,7 +89,10 @@ def _beside(exercise: Exercise, root: Path, package: Path) -> tuple[list[Part], 
 
 
 def _only_folder(folder: Path) -> Path:
-    """Return the folder in which a notebook without a package may be: the first that contains not only one folder."""
+    """Return the folder in which a notebook without a package may be.
+
+    A folder that contains only one other folder is skipped. At most MOST_NESTED folders are skipped.
+    """
     for _ in range(MOST_NESTED):
         with tree.open_folder(os.fspath(folder)) as opened:
             listing = [each for each in tree.entries(opened) or [] if not each.name.startswith((".", "__"))]
@@ -140,7 +143,8 @@ def _chosen(exercise: Exercise, folder: Path) -> tuple[list[Part], str]:
         names = a_list([shown(each) for each in ignored])
         remarks.append(f"The cells of {names} were not used, because there are several notebooks.")
     if broken:
-        remarks.append(f"{a_list([shown(each) for each in broken])} could not be read as a notebook.")
+        kind = "a notebook" if len(broken) == 1 else "notebooks"
+        remarks.append(f"{a_list([shown(each) for each in broken])} could not be read as {kind}.")
     return counted, " ".join(remarks)
 
 

@@ -48,12 +48,12 @@ def part_path(magic: str, name: str, exercise: Exercise) -> str:
     if magic == "node":
         if not re.fullmatch(r"[A-Za-z_]\w*\.py", name):
             message = (
-                "%%node needs the name of a Python file with only letters, digits and underscores, as in `%%node "
-                f"draw_circle.py`, not {name!r}."
+                "%%node needs the name of a Python file with only letters, digits and underscores and no digit at the "
+                f"beginning, as in `%%node draw_circle.py`, not {name!r}."
             )
             raise UsageError(message)
         return f"{package}/{package}/{name}"
-    if not name or name.startswith("/") or posixpath.normpath(name) != name or name.split("/")[0] == "..":
+    if name in ("", ".") or name.startswith("/") or posixpath.normpath(name) != name or name.split("/")[0] == "..":
         message = f"%%package needs a file of the package, as in `%%package package.xml`, not {name!r}."
         raise UsageError(message)
     return f"{package}/{name}"

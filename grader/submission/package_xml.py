@@ -56,7 +56,7 @@ def read_manifest(data: bytes) -> Manifest:
 
 
 def open_tag(data: bytes) -> tuple[str, int]:
-    """Return the innermost open tag at the position of the first XML error and its line, or ("", 1) if none is open."""
+    """Return the innermost tag that is open at the first XML error, and the tag's line, or ("", 1) if none is open."""
     parser = ParserCreate()
     opened: list[tuple[str, int]] = []
     parser.StartElementHandler = lambda name, _: opened.append((name, parser.CurrentLineNumber))

@@ -67,7 +67,7 @@ class _Child:
 
 
 def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> T:
-    """Call the function in a child process and return its result, which may contain our dataclasses and built-in types.
+    """Call the function in a child process and return its result, which may contain only what `_Unpacker` accepts.
 
     The function can open only `program_files` and the files and folders that are positional arguments (instances of
     Path, also in a list or tuple), if the machine has Landlock or lets this user create a mount namespace.

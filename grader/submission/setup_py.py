@@ -67,7 +67,9 @@ class SetupPy:
 def read_setup_py(data: bytes) -> SetupPy:
     """Read a setup.py.
 
-    Arguments that are not constant remain unknown. No exception is raised for a mistake in the file.
+    Arguments that are not constant remain unknown. A mistake in the file raises no exception.
+
+    Raises TooLargeError if the file is too large or nested too deeply, or lists too many executables.
     """
     module = read_module("setup.py", data)
     if module.tree is None:
@@ -131,7 +133,7 @@ def _value_line(node: ast.expr | None, module: Module) -> int | None:
 
 
 def _resolved(node: ast.expr | None, module: Module) -> ast.expr | None:
-    """Return the expression itself or, for a name, the expression that it refers to."""
+    """Return the expression itself or, for a name, the expression that is assigned to it, or None if it is unknown."""
     return module.names.get(node.id) if isinstance(node, ast.Name) else node
 
 
@@ -184,6 +186,7 @@ def _data_file(item: ast.expr, module: Module) -> tuple[str, tuple[str, ...]]:
     """Return one pair (folder, files).
 
     A folder or a file that is not constant becomes an empty string. Files that are not in a list become an empty tuple.
+    An item that is not such a pair becomes ("", ()).
     """
     if not isinstance(item, ast.Tuple | ast.List) or len(item.elts) != 2:
         return "", ()

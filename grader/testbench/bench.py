@@ -74,7 +74,7 @@ class Bench:
         self._done: list[Future[None]] = []
 
     def start(self) -> None:
-        """Start the cells, up to `lanes` in parallel, and the runs in them.
+        """Start the cells and the runs in them. The number of parallel cells is `lanes`, but at most MOST_LANES.
 
         If the start fails, `result` raises the error.
         """

@@ -1,8 +1,8 @@
 """The trials of one submission. The trials start during the build, and several trials can run in parallel.
 
-All trials wait for the build, so they start one after the other, to leave most of a processor to the build. Simulated
-time does not depend on the speed of the machine, so parallel trials do not affect each other. A trial in wall time
-needs the processors to itself, so the caller first waits for the other trials (`settle`).
+The trials start one after the other, to leave most of a processor to the build. Simulated time does not depend on the
+speed of the machine, so parallel trials do not affect each other. A trial in wall time needs the processors to itself,
+so the caller first waits for the other trials (`settle`).
 """
 
 from __future__ import annotations

@@ -66,7 +66,10 @@ class ConductorProcess(ABC):
             self._kill()
 
     def out_of_memory(self) -> bool:
-        """Return whether the kernel killed a process because the trial used too much memory."""
+        """Return whether the kernel killed a process because the trial used too much memory.
+
+        Without a sandbox, return False.
+        """
         return False
 
     @abstractmethod

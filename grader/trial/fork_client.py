@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 CONDUCTORS = {"ROS_PYTHON_CHECK_FIELDS": "0"}
-"""Additional environment variables of conductors: they disable the check of the values in messages, which helps
-beginners but would slow down the simulator in every frame."""
+"""Additional environment variables of conductors: they disable the check of the values in messages. This check helps
+beginners, but it would slow down the simulator in every frame."""
 
 
 NOBODYS_HOME = Path("/nonexistent")

@@ -35,7 +35,7 @@ def await_launcher(stdout: IO[bytes], stderr: IO[bytes] | None = None) -> None:
     """Wait until a launcher is ready to receive the command that it must run.
 
     Raises:
-        LaunchError: the launcher exited. The message is the output of the launcher.
+        LaunchError: the launcher exited. The message is the output of the launcher, if any.
     """
     received = b""
     while not received.endswith(READY):
@@ -43,7 +43,7 @@ def await_launcher(stdout: IO[bytes], stderr: IO[bytes] | None = None) -> None:
         byte = os.read(stdout.fileno(), 1)
         if not byte:
             output = received + (stderr.read() if stderr is not None else b"")
-            raise LaunchError(output.decode("utf-8", "replace").strip())
+            raise LaunchError(output.decode("utf-8", "replace").strip() or "the launcher printed nothing")
         received += byte
 
 

@@ -27,8 +27,8 @@ PIPE = 1024 * 1024
 """The size of the node's pipes (bytes). The size is large, so that the node need not wait until the grader has read its
 output."""
 FULL = 0.25
-"""If a node wrote at most this share of the pipe's size, the pipe was never full, so the node did not have to wait. The
-share is small, because the kernel may leave half of each page of the pipe empty."""
+"""If a node wrote less than this share of the pipe's size, the pipe was never full, so the node did not have to wait.
+The share is small, because the kernel may leave half of each page of the pipe empty."""
 STOP_S = 3.0
 """The maximum time that the node may take to exit after SIGINT (s). After this time, the grader sends SIGTERM and, 1 s
 later, SIGKILL. The time for which the node waits for a processor does not count."""

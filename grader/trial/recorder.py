@@ -192,8 +192,8 @@ class Recorder(Node):
     def _endpoints(self, kind: Literal["publisher", "subscription"], topic: str, beside: object) -> set[Endpoint]:
         """Return the endpoints of other nodes on a topic.
 
-        Querying the endpoints takes fifty times as long as counting them. Therefore, they are queried again only if
-        their number or `beside` has changed. `beside` contains the types of the topic and the nodes in the graph: if
+        Querying the endpoints takes fifty times as long as counting them. Therefore, a complete result is used again
+        until their number or `beside` changes. `beside` contains the types of the topic and the nodes in the graph: if
         they have changed, the endpoints may have changed, too.
         """
         publishes = kind == "publisher"

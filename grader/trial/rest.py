@@ -80,8 +80,8 @@ class Look:
 class Wait:
     """A thread and the system call in which it is waiting.
 
-    `call` is the name of the system call, such as "futex" or "nanosleep", or "running" if the thread is not waiting.
-    `timed` is true if the wait has a timeout.
+    `call` is the name of the system call, such as "futex" or "nanosleep", "running" if the thread is not waiting, or
+    HIDDEN. `timed` is true if the wait has a timeout.
     """
 
     tid: int

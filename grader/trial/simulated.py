@@ -86,7 +86,7 @@ class SimulatedTrial(Simulation):
         """Run the scenario, and return the time of SIGINT, or of the node's own exit, on the trial's clock (s).
 
         Raises:
-            DoubtError: the node may follow wall time, and the plan sets `stop_at_doubt`.
+            DoubtError: simulated time may misjudge the node, and the plan sets `stop_at_doubt`.
         """
         try:
             self.lap("start")

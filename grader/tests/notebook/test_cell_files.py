@@ -39,9 +39,11 @@ def test_without_a_package_answers_are_next_to_the_notebook() -> None:
         ("node", "../a.py"),
         ("node", "a"),
         ("node", ""),
+        ("node", "1a.py"),
         ("package", "../x"),
         ("package", "/etc/x"),
         ("package", "a/../../x"),
+        ("package", "."),
     ],
 )
 def test_nothing_is_written_outside_of_the_folder(magic: str, name: str) -> None:

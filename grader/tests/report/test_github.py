@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from grader.checks.outcome import Status
 from grader.report.github import MOST_ANNOTATIONS, MOST_SUMMARY, to_annotations, to_summary
 from grader.tests.report.readers import Command, commands, shown
 from grader.tests.report.reports import HOSTILE, hostile_report, report
+
+if TYPE_CHECKING:
+    import pytest
 
 
 def test_the_reader_of_these_tests_knows_both_forms_of_commands() -> None:
@@ -67,3 +72,8 @@ def test_the_summary_of_a_large_class_fits_into_one_step() -> None:
     assert len(summary.encode()) < 1024 * 1024
     assert "more submissions do not fit here" in summary
     assert MOST_SUMMARY < 1024 * 1024
+
+
+def test_a_summary_without_room_for_one_submission_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("grader.report.github.MOST_SUMMARY", 0)
+    assert to_summary([("anna", report("failed"))]).endswith("\nThe checks of 1 more submission do not fit here.\n")

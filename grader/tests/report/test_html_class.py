@@ -88,6 +88,13 @@ def test_errors_of_the_machine_have_their_own_list_and_do_not_count_in_averages(
     assert any("6 submissions judged: 3 passed, 3 not yet" in text for text in tags.texts["p"])
 
 
+def test_a_class_without_a_judged_submission_has_no_averages() -> None:
+    page = class_page(ClassReports((Entry(report("error"), "anna", ""),), ()))
+    assert "<title>Class: 1 submission</title>" in page
+    assert "No submission was judged." in page
+    assert "On average" not in page
+
+
 def test_a_submission_that_ends_with_an_error_repeatedly_is_listed(folder: Path) -> None:
     assert 'id="attention"' not in class_page(read_class(folder))
     file = folder / "student6" / "report.json"

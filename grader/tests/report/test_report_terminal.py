@@ -127,7 +127,7 @@ def test_brief_lists_only_what_did_not_pass() -> None:
     signs = [line[0] for line in console.file.getvalue().splitlines()[1:] if line and line[0] in "✓✗-"]
     assert signs == ["✗"]
     amount = len(made.with_status(Status.PASSED))
-    assert f"{amount} checks passed. To see these checks, run `grader check`" in console.file.getvalue()
+    assert f"{amount} checks passed. To see all checks, run `grader check`" in console.file.getvalue()
 
 
 def test_an_error_has_no_points_so_far_and_says_what_to_do() -> None:

@@ -132,3 +132,7 @@ def test_a_broken_notebook_does_not_stop_the_grading(tmp_path: Path, text: str) 
     (submitted / f"{CIRCLE.id}.ipynb").write_text(text)
     assert node_of(submitted) == "mine\n"
     assert open_handed_in(submitted, CIRCLE).remark == f"{CIRCLE.id}.ipynb could not be read as a notebook."
+    (submitted / f"{CIRCLE.id} (1).ipynb").write_text(text)
+    assert open_handed_in(submitted, CIRCLE).remark == (
+        f"{CIRCLE.id} (1).ipynb and {CIRCLE.id}.ipynb could not be read as notebooks."
+    )

@@ -12,7 +12,7 @@ from grader.sandbox.limits import Limits
 from grader.sandbox.usage import Guard
 from grader.tests.waiting import until
 from grader.trial import node_process
-from grader.trial.launchers import LauncherProcess
+from grader.trial.launchers import LauncherProcess, LaunchError
 from grader.trial.node_process import FULL, PIPE, NodeProcess, Stream, enlarge
 
 if TYPE_CHECKING:
@@ -85,3 +85,11 @@ def test_waiting_for_a_processor_after_ctrl_c_does_not_count(
     assert end.by == by
     assert end.stop_s is not None
     assert (end.stop_s < 0.2) == (by == "SIGINT")
+
+
+def test_the_error_of_a_launcher_that_exits_silently_is_not_empty() -> None:
+    with (
+        NodeProcess(LauncherProcess(["true"]), Limits(processes=50, cpu_s=60)) as process,
+        pytest.raises(LaunchError, match="the launcher printed nothing"),
+    ):
+        process.await_ready()
