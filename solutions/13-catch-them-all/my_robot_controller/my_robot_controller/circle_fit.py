@@ -9,7 +9,7 @@ def fit_circle(x, y):
     x = np.asarray(x, dtype=float)
     y = np.asarray(y, dtype=float)
     if len(x) != len(y):
-        message = f"x has {len(x)} values and y has {len(y)}"
+        message = f"x and y have different lengths: {len(x)} and {len(y)}"
         raise ValueError(message)
     if len(x) < 3:
         message = f"a circle needs three points, not {len(x)}"
