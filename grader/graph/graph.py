@@ -183,7 +183,7 @@ def to_text(drawn: Picture, *, ascii_only: bool = False) -> str:
     """Return the picture for a terminal, with publishers on the left of each topic and subscribers on the right."""
     strokes = _ASCII if ascii_only else _UNICODE
     counts = {node.name: node.count for node in drawn.nodes}
-    # Topics with messages come first.
+    # Topics with publishers and subscribers come first, and then topics with publishers only.
     topics = sorted(drawn.topics, key=lambda topic: (topic.dead_end, not topic.publishers, topic.name))
     left = max((len(_node(name, counts)) for topic in topics for name in topic.publishers), default=0)
     middle = max((len(topic.name) + 2 for topic in topics), default=0)

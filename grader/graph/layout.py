@@ -41,7 +41,7 @@ def render(dot: str, kind: Format) -> bytes:
             )
             raise MachineError(message) from error
     if done.returncode != 0:
-        last = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
+        last = done.stderr.decode(errors="replace").strip().rpartition("\n")[2] or "no message"
         message = (
             f"The graph could not be drawn ({last}). This needs pygraphviz, which `make demo` in the course's folder "
             "installs. Without it, --text and --output graph.dot still work."

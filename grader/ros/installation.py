@@ -38,7 +38,8 @@ _UNWATCHED = (
     "PYTHONUNBUFFERED",
     "OPENBLAS_NUM_THREADS",
 )
-"""Variables that are set only for the grader's own processes. Nodes that users start use the users' settings."""
+"""Variables that are set only for processes that the grader starts. Nodes that users start use the users' settings. If
+the home folder is not writable, their ROS_LOG_DIR is a folder for temporary files."""
 _THEIRS = frozenset(
     {
         *("LANG", "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "RMW_IMPLEMENTATION"),
@@ -263,7 +264,7 @@ def _sourced(env: Mapping[str, str]) -> Ros | None:
 
 
 def _this_python(started: Path) -> Path:
-    """Return the path of this interpreter with the name `python3`, if it has that name, too, else the path `started`.
+    """Return the path of `python3` in the same folder if it is the same interpreter, or else the path `started`.
 
     The path is a part of the underlay's key, so without this function, the underlay would be built once for each name.
     """

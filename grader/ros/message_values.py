@@ -22,7 +22,8 @@ def load_type(name: str, kind: str, what: str = "message type", text: str = "") 
     The middle part of the name is optional.
 
     Raises:
-        Ros2Error: the interface is not installed. The message is `text`, or contains `what` if `text` is empty.
+        Ros2Error: the interface is not installed. The message begins with `text`, or contains `what` if `text` is
+            empty.
     """
     parts = name.split("/")
     package, last = parts[0], parts[-1]
@@ -66,7 +67,7 @@ def parse(text: str, *, dictionary: bool = True) -> Any:  # noqa: ANN401
 
 
 class MisfitError(Ros2Error):
-    """The values do not match the message. `cause` is the error that Python would raise, and `help` helps the user."""
+    """The values do not match the message. `cause` is the error that Python would raise, and `help` may be a hint."""
 
     def __init__(self, cause: Exception, hint: str = "") -> None:
         self.cause = cause
@@ -88,7 +89,11 @@ def fill(message: Any, values: Any, stamps: list[Stamper] | None = None) -> Any:
     types = message.get_fields_and_field_types()
     if not isinstance(values, dict):
         wrong = TypeError(f"Value '{values}' is expected to be a dictionary but is a {type(values).__name__}")
-        raise MisfitError(wrong, f'A value looks like "{{{next(iter(types), "")}: ...}}".')
+        field = next((name for name in types if name != _OF_AN_EMPTY_TYPE), "")
+        raise MisfitError(
+            wrong,
+            f'A value looks like "{{{field}: ...}}".' if field else "This type has no fields, so its only value is {}.",
+        )
     for name, value in values.items():
         if name not in types:
             unknown = AttributeError(f"'{type(message).__name__}' object has no attribute '{name}'")
@@ -104,6 +109,8 @@ def fill(message: Any, values: Any, stamps: list[Stamper] | None = None) -> Any:
     return message
 
 
+_OF_AN_EMPTY_TYPE = "structure_needs_at_least_one_member"
+"""The name of the field that rosidl adds to a message without fields."""
 MOST_TEXT = 1000
 """The maximum length of a string and of an array in the result of `plain`."""
 

@@ -17,7 +17,7 @@ ARRAY = re.compile(r"sequence<(?P<sequence>.+?)(?:, (?P<most>\d+))?>|(?P<array>.
 class Form:
     """The printed part of a message: at most `limit` elements or characters, with or without arrays and strings.
 
-    If `limit` is None, everything is printed.
+    If `limit` is None, nothing is truncated.
     """
 
     limit: int | None = TRUNCATED_AT

@@ -28,7 +28,7 @@ def users_environment(
 
     Raises:
         UsageError: the domain id is too large or negative, or ROS_DOMAIN_ID is not a valid domain id.
-        MachineError: ROS 2 was not found, or turtlesim could not be built.
+        MachineError: ROS 2 was not found, turtlesim could not be built, or no folder for logs could be created.
     """
     if domain is not None and not 0 <= domain <= HIGHEST_DOMAIN:
         message = f"--domain takes a whole number from 0 to {HIGHEST_DOMAIN}, but this one is {domain}."
@@ -44,7 +44,7 @@ def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sour
 
     `sourced` is True if the ROS 2 installation is a sourced one, which can have its own rqt_graph.
     """
-    lines = [f"# For `source <(grader env)`: ROS 2 Jazzy, in domain {wanted['ROS_DOMAIN_ID']}."]
+    lines = [f"# For `source <(grader env)`: ROS 2 Jazzy, in domain {wanted['ROS_DOMAIN_ID'] or 0}."]
     lines += [f"export {name}={shlex.quote(value)}" for name, value in wanted.items() if env.get(name) != value]
     lines += [
         # With PYTHONHOME of another Python, the `python3` of .venv would not start, so unset it, as `activate` of a
@@ -76,7 +76,8 @@ def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -
     shell = env.get("SHELL") or "/bin/bash"
     argv, variables = [shell, "-i"], {}
     # Run our code after the start-up files, because they may set PATH or source a ROS 2.
-    ours = f'eval "$({shlex.quote(str(Path(sys.prefix, "bin/grader")))} env --domain {wanted["ROS_DOMAIN_ID"]})"\n'
+    ours = f"export ROS_DOMAIN_ID={shlex.quote(wanted['ROS_DOMAIN_ID'])}\n"
+    ours += f'eval "$({shlex.quote(str(Path(sys.prefix, "bin/grader")))} env)"\n'
     if Path(shell).name == "bash":
         argv = [shell, "--rcfile", _start_up(f"[ -f ~/.bashrc ] && . ~/.bashrc\n{ours}", "bashrc"), "-i"]
     elif Path(shell).name == "zsh":

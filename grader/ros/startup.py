@@ -34,7 +34,7 @@ def see_to_environment(needed: Collection[str]) -> None:
     A command that was restarted is not restarted again.
 
     Raises:
-        MachineError: ROS 2 was not found, or turtlesim could not be built.
+        MachineError: ROS 2 was not found, turtlesim could not be built, or no folder for logs could be created.
         UsageError: ROS_DOMAIN_ID is not a valid domain id.
     """
     if "RMW_IMPLEMENTATION" in os.environ and index.packages().get("rclpy") == Path(sys.prefix):

@@ -149,7 +149,7 @@ def _ros(_: Node) -> Iterator[tuple[str, object]]:
     yield "distribution name", os.environ.get("ROS_DISTRO", "unknown")
     yield "distribution type", "ros2"
     yield "time", time.strftime("%Y-%m-%d %H:%M:%S")
-    yield "domain", os.environ.get("ROS_DOMAIN_ID", "0")
+    yield "domain", os.environ.get("ROS_DOMAIN_ID") or "0"
 
 
 def _middleware(_: Node) -> Iterator[tuple[str, object]]:

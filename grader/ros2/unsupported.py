@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 INSTEAD = {
     "launch": "Start each node in a separate terminal with: ros2 run PACKAGE EXECUTABLE",
-    "security": "The nodes of this course communicate only on this machine, so they need no keys.",
-    "hello": "The nodes of this course communicate only on this machine. Use: ros2 doctor",
+    "security": "By default, the nodes of this course communicate only on this machine, so they need no keys.",
+    "hello": "By default, the nodes of this course communicate only on this machine. Use: ros2 doctor",
     "load": "Start a single node with: ros2 run PACKAGE EXECUTABLE",
     "unload": "Stop a node with Ctrl-C in its terminal.",
     "standalone": "Start a single node with: ros2 run PACKAGE EXECUTABLE",

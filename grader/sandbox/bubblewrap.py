@@ -40,8 +40,8 @@ if TYPE_CHECKING:
 WORKSPACE = Path("/ws")
 """The workspace inside a cell, on a separate tmpfs."""
 HOME = Path("/tmp/home")
-"""The HOME of processes inside a room or a cell. This folder is empty at first, and is deleted together with the
-cell."""
+"""The HOME of processes inside a room or a cell. This folder is empty at first, and is deleted together with
+the room or cell."""
 
 ROOM_DISK = 256 * MIB
 _ANYWAY = "On a machine without important data, --trust-submissions runs this code"
@@ -51,8 +51,8 @@ _ANYWAY = "On a machine without important data, --trust-submissions runs this co
 class View:
     """The files and folders on the disk that are visible in a room or cell in addition to the system's programs.
 
-    They have the same paths. Inside the room or cell, only the parts of the folders in `hidden` are visible that are in
-    `read_only` themselves.
+    They have the same paths. Inside the room or cell, a folder in `hidden` contains only those of its files and folders
+    that `read_only` lists.
     """
 
     read_only: tuple[Path, ...]

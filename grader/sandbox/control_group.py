@@ -28,7 +28,8 @@ TREE = Path("/sys/fs/cgroup")
 OWN = Path("/proc/self/cgroup")
 CONTROLLERS = ("memory", "pids")
 ABOVE = 512 * 1024 * 1024
-"""The memory (bytes) that a group may use in addition to the cell's total, for the conductor of a trial."""
+"""The memory (bytes) that a group may use in addition to the cell's total, for the conductor of a trial
+(trial/conductor.py)."""
 PROCESSES_ABOVE = 200
 """In addition to the cell's limit, a control group allows this many processes and threads, for bubblewrap and the
 conductor."""

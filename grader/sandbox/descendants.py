@@ -34,7 +34,7 @@ def kill_descendants(pid: int) -> None:
 
 
 def _runs(pid: int) -> bool:
-    """Return whether the process has not exited. After that, it is a zombie until its parent waits for it."""
+    """Return whether the process has not exited. An exited process is a zombie until its parent waits for it."""
     try:
         stat = Path(f"/proc/{pid}/stat").read_bytes()
     except OSError:

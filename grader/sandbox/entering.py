@@ -70,10 +70,10 @@ def enter(holder: int, *, cell: bool) -> None:
     The pid namespace only applies to processes that are forked afterwards. The process must have only one thread. A
     process of root also leaves all supplementary groups. Afterwards, other processes of the user cannot inspect it.
 
-    In a trial, the descriptor of a cell comes from a conductor, which may be under the control of a node. Therefore, if
-    `cell` is true, the process with this descriptor must have namespaces that no process of a room has. The namespaces
-    may still be a trap, so do not trust any file after this call: even an import or a traceback can run code from these
-    mounts.
+    In a trial, the descriptor of a cell comes from a conductor (trial/conductor.py), which may be under the control of
+    a node. Therefore, if `cell` is true, the process with this descriptor must have namespaces that no process of a
+    room has. The namespaces may still be a trap, so do not trust any file after this call: even an import or a
+    traceback can run code from these mounts.
 
     Raises:
         OSError: the kernel refused, or the process has exited.

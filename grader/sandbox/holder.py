@@ -25,7 +25,7 @@ _ENDS_S = 5.0
 
 
 class HolderError(Exception):
-    """bubblewrap could not create the room or cell. The message is the output of bubblewrap."""
+    """bubblewrap could not create the room or cell. The message is its output, or else the system error."""
 
 
 class Holder:
@@ -81,7 +81,7 @@ class Holder:
                 problem = error
         self.kill()
         output = self._process.stderr.read().decode("utf-8", "replace").strip()
-        raise HolderError(output or str(problem or "")) from problem
+        raise HolderError(output or str(problem or "bubblewrap exited without a message")) from problem
 
     def kill(self) -> None:
         """Kill all processes of the room or cell. Any thread may call this method."""

@@ -44,7 +44,7 @@ class _Below(ctypes.Structure):
 def allow_only_reading(paths: Iterable[Path]) -> bool:
     """Permanently deny this thread every kind of access that Landlock controls, except reading these files and folders.
 
-    Paths that do not exist are ignored. Return False if the kernel does not support Landlock.
+    Paths that do not exist are ignored. Return False if the kernel does not support Landlock or refuses.
     """
     c = ctypes.CDLL(None)
     version = c.syscall(_CREATE, None, ctypes.c_size_t(0), _VERSION)

@@ -60,7 +60,8 @@ FLUSHES = {"fsync": 74, "fdatasync": 75}
 file outside the cell, even one that is open for reading only, they would flush a disk of the host."""
 _MMAP, _SOCKET, _SOCKETPAIR, _SETSOCKOPT, _CLONE, _CLONE3, FCNTL, PRCTL, PRLIMIT = 9, 41, 53, 54, 56, 435, 72, 157, 302
 _OWN = 0
-"""The process id with which prlimit(2) sets the limits of the calling process. The limits of other processes stay."""
+"""The process id with which prlimit(2) sets the limits of the calling process. Other process ids are
+refused."""
 _SHARED_MEMORY = 0x21
 """MAP_SHARED | MAP_ANONYMOUS of mmap(2). The combination of the two flags is forbidden.
 
@@ -94,7 +95,7 @@ _NEW_NAMESPACE = 0x7E020000
 
 @contextmanager
 def call_filter() -> Iterator[int | None]:
-    """Yield a file descriptor from which the filter can be read once, or None on other architectures."""
+    """Yield a file descriptor from which the filter can be read once, or None on processors other than x86-64."""
     if not (lines := program()):
         yield None
         return
@@ -109,7 +110,7 @@ def call_filter() -> Iterator[int | None]:
 
 
 def program() -> bytes:
-    """Return the filter: a sequence of struct sock_filter, which is empty on other architectures."""
+    """Return the filter: a sequence of struct sock_filter, which is empty on processors other than x86-64."""
     if platform.machine() != "x86_64":
         return b""
     refuse = bpf.ERRNO | errno.EPERM

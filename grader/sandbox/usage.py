@@ -24,7 +24,7 @@ EVERY_S = 0.1
 LAUNCHERS = 16
 """The number of processes that may exist in addition to the student's processes, such as those of bubblewrap.
 
-In a cell, the kernel also counts processes, and refuses new processes before this number is reached.
+In a cell, the kernel also counts processes, and refuses new processes before the limit plus this number is reached.
 """
 _DISKS = ("ws", "tmp", "dev/shm")
 _SOCKETS = {"udp": "", "udp6": "", "tcp": "sockstat", "tcp6": "sockstat6"}
@@ -67,7 +67,7 @@ def exceeded(pids: Sequence[int], limits: Limits, *, in_room: bool = False) -> s
 
 
 class Guard:
-    """A thread that watches a cell until `close` is called, and calls `over` once if a limit is exceeded.
+    """A thread that watches a cell until `close` is called, or until a limit is exceeded: then it calls `over` once.
 
     `in_room` has the same meaning as in `exceeded`.
     """

@@ -39,7 +39,7 @@ class Difference:
 
 
 def replay(inputs: Path, poses: Path) -> Difference:
-    """Replay the inputs, and compare every pose, converted to float32 as in a message, with the recorded pose."""
+    """Replay the inputs. Return the largest difference between a pose, converted to float32, and the recorded pose."""
     worst = Difference(0.0, 0, FIELDS[0])
     for (frame, recorded), (turtle, _) in zip(_poses(poses), _frames(inputs), strict=False):
         for field, theirs, ours in zip(FIELDS, recorded, _as_published(turtle.state()), strict=True):

@@ -13,7 +13,7 @@ from grader.errors import GraderError
 
 
 def main() -> int:
-    """Run the view until the simulator exits, and return the exit code."""
+    """Run the view until the simulator exits or, in a terminal, the user quits. Return the exit code."""
     # Ctrl-C terminates the program without a traceback, even while ROS 2 is being imported.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     parser = argparse.ArgumentParser(

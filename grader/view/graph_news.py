@@ -42,7 +42,7 @@ class GraphNews:
     def whole(self) -> dict[str, object]:
         """Return the domain for a new page, and the topics and the graph if they are known."""
         known = {"topics": self._topics(), "graph": self._graph} if self._drawn is not None else {}
-        return {"domain": os.environ.get("ROS_DOMAIN_ID", "0"), **known}
+        return {"domain": os.environ.get("ROS_DOMAIN_ID") or "0", **known}
 
     async def _draw(self, system: System) -> None:
         drawn = picture(system.observed.nodes, system.observed.ends, self._show)

@@ -12,6 +12,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Literal
 
 from grader.common.interpreter import interpreter
+from grader.common.words import a_list
 from grader.errors import MachineError, UsageError
 from grader.view.address import listen
 from grader.view.feed import Feed
@@ -61,13 +62,13 @@ class View:
             )
 
 
-def see_that_it_can_be_served(instead: str = "--view terminal works without it") -> None:
-    """Raise MachineError if a library for the page is not installed. `instead` describes an alternative."""
+def see_that_it_can_be_served(instead: str = "") -> None:
+    """Raise MachineError if a library for the page is not installed. `instead` describes an alternative, if any."""
     missing = [name for name in _SERVED_WITH if find_spec(name) is None]
     if missing:
         message = (
-            f"the page needs {', '.join(missing)}, which this Python does not have. `make demo` in the "
-            f"course's folder installs what is missing; {instead}."
+            f"the page needs {a_list(missing)}, which this Python does not have. `make demo` in the "
+            f"course's folder installs what is missing{f'; {instead}' if instead else ''}."
         )
         raise MachineError(message)
 
@@ -77,7 +78,7 @@ def view(kind: Kind, port: int | None = None) -> Iterator[View]:
     """Start a view. Stop the view when the context exits.
 
     Raises:
-        UsageError: the port is not available, or no terminal is available to draw in.
+        UsageError: the port is not available, or no terminal with colours is available.
         MachineError: a library that the view needs is not installed.
     """
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -98,7 +99,7 @@ def view(kind: Kind, port: int | None = None) -> Iterator[View]:
 
 @contextmanager
 def _page(feed: socket.socket, port: int | None) -> Iterator[subprocess.Popen[bytes]]:
-    see_that_it_can_be_served()
+    see_that_it_can_be_served("--view terminal works without a page")
     place = listen("turtlesim", port)
     with place.listening as listening:
         given = ["--feed", str(feed.fileno()), "--listen", str(listening.fileno())]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
+from grader.common.words import count
 from grader.errors import MachineError
 from grader.graph.graph import to_dot
 from grader.graph.layout import render
@@ -36,8 +37,8 @@ def laid_out(drawn: Picture) -> dict[str, Any]:
     arrows = sum(len(topic.publishers) + len(topic.subscribers) for topic in drawn.topics)
     if max(arrows, len(drawn.nodes), len(drawn.topics)) > MOST_ARROWS:
         message = (
-            f"The graph is too large to be drawn: {len(drawn.nodes)} nodes, {len(drawn.topics)} topics and {arrows} "
-            "arrows. Type: rqt_graph --text"
+            f"The graph is too large to be drawn: {count(len(drawn.nodes), 'node')}, "
+            f"{count(len(drawn.topics), 'topic')} and {count(arrows, 'arrow')}. Type: rqt_graph --text"
         )
         raise MachineError(message)
     return {"wide": _layout(drawn, downwards=False), "narrow": _layout(drawn, downwards=True)}

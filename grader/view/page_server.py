@@ -54,7 +54,7 @@ def application(
     The response for the path "/" is the template `index` in assets/, filled in with the title, the ROS domain, and
     `parts`, the CSS classes of the body.
     """
-    filled = {"title": title, "domain": os.environ.get("ROS_DOMAIN_ID", "0"), "parts": parts}
+    filled = {"title": title, "domain": os.environ.get("ROS_DOMAIN_ID") or "0", "parts": parts}
 
     def whole(_: Request) -> Response:
         text = Template((ASSETS / index).read_text("utf-8")).substitute(filled)

@@ -74,8 +74,8 @@ def _parse(argv: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="rqt_graph",
         description="Show the running nodes with the topics that they publish and subscribe to.",
-        epilog="Without --output, the graph is live in a browser until Ctrl-C. Without a browser, it is printed as "
-        "text, or, over ssh or with --port, served for a browser on another machine. "
+        epilog="Without --output and --text, the graph is live in a browser until Ctrl-C. Without a browser, it is "
+        "printed as text, or, over ssh or with --port, served for a browser on another machine. "
         "Example: rqt_graph --output graph.svg",
     )
     parser.add_argument(
@@ -84,7 +84,7 @@ def _parse(argv: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--text", action="store_true", help="print the graph as text, even on a machine with a browser")
     parser.add_argument("--port", type=int, help="port of the page (default: the same as last time, or a free one)")
     parser.add_argument("--active", action="store_true", help="hide topics without a publisher or without a subscriber")
-    parser.add_argument("--debug", action="store_true", help="also show /rosout, /parameter_events, /clock and tools")
+    parser.add_argument("--debug", action="store_true", help="also show tools, and topics such as /rosout and /clock")
     parser.add_argument(
         "--hidden", action="store_true", help='also show names that begin with "_", such as the topics of actions'
     )
@@ -122,7 +122,7 @@ def _run(options: argparse.Namespace) -> int:
     drawn = picture(observed.nodes, observed.ends, show)
     # Check the drawn nodes, since the daemon of the real ros2 is a node that is not shown.
     if not drawn.nodes:
-        print(_NOTHING.format(domain=os.environ.get("ROS_DOMAIN_ID", "0")), file=sys.stderr)
+        print(_NOTHING.format(domain=os.environ.get("ROS_DOMAIN_ID") or "0"), file=sys.stderr)
         return 1
     if not complete:
         say(_MISSING)
@@ -162,7 +162,7 @@ def _shown_live(show: Show, port: int | None) -> bool:
     from grader.view.launch import see_that_it_can_be_served
 
     try:
-        see_that_it_can_be_served()
+        see_that_it_can_be_served("the graph is printed as text instead")
     except MachineError as error:
         say(f"rqt_graph: {error}")
         return False

@@ -1,6 +1,6 @@
 """The ROS system for a view: the graph, the rates of topics, and the node that drives for the user.
 
-The listening node is hidden and offers no topics or services, so that it does not change the visible graph. To measure
+The listening node is hidden and has no services, so that it does not change the visible graph. To measure
 the rate of a topic, this node subscribes to the topic, but only while a page shows rates, and only if the simulator
 does not report the rate.
 """

@@ -18,7 +18,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     completes(parser.add_argument("action_name", help="name, such as /turtle1/rotate_absolute"), actions)
     parser.add_argument("-t", "--show-types", action="store_true", help="also print the type of the action")
-    parser.add_argument("-c", "--count", action="store_true", help="print only the number of nodes")
+    parser.add_argument("-c", "--count", action="store_true", help="print only the numbers of clients and servers")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -86,7 +86,7 @@ class Player:
             try:
                 kind = message_values.load_type(connection.msgtype, "msg")
             except Ros2Error as error:
-                self._log.warn(f"Ignoring a topic '{topic}', reason: {error}.")
+                self._log.warn(f"Ignoring a topic '{topic}', reason: {str(error).splitlines()[0]}.")
                 continue
             profiles = getattr(connection.ext, "offered_qos_profiles", [])
             made[connection.topic] = self._node.create_publisher(kind, topic, bag_qos.to_play(profiles))

@@ -102,7 +102,8 @@ class Recorder:
                 offered = self._node.get_publishers_info_by_topic(topic)
                 self._writer.add_topic(topic, kinds[0], bag_qos.offered(offered))
             except Ros2Error as error:
-                self._refuse(topic, f"Topic '{topic}' has unknown type '{kinds[0]}'. {error}. Only known types")
+                reason = str(error).splitlines()[0]
+                self._refuse(topic, f"Topic '{topic}' has unknown type '{kinds[0]}'. {reason}. Only known types")
                 continue
             self._topics.add(topic)
             self._node.create_subscription(

@@ -44,7 +44,7 @@ class BagWriter:
     "none", "file", "message" or "storage" (inside the MCAP file).
 
     Raises:
-        Ros2Error: the folder cannot be created.
+        Ros2Error: the folder cannot be created, or the bag cannot be completed on exit.
     """
 
     def __init__(self, folder: Path, storage: str, compression: str = "none") -> None:

@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common.words import a_list
 from grader.ros.failure import Ros2Error
 from grader.ros2.bag.options import STORAGES, absolute, add_log_level, contains
 from grader.ros2.completion import completes, message_types, topics
@@ -161,7 +162,7 @@ def run(args: argparse.Namespace) -> int:
     """Record until Ctrl-C.
 
     Raises:
-        Ros2Error: no topic is selected, the folder already exists, or the bag cannot be written.
+        Ros2Error: the options are invalid or select no topic, the folder already exists, or the bag cannot be written.
     """
     folder = Path(args.output or time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
     args.topics = absolute(args.topics or args.topics_positional)
@@ -211,9 +212,10 @@ def wanted(args: argparse.Namespace) -> Callable[[str, str], bool]:
 def _validate(args: argparse.Namespace, folder: Path) -> None:
     """Raise Ros2Error if the options cannot be used. If the real `ros2` has a message for the reason, use it."""
     selects = any(getattr(args, name) for name in _SELECTS)
-    unknown = " ".join(f"--{name.replace('_', '-')}" for name in NOT_HERE if getattr(args, name) is not None)
+    unknown = [f"--{name.replace('_', '-')}" for name in NOT_HERE if getattr(args, name) is not None]
+    need = "needs" if len(unknown) == 1 else "need"
     rules: dict[str, object] = {
-        f"{unknown} needs a full ROS 2; this is the course's own ros2 bag": unknown,
+        f"{a_list(unknown)} {need} a full ROS 2; this is the course's own ros2 bag": unknown,
         "Need to specify at least one option out of --all, --all-topics, --all-services, --services, --topics, "
         "--topic-types or --regex": not selects and not args.topics,
         "--exclude-regex argument requires either --all, --all-topics, --topic-types, --all-services or "

@@ -1,4 +1,4 @@
-"""The licenses that `pkg create` accepts by name, and their texts if this machine has them."""
+"""The licenses that `pkg create` knows by name, and their texts if this machine has them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ KNOWN = (
     *("Apache-2.0", "BSL-1.0", "BSD-2.0", "BSD-2-Clause", "BSD-3-Clause"),
     *("GPL-3.0-only", "LGPL-3.0-only", "MIT", "MIT-0"),
 )
-"""The license names that the ROS 2 tools accept."""
+"""The license names that the ROS 2 tools know. Other names cause a warning."""
 _TEMPLATES = Path(__file__).parents[1] / "templates"
 _SYSTEM = Path("/usr/share/common-licenses")
 _SYSTEMS_NAMES = {"Apache-2.0": "Apache-2.0", "GPL-3.0-only": "GPL-3", "LGPL-3.0-only": "LGPL-3"}

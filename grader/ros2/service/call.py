@@ -6,6 +6,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
+from grader.common.words import a_list
 from grader.graph.names import absolute, hidden
 from grader.ros import message_values
 from grader.ros.failure import Ros2Error, did_you_mean
@@ -41,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
     """Call the service once, or repeatedly until Ctrl-C if --rate is given.
 
     Raises:
-        Ros2Error: the type is not installed, or the request does not match the type.
+        Ros2Error: the rate or the name is invalid, the type is not installed, or the request does not match the type.
     """
     from grader.graph.discovery import cli_node, nap, settle, spin_until
 
@@ -82,7 +83,7 @@ def _say_why(node: Node, name: str, requested: str) -> None:
     # Our client announces the service with the requested type, too.
     others = [kind for kind in found.pop(name, []) if kind != requested]
     hint = (
-        f"The service {name} has the type {', '.join(others)}."
+        f"The service {name} has the type{'s' if len(others) > 1 else ''} {a_list(others)}."
         if others
         else did_you_mean(name, found, nodes=node.get_node_names())
     )

@@ -23,7 +23,9 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     completes(parser.add_argument("service_name", help="name of the service, such as /spawn"), services)
     completes(
-        parser.add_argument("service_type", nargs="?", help="type of the service, required if it does not exist"),
+        parser.add_argument(
+            "service_type", nargs="?", help="type of the service, required if the service does not exist"
+        ),
         service_types,
     )
     parser.add_argument(

@@ -24,7 +24,9 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
     completes(parser.add_argument("topic_name", help="name of the topic, such as /turtle1/pose"), topics)
-    kind = parser.add_argument("message_type", nargs="?", help="type of the topic, required if it does not exist")
+    kind = parser.add_argument(
+        "message_type", nargs="?", help="type of the topic, required if the topic does not exist"
+    )
     completes(kind, topic_types)
     qos.add_qos(parser, "sensor_data")
     parser.add_argument(
@@ -50,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
     """Print messages until Ctrl-C, or until a limit set by the options is reached.
 
     Raises:
-        Ros2Error: the type of the topic cannot be determined, or the type does not have the field.
+        Ros2Error: the type of the topic cannot be determined or does not have the field, or the filter is invalid.
     """
     from grader.graph.discovery import cli_node, spin_until
     from grader.ros2.topic import topic_lookup

@@ -37,7 +37,7 @@ def expanded(node: Node, name: str) -> str:
 
 
 def find(node: Node, topic: str, args: argparse.Namespace) -> None:
-    """Wait until the node has discovered the publishers of a topic, or until discovery has ended."""
+    """Wait until the node has discovered a publisher of the topic, or until discovery has ended."""
     settle(node, lambda: published(node, topic), getattr(args, "spin_time", None))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import itertools
 import re
+import subprocess
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
@@ -118,3 +119,9 @@ def test_a_png_is_a_picture_of_the_same_shape() -> None:
 def test_what_is_no_dot_is_an_error_of_ours() -> None:
     with pytest.raises(MachineError, match="could not be drawn"):
         render("digraph {", "svg")
+
+
+def test_a_graphviz_that_prints_nothing_leaves_no_empty_parentheses(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(subprocess, "run", lambda argv, **_: subprocess.CompletedProcess(argv, -11, b"", b""))
+    with pytest.raises(MachineError, match=r"could not be drawn \(no message\)"):
+        render("digraph {}", "svg")

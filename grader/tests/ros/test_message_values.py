@@ -45,6 +45,17 @@ def test_fills_what_is_named_and_leaves_the_rest() -> None:
     assert message_values.fill(Path_(), {}).counts == []
 
 
+def test_a_message_without_fields_is_not_given_an_example_with_a_field() -> None:
+    class Empty:
+        def get_fields_and_field_types(self) -> dict[str, str]:
+            return {"structure_needs_at_least_one_member": "uint8"}
+
+    for message, hint in [(Empty(), "This type has no fields, so its only value is {}."), (Point(), '"{x: ...}".')]:
+        with pytest.raises(Ros2Error) as refused:
+            message_values.fill(message, 3)
+        assert str(refused.value).endswith(hint)
+
+
 def test_a_number_that_yaml_takes_for_text_is_a_number() -> None:
     assert message_values.fill(Point(), message_values.parse("{x: 1e-3}")).x == 0.001
 

@@ -194,6 +194,18 @@ def test_an_error_reaches_whoever_sources_it() -> None:
     assert done.stderr.startswith("grader: --domain takes a whole number")
 
 
+@pytest.mark.parametrize(("domain", "used"), [("150", "150"), ("", "0")])
+def test_a_shell_keeps_every_domain_that_the_user_may_have_set(domain: str, used: str, tmp_path: Path) -> None:
+    env = {**SOURCED_ENV, "PATH": f"{BIN}:{PATH}", "HOME": str(tmp_path), "SHELL": "/bin/bash", "ROS_DOMAIN_ID": domain}
+    env["XDG_CACHE_HOME"] = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    underlay.ensure(HERE)
+    (tmp_path / ".bashrc").write_text("export ROS_DOMAIN_ID=3\n")
+    typed = 'echo "domain ${ROS_DOMAIN_ID:-0}"\nexit\n'
+    done = subprocess.run(["grader", "shell"], env=env, input=typed, capture_output=True, text=True, check=False)
+    assert f"domain {used}\n" in done.stdout
+    assert "--domain" not in done.stderr
+
+
 @pytest.mark.parametrize("name", ["bash", "zsh"])
 def test_what_grader_env_prints_is_understood(tmp_path: Path, name: str) -> None:
     if shutil.which(name) is None:

@@ -189,6 +189,7 @@ def test_a_loop_over_nothing_ends_and_a_wrong_regular_expression_is_reported(qui
         ("ros2 bag record -e '('  -o new", "cannot be read", 1),
         ("ros2 bag record -a --use-sim-time --no-discovery", "are incompatible settings", 1),
         ("ros2 bag record -a --snapshot-mode", "--snapshot-mode needs a full ROS 2", 1),
+        ("ros2 bag record -a --services --snapshot-mode", "--services and --snapshot-mode need a full ROS 2", 1),
         ("ros2 bag record -a -o /proc/bag", "Could not create bag folder '/proc/bag'.", 1),
         ("ros2 bag play nowhere", "Bag path 'nowhere' does not exist!", 2),
         ("ros2 bag play there --rate 0", "0 is not in the valid range (> 0.0)", 2),

@@ -12,6 +12,7 @@ from rosbags.rosbag2 import Reader, StoragePlugin, Writer
 from grader.ros2.bag.bag_reader import messages, open_bag
 from grader.ros2.bag.recovery import recover
 from grader.tests import made_bag
+from grader.tests.ros2.world import world
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -34,6 +35,16 @@ def test_a_bag_of_an_unknown_type_is_reindexed(storage: StoragePlugin, tmp_path:
         (connection,) = reader.connections
         assert (connection.msgtype, connection.msgdef.data) == ("not_here/msg/Strange", DEFINITION)
         assert [(stamp, bytes(data)) for _, stamp, data in reader.messages()] == SENT
+
+
+def test_a_type_that_is_not_installed_is_reported_on_one_line(tmp_path: Path) -> None:
+    with Writer(tmp_path / "bag", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        connection = writer.add_connection("/strange", "std_msgs/msg/Int33", msgdef=DEFINITION, rihs01=HASH)
+        writer.write(connection, *SENT[0])
+    for here in world(tmp_path):
+        done = here.run(f"ros2 bag play {tmp_path / 'bag'}")
+        assert "Ignoring a topic '/strange', reason: The passed message type is invalid.\n" in done.stderr
+        assert done.code == 1
 
 
 def without_chunks(folder: Path) -> None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.ros2.service import call
 from grader.tests.ros2.world import World, world
 
 if TYPE_CHECKING:
@@ -191,6 +193,12 @@ def test_who_waits_in_vain_says_for_what_and_ends_on_ctrl_c(command: str, hint: 
     waiting = still.start(command, hint)
     assert waiting.stop() == 2
     assert "Traceback" not in "\n".join(waiting.lines)
+
+
+def test_all_types_of_a_service_are_named(capsys: pytest.CaptureFixture[str]) -> None:
+    node = SimpleNamespace(get_service_names_and_types=lambda: [("/a", ["b/srv/C", "b/srv/D", "b/srv/E"])])
+    call._say_why(node, "/a", "b/srv/E")
+    assert capsys.readouterr().err == "The service /a has the types b/srv/C and b/srv/D.\n"
 
 
 def test_two_turtlesims_are_reported(tmp_path_factory: pytest.TempPathFactory) -> None:

@@ -10,6 +10,7 @@ import sys
 import pytest
 
 from grader.sandbox import bpf, bubblewrap, entering
+from grader.sandbox.holder import Holder, HolderError
 
 SETNS, PIDFD_OPEN = 308, 434
 ON_OLD_KERNEL = """
@@ -36,6 +37,11 @@ def test_an_old_kernel_is_named() -> None:
     assert why_with({}) == "None"
     assert needs in why_with({SETNS: errno.EINVAL})  # Linux 5.3 to 5.7
     assert needs in why_with({PIDFD_OPEN: errno.ENOSYS})  # before Linux 5.3
+
+
+def test_a_bubblewrap_that_prints_nothing_is_named() -> None:
+    with pytest.raises(HolderError, match="bubblewrap exited without a message"):
+        Holder(lambda _: ["sh", "-c", "head -c 1 > /dev/null"]).await_ready()
 
 
 def test_such_a_kernel_has_no_sandbox(monkeypatch: pytest.MonkeyPatch) -> None:

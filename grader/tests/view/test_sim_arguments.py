@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from grader.errors import UsageError
+from grader.errors import MachineError, UsageError
+from grader.view import launch
 from grader.view.cli import refuse_unknown
 
 
@@ -27,3 +28,13 @@ def test_an_unknown_argument_is_refused_by_grader_sim_itself(arguments: list[str
 @pytest.mark.parametrize("arguments", [[], ["--ros-args", "-p", "background_r:=7"]])
 def test_arguments_for_ros_2_are_passed_on(arguments: list[str]) -> None:
     refuse_unknown(arguments)
+
+
+@pytest.mark.parametrize(
+    ("instead", "end"), [("", "what is missing."), ("the text is printed", "what is missing; the text is printed.")]
+)
+def test_only_a_command_with_another_view_names_it(monkeypatch: pytest.MonkeyPatch, instead: str, end: str) -> None:
+    monkeypatch.setattr(launch, "find_spec", lambda name: None if name != "uvicorn" else name)
+    with pytest.raises(MachineError, match="the page needs starlette and websockets, which") as lacking:
+        launch.see_that_it_can_be_served(*[instead] if instead else [])
+    assert str(lacking.value).endswith(end)

@@ -110,3 +110,6 @@ def test_a_graph_that_is_too_large_is_not_drawn(monkeypatch: pytest.MonkeyPatch)
     topics = tuple(Topic(f"/topic{number}", names, ()) for number in range(page_graph.MOST_ARROWS // 50 + 1))
     with pytest.raises(MachineError, match="The graph is too large to be drawn: 50 nodes, 41 topics and 2050 arrows"):
         page_graph.laid_out(Picture(tuple(map(Node, names)), topics))
+    topics = tuple(Topic(f"/topic{number}", ("/one",), ()) for number in range(page_graph.MOST_ARROWS + 1))
+    with pytest.raises(MachineError, match="too large to be drawn: 1 node, 2001 topics and 2001 arrows"):
+        page_graph.laid_out(Picture((Node("/one"),), topics))

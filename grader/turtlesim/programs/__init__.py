@@ -1,1 +1,1 @@
-"""The nodes turtle_teleop_key, draw_square and mimic of the package turtlesim."""
+"""The programs turtle_teleop_key, draw_square and mimic of the package turtlesim."""
