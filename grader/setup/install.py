@@ -98,7 +98,7 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
         raise MachineError(message)
     folder = Path(site.getsitepackages()[0])
     for path in folder.glob("_editable_impl_*.pth"):
-        path.write_text(ascii_only(path.read_text("utf-8")), "ascii")
+        _replace(path, ascii_only(path.read_text("utf-8")))
     start_fast(folder)
     total = time.monotonic() - begin
     return {"download": downloading or 0.0, "install": total - (downloading or 0.0)}
@@ -111,8 +111,17 @@ def start_fast(folder: Path) -> None:
     """
     path = folder / f"{_BOOTSTRAPPER}.pth"
     if path.exists():
-        path.unlink()  # the installer may have linked the file to its cache
-        path.write_text(f"import os; os.environ.get({_BOOTSTRAPPED!r}) or __import__({_BOOTSTRAPPER!r})\n", "ascii")
+        _replace(path, f"import os; os.environ.get({_BOOTSTRAPPED!r}) or __import__({_BOOTSTRAPPER!r})\n")
+
+
+def _replace(path: Path, text: str) -> None:
+    """Replace a file in one step, so that no interpreter reads half of it, and a set-up that is killed leaves no half.
+
+    The file must not be changed in place: the installer may have linked it to its cache.
+    """
+    new = path.with_suffix(".new")
+    new.write_text(text, "ascii")
+    new.replace(path)
 
 
 def ascii_only(lines: str) -> str:

@@ -38,6 +38,8 @@ def installers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Installers:
     installers = Installers()
     monkeypatch.setattr(install, "STAMP", tmp_path / "stamp.json")
     monkeypatch.setattr(install, "_run", installers.run)
+    # Without this, the files of the .venv that runs the tests would be replaced.
+    monkeypatch.setattr("site.getsitepackages", lambda: [str(tmp_path)])
     return installers
 
 
@@ -150,6 +152,27 @@ def test_progress_is_shown_and_the_rest_is_kept(capfd: pytest.CaptureFixture[str
 )
 def test_reads_uvs_durations(line: str, seconds: float) -> None:
     assert install.seconds_of(line) == pytest.approx(seconds)
+
+
+def test_the_path_of_the_course_is_rewritten_without_a_change_of_the_installers_cache(
+    installers: Installers, tmp_path: Path
+) -> None:
+    line = f"{tmp_path}/Köln\n"
+    cached, path = tmp_path / "cache", tmp_path / "_editable_impl_ros2_topics_course.pth"
+    cached.write_text(line, "utf-8")
+    path.hardlink_to(cached)
+    install.install(PARTS["learner"], sourced=False)
+    assert path.read_text("ascii") == install.ascii_only(line)
+    assert cached.read_text("utf-8") == line
+    assert [each.name for each in tmp_path.glob("_editable*")] == [path.name]
+
+
+def test_the_tests_do_not_install_into_their_own_environment(installers: Installers) -> None:
+    path = next(Path(folder) for folder in sys.path if folder.endswith("site-packages"))
+    before = {file: (file.stat().st_ino, file.stat().st_mtime_ns) for file in path.glob("*.pth")}
+    install.install(PARTS["learner"], sourced=False)
+    assert before
+    assert {file: (file.stat().st_ino, file.stat().st_mtime_ns) for file in path.glob("*.pth")} == before
 
 
 @pytest.mark.parametrize("name", ["plain", "O'Brien in Köln"])
