@@ -98,8 +98,15 @@ class LinkedCell:
 
 
 def linkable() -> bool:
-    """Return whether a node in a cell can reach the nodes of this machine. This requires a sandbox and Fast DDS."""
-    return os.environ.get("RMW_IMPLEMENTATION", FAST_DDS) == FAST_DDS and bubblewrap.usable()
+    """Return whether a node in a cell can reach the nodes of this machine. This requires a sandbox and Fast DDS.
+
+    The course's own ROS 2 always uses Fast DDS.
+
+    Raises:
+        MachineError: ROS 2 was not found.
+    """
+    other = (os.environ.get("RMW_IMPLEMENTATION") or FAST_DDS) != FAST_DDS
+    return not (other and installation.find_ros().kind == "sourced") and bubblewrap.usable()
 
 
 def environment(ros: Ros, domain: int, overlays: Sequence[Path] = ()) -> dict[str, str]:

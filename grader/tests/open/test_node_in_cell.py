@@ -10,10 +10,10 @@ import signal
 import socket
 import subprocess
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from selectors import DefaultSelector
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import pytest
 
@@ -22,7 +22,9 @@ from grader.errors import MachineError
 from grader.open import programs
 from grader.open.dds_ports import FIRST_OWN, OTHERS, participant_ports
 from grader.open.linked_cell import LinkedCell, linkable
+from grader.ros import installation
 from grader.sandbox import bubblewrap
+from grader.tests.both_worlds import HERE
 from grader.tests.domains import own_domain
 from grader.tests.open.course import CIRCLE, Course
 from grader.tests.ros2.world import environment
@@ -236,9 +238,14 @@ def test_without_a_sandbox_the_page_says_that_the_node_runs_as_the_user(monkeypa
     assert "under your account" in programs.NO_CELL
 
 
-def test_other_middlewares_are_not_linked(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("kind", "linked"), [("sourced", False), ("wheels", True)])
+def test_another_middleware_is_not_linked_and_only_a_sourced_ros_2_can_have_one(
+    kind: Literal["sourced", "wheels"], linked: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp")
-    assert not linkable()
+    monkeypatch.setattr(installation, "find_ros", lambda: replace(HERE, kind=kind))
+    monkeypatch.setattr(bubblewrap, "usable", lambda: True)
+    assert linkable() == linked
 
 
 def test_a_message_of_turtlesim_cannot_lead_the_page_to_another_address(monkeypatch: pytest.MonkeyPatch) -> None:
