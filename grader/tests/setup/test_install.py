@@ -154,9 +154,8 @@ def test_reads_uvs_durations(line: str, seconds: float) -> None:
     assert install.seconds_of(line) == pytest.approx(seconds)
 
 
-def test_the_path_of_the_course_is_rewritten_without_a_change_of_the_installers_cache(
-    installers: Installers, tmp_path: Path
-) -> None:
+@pytest.mark.usefixtures("installers")
+def test_the_path_of_the_course_is_rewritten_without_a_change_of_the_installers_cache(tmp_path: Path) -> None:
     line = f"{tmp_path}/Köln\n"
     cached, path = tmp_path / "cache", tmp_path / "_editable_impl_ros2_topics_course.pth"
     cached.write_text(line, "utf-8")
@@ -167,7 +166,8 @@ def test_the_path_of_the_course_is_rewritten_without_a_change_of_the_installers_
     assert [each.name for each in tmp_path.glob("_editable*")] == [path.name]
 
 
-def test_the_tests_do_not_install_into_their_own_environment(installers: Installers) -> None:
+@pytest.mark.usefixtures("installers")
+def test_the_tests_do_not_install_into_their_own_environment() -> None:
     path = next(Path(folder) for folder in sys.path if folder.endswith("site-packages"))
     before = {file: (file.stat().st_ino, file.stat().st_mtime_ns) for file in path.glob("*.pth")}
     install.install(PARTS["learner"], sourced=False)
