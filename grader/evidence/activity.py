@@ -56,7 +56,7 @@ def _left_without_a_node(recording: Recording) -> bool:
 
 
 def _failed_in_constructor(recording: Recording) -> bool:
-    """Return whether the last traceback in standard error contains a call to an __init__ method."""
+    """Return whether the last traceback in standard error has an entry for the code of a constructor."""
     _, found, last = recording.stderr.text.rpartition(TRACEBACK)
     return bool(found) and IN_CONSTRUCTOR in last
 

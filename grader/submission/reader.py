@@ -162,7 +162,7 @@ def _run(sends: int, readable: tuple[Path, ...], function: Callable[[], object])
 
 
 def _refuse_pipes(event: str, arguments: tuple[Any, ...]) -> None:
-    """Raise OSError if a named pipe is about to be opened, because opening a pipe without a writer would never end."""
+    """Raise OSError if a named pipe is about to be opened, because opening a pipe without a writer would block."""
     if event != "open" or not isinstance(arguments[0], str | bytes) or (arguments[2] or 0) & os.O_NONBLOCK:
         return
     try:

@@ -71,9 +71,9 @@ class Stalls:
     def look(self, now_s: float) -> tuple[float, float] | None:
         """Return the stall since the last call, or None if there was none.
 
-        A stall is a period in which threads waited for a processor, or in which the hypervisor gave the processor to
-        another virtual machine. A late frame alone is not a stall, because a node that keeps the simulator busy could
-        cause the delay.
+        In a stall, threads waited for a processor for more than STALL_S, or the hypervisor gave the processor to
+        another virtual machine for more than STALL_S. A late frame alone is not a stall, because a node that keeps the
+        simulator busy could cause the delay.
         """
         passed_s = max(now_s - self._since_s, 1e-3)
         now = [_times(threads) for threads in self._parts]

@@ -48,7 +48,8 @@ MOST_JUDGED_BYTES = 4 * 1024 * 1024
 class Recorder(Node):
     """A hidden node that subscribes to the topics in the graph, up to a limit.
 
-    Exceptions are the topics whose messages the simulator itself reports, unless other nodes publish on them, too.
+    The simulator itself reports the commands to turtle1 and the messages on its own topics. The recorder subscribes to
+    such a topic only if other nodes publish on it, too, and not to /turtle1/cmd_vel.
     """
 
     def __init__(
