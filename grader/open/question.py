@@ -77,8 +77,11 @@ def arguments(text: str) -> list[str]:
         message = f"Only commands that change nothing can be run here: {allowed}. Use a terminal for other commands."
         raise UsageError(message)
     wrong = [each for each in words[2:] if each not in _OPTIONS and not _WORD.fullmatch(each)]
-    if wrong or len(words) > _MOST_WORDS:
-        message = f"{(wrong or words[_MOST_WORDS:])[0]!r} is not allowed here. Use a terminal for this command."
+    if wrong:
+        message = f"{wrong[0]!r} is not allowed here. Use a terminal for this command."
+        raise UsageError(message)
+    if len(words) > _MOST_WORDS:
+        message = f"At most {_MOST_WORDS} words are allowed after `ros2` here. Use a terminal for this command."
         raise UsageError(message)
     if words[:2] == ["topic", "echo"] and "--once" not in words:
         words.append("--once")

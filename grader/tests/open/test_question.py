@@ -89,6 +89,11 @@ def test_anything_else_is_refused_with_a_sentence(text: str) -> None:
     assert str(refused.value).endswith((".", "?"))
 
 
+def test_a_command_with_too_many_words_is_refused_for_this_reason() -> None:
+    with pytest.raises(UsageError, match="At most 8 words"):
+        arguments("topic info -v -v -v -v -v -v /pose")
+
+
 @pytest.mark.parametrize("text", ["topic info 'a", "topic list \\"])
 def test_a_command_that_the_shell_would_not_complete(text: str) -> None:
     with pytest.raises(UsageError, match="a quote that is not closed, or ends with a backslash"):
