@@ -110,6 +110,12 @@ def stands(stamp: Stamp, ros: Optional[machine.SourcedRos], wanted: Optional[mac
     return os.path.realpath(stamp.ros) == os.path.realpath(ros.prefix) and not machine.for_ros(now, ros).lacks
 
 
+def finds_course() -> bool:
+    """Return whether the interpreter of .venv can find the course: the file with its path exists and is not empty."""
+    files = STAMP.parent.glob("lib/python*/site-packages/_editable_impl_*.pth")
+    return any(file.stat().st_size for file in files)
+
+
 def say(text: str) -> None:
     """Print a heading of the set-up, in bold on a terminal."""
     terminal_text.say(text, sys.stdout, style=terminal_text.BOLD)
@@ -225,7 +231,8 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
     kind = ros.prefix if ros else WHEELS
     stamp = read_stamp()
     made = stamp is not None and stands(stamp, ros, wanted)
-    unfinished = not (stamp and made and stamp.digest == digest() and set(parts) <= set(stamp.parts))
+    whole = stamp and made and stamp.digest == digest() and set(parts) <= set(stamp.parts)
+    unfinished = not (whole and finds_course())
     python, needs = look(ros, wanted, parts, made=made)
     why = ""
     # Install missing optional programs only if other parts have to be set up, not on every run.

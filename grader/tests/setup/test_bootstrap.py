@@ -61,6 +61,13 @@ def test_second_set_up_does_nothing(course: Course) -> None:
     assert course.commands == []
 
 
+def test_an_environment_that_does_not_find_the_course_is_mended(course: Course) -> None:
+    course.set_up()
+    for text in (None, ""):
+        course.path_file.unlink() if text is None else course.path_file.write_text(text)
+        assert (course.set_up(), course.programs) == (0, ["grader.setup.install"])
+
+
 def test_tests_are_added_to_what_is_there_and_stay(course: Course) -> None:
     course.set_up()
     course.set_up(TESTS)
