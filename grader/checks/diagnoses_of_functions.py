@@ -12,7 +12,7 @@ OF_FUNCTIONS: dict[str, dict[Diagnosis, str]] = {
         "function-missing": "the module does not have the required function, or does not exist",
         "result-form": "a function returns something other than the required numbers, such as None",
         "result-order": "a function returns the right values in the wrong order",
-        "radius-squared": "the square of the radius is returned",
+        "radius-squared": "the square of the radius is given as the radius",
         "diameter": "the diameter is given as the radius",
         "radius-without-centre": "the radius is computed without the squares of the centre's coordinates",
         "centre-doubled": "the centre is twice as far away as it should be",

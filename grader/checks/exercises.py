@@ -24,7 +24,7 @@ def find_exercise(name: str, course: Path | None = None, *, outline: bool = Fals
 
     The names "3" and "03" mean the same exercise. For `outline`, see `load_exercise`.
 
-    Raises UsageError if no exercise or more than one exercise matches.
+    Raises UsageError if no exercise or more than one exercise matches, or if its exercise.toml has an error.
     """
     files = catalogue(course)
     name = f"{int(name):02}" if name.isascii() and name.isdigit() else name
@@ -37,7 +37,8 @@ def find_exercise(name: str, course: Path | None = None, *, outline: bool = Fals
     hint = f"Did you mean {guess}? " if guess else ""
     several = f"several exercises start with {name!r}" if begin else f"there is no exercise {name!r}"
     named = begin or list(files)
-    message = f"{several}. {hint}The exercises are {a_list(named, most=len(named))}."
+    known = f"The {'exercises are' if len(named) > 1 else 'exercise is'} {a_list(named, most=len(named))}."
+    message = f"{several}. {hint}{known if named else 'The course has no exercises.'}"
     raise UsageError(message)
 
 

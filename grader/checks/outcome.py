@@ -51,7 +51,7 @@ class Finding:
     If `exercise.toml` sets `show_fix`, the text also contains the change.
     """
     change: str = ""
-    """The change as a unified diff, if testing the change did not refute the cause. Only instructors see this diff,
+    """The change as a unified diff, if a test of the change confirmed the cause. Only instructors see this whole diff,
     because it is a part of the solution."""
 
     def because(self, cause: Cause) -> Finding:

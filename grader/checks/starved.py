@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 STARVED_S = 0.5
 """If the stalls of a trial take at least this long in total (s), they may be the reason why a check failed. Shorter
-stalls matter only for the checks that measure times, and these checks take the stalls into account themselves."""
+stalls matter only for some checks of times and trajectories. These checks take the stalls into account themselves."""
 TOO_BUSY = "The machine was too busy to judge the check in wall time. Try again when the machine is less busy."
 
 

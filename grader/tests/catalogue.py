@@ -52,11 +52,11 @@ SHOWN_BY_TESTS = {
     "too-soon": "checks/subjects/test_square.py",
     "unreadable": "checks/test_judge.py",
 }
-"""Maps a diagnosis to the test that shows it. Only a hostile submission or a class can cause these diagnoses."""
+"""Maps each diagnosis that no case shows to the test that shows it."""
 HEAD = """\
 # The catalogue of mistakes
 
-The cause of a failed check has a stable id, the diagnosis. This page lists each diagnosis with the cases that show it.
+The cause of a failed check has a stable id, the diagnosis. This page lists each diagnosis with cases that show it.
 A case is a folder with a submission and with the requirements for its report. The folder is in
 `grader/tests/mistakes/` (the tables below contain only its number) or in `grader/tests/cases/`. A few diagnoses are
 shown by a test instead of a case. [diagnoses.py](diagnoses.py) contains the ids and their meanings.
@@ -65,8 +65,8 @@ shown by a test instead of a case. [diagnoses.py](diagnoses.py) contains the ids
 To add a mistake:
 
 1. Make a folder `grader/tests/mistakes/NNN-name/` with a new number. Put a file `expected.toml` into it. The keys of
-   that file are the fields of `Case` in [case.py](../tests/case.py). The submission is a base, such as the solution of
-   a step, with the files in the folder and the edits in `expected.toml`.
+   that file are the fields of `Case` in [case.py](../tests/case.py), except `name` and `folder`. The submission is a
+   base, such as the solution of a step, with the files in the folder and the edits in `expected.toml`.
 2. If no id fits, add one to [diagnoses.py](diagnoses.py) and [diagnosis.py](diagnosis.py). The code that recognizes the
    mistake belongs in the module of its subject or cause.
 3. Run the case:
@@ -119,6 +119,8 @@ def amounts() -> dict[str, tuple[int, int, int]]:
 def _amounts() -> str:
     head = [
         "## Cases of each step",
+        "",
+        "The last column counts the correct submissions in `grader/tests/unusual/`, which differ from our solutions.",
         "",
         "| step | mistakes | diagnoses | unusual but correct |",
         "| --- | --- | --- | --- |",

@@ -1,4 +1,4 @@
-"""Explain why a value is None: it has no value yet, a future is not done, or a function returned nothing."""
+"""Explain why an object is None: nothing was assigned yet, a future is not done, or a function returned nothing."""
 
 from __future__ import annotations
 

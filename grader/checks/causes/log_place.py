@@ -19,7 +19,7 @@ PLACEHOLDER = re.compile(r"%(?:\([^)]*\))?[-+# .\d]*[a-zA-Z%]|\{[^{}]*\}")
 
 
 def log_place(evidence: Evidence, line: str) -> Where | None:
-    """Return the place of the first call that can have written this line, or else the first call that logs."""
+    """Return the place of a call that can have written this line, or else of a call that logs, or None."""
     calls = (call for level in LEVELS for call in evidence.code.calls(level))
     for call in calls:
         message = call.argument(0, "message")

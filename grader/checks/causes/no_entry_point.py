@@ -87,8 +87,9 @@ def no_entry_point(evidence: Evidence) -> Finding:
 def _is_another(evidence: Evidence, name: str) -> bool:
     """Return whether an executable is not the executable of the exercise under another name.
 
-    An executable with the name of its file, such as draw_circle, is complete. It has the wrong name only if the
-    exercise's name is almost the same, or is a part of it, or if its file contains the name of the exercise's node.
+    An executable whose name differs from the name of its file may be that executable. If the names are equal, as with
+    draw_circle, it may be that executable only if no file has the name of the exercise's executable, and if the names
+    of the executables are alike (or one contains the other), or its file contains the name of the exercise's node.
     """
     executable, node = evidence.trial.executable, evidence.trial.node
     has_file = any(path.rpartition("/")[2] == f"{executable}.py" for path in evidence.submission.files)
@@ -113,7 +114,9 @@ def _script(evidence: Evidence) -> Cause | None:
         return None
     first = files[script].partition(b"\n")[0].decode("utf-8", "replace")
     if not (first.startswith("#!") and "python" in first and not first.endswith("\r")):
-        text = f'{script} is installed as a script, and its first line, "{shorten(first, 40)}", does not start Python.'
+        windows = "has a Windows line ending and " if first.endswith("\r") else ""
+        text = f'{script} is installed as a script, and its first line, "{shorten(first, 40)}", '
+        text += f"{windows}does not start Python."
         return Cause("script-shebang", text, Where(script, 1))
     text = f"{script} is installed as a script. Use an entry point that names a function in a module."
     return Cause("script-for-entry-point", text, Where(script, 1))

@@ -45,7 +45,7 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
     (
         "expected ':'",
         "colon-missing",
-        "A line that starts with def, class, if, for, while, try or else must end with a colon.",
+        "A line that begins a block, for example with def, if, for, with or else, must end with a colon.",
     ),
     (
         r"was never closed",

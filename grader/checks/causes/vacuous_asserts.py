@@ -1,4 +1,4 @@
-"""Find asserts that hold on every node: an `or` with a constant, or a comparison of a value with itself."""
+"""Find asserts that nearly always hold: an `or` with a constant, a value compared with itself, or a value alone."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def vacuous_assert(code: TestCode) -> Cause | None:
 
 
 def value_as_message(code: TestCode) -> Cause | None:
-    """Return the cause if an assert has a value before the comma and a number or a constant after it, else None."""
+    """Return the cause for an assert such as `assert msg.x, 1.0` or `assert msg.x, SPEED`, else None."""
     for test in code.tests:
         for node in ast.walk(test.node):
             if isinstance(node, ast.Assert) and isinstance(node.test, ast.Attribute) and _is_value(node.msg):

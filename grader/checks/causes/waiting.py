@@ -1,4 +1,4 @@
-"""Find waits in callbacks: calls that return late or never, so that the executor cannot call other callbacks."""
+"""Find waits in callbacks: calls and loops that end late or never, so the executor cannot call other callbacks."""
 
 from __future__ import annotations
 
@@ -227,7 +227,7 @@ def _in_callbacks(modules: Iterable[Module]) -> Iterator[tuple[Module, Function]
 
 
 def _in_threads(module: Module) -> Iterator[ast.expr]:
-    """Yield the functions that run in a separate thread, in which a wait does not delay any callback."""
+    """Yield the arguments of calls that start a thread. A wait in a function among them does not delay any callback."""
     for node in module.nodes:
         if isinstance(node, ast.Call) and _last(node) in STARTS:
             yield from (*node.args, *(keyword.value for keyword in node.keywords))

@@ -1,4 +1,4 @@
-"""Find tests that prove nothing, because an assert is missing, never runs, or always has the same result."""
+"""Find tests that prove nothing, for example because an assert is missing, and loops that run for a fixed time."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def why_without_assert(test: TestFunction) -> Cause:
 
 
 def named_twice(code: TestCode) -> Cause | None:
-    """Return the cause if two tests in the same class or file have the same name, else None."""
+    """Return the cause if two test functions at the top level of a file have the same name, else None."""
     found: dict[tuple[str, str], TestFunction] = {}
     for test in code.tests:
         key = (test.module.file, test.node.name)

@@ -1,4 +1,4 @@
-"""Explain an AttributeError in a student's node: the reason why an attribute was missing."""
+"""Explain an AttributeError in a student's node: why an attribute was missing, or why it could not be assigned."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
     if (owner, name) == ("Subscription", "publish") and (instead := subscription_for_publisher(scene)) is not None:
         return instead
     if owner in ros_names.OTHERS:
-        text = f"A {owner} has no attribute or method with that name."
+        text = f"{owner} objects have no attribute or method with that name."
         return _misspelt(scene, name, ros_names.OTHERS[owner]) or set_twice(scene, name, text)
     if owner in ("int", "float") and name == "self":
         comma = Cause("comma-missing", "Separate two arguments with a comma, not with a dot.")
@@ -195,8 +195,9 @@ def _of_own_type(scene: CrashScene, owner: str, name: str) -> Cause:
 def _of_a_wrong_thing(scene: CrashScene, owner: str, name: str) -> Cause | None:
     if owner == "property":
         made = next((node for node in scene.nodes if isinstance(node, ast.Assign) and _is_message(node.value)), None)
-        text = f"{shorten(ast.unparse(made.value)) if made is not None else 'It'} is a class. {CREATE_OBJECT}"
-        return Cause("class-for-object", text, scene.at(made))
+        what = "This line uses a class instead of an object."
+        what = what if made is None else f"{shorten(ast.unparse(made.value))} is a class."
+        return Cause("class-for-object", f"{what} {CREATE_OBJECT}", scene.at(made))
     if owner == "NoneType":
         return attribute_of_none(scene, name)
     return Cause("not-called", "The function is not called: the parentheses after its name are missing.")

@@ -192,7 +192,11 @@ def _too_few(scene: CrashScene, function: str, names: str) -> Cause:
         return own
     if function in TAKES:
         return Cause("argument-missing", f"{function} takes {TAKES[function]}.")
-    return Cause("argument-missing", f"{function} needs more arguments: {shorten(names)}.")
+    return Cause("argument-missing", f"{function} needs {_more(names)}: {shorten(names)}.")
+
+
+def _more(names: str) -> str:
+    return "more arguments" if " and " in names else "another argument"
 
 
 def _init_of(scene: CrashScene, missing: re.Match[str]) -> Cause | None:
@@ -200,7 +204,7 @@ def _init_of(scene: CrashScene, missing: re.Match[str]) -> Cause | None:
     of = missing["of"]
     if missing["function"] != "__init__" or of in (None, "Node") or scene.class_named(of) is not None:
         return None
-    text = f"{of} needs more arguments: {shorten(missing['names'])}."
+    text = f"{of} needs {_more(missing['names'])}: {shorten(missing['names'])}."
     if of == "ActionServer":
         text += " A node that sends goals needs an ActionClient."
     return Cause("argument-missing", text)
@@ -213,8 +217,8 @@ def _init_misspelt(scene: CrashScene) -> Cause | None:
         found = [name for name in names if name.strip("_") in ("init", "int", "inti") or name == "__intit__"]
         if "__init__" not in names and found:
             text = (
-                f"The class has a method {found[0]}, but only __init__ is called when an object is created. Write two "
-                "underscores on each side."
+                f"The class has a method {found[0]}, but only __init__ is called when an object is created. Write "
+                "__init__, with two underscores on each side."
             )
             place = scene.at(names[found[0]])
             return Cause("init-misspelt", text, place).fixed_by(at(place, found[0], "__init__"))

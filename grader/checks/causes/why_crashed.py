@@ -106,9 +106,10 @@ def _why_usage(scene: CrashScene) -> Cause | None:
     required = ARGUMENTS.search(scene.evidence.recording.stderr.text)
     if required is None:
         return None
+    several = "," in required["names"]
     text = (
-        f"The program needs the argument {shorten(required['names'], 60)}, but the grader starts it without arguments. "
-        "Give the argument a default value."
+        f"The program needs the {'arguments' if several else 'argument'} {shorten(required['names'], 60)}, but the "
+        f"grader starts it without arguments. Give {'each' if several else 'the'} argument a default value."
     )
     return Cause("crash", text, scene.evidence.place("parse_args", "parse_known_args"))
 
@@ -161,7 +162,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "ValueError": _why_value,
     "ZeroDivisionError": _why_zero,
 }
-"""Maps an exception to a function that returns the cause of the exception, or None if the source does not show it."""
+"""Maps the `error` of a crash to a function that returns the cause, or None if the source does not show the cause."""
 
 
 def why_crashed(evidence: Evidence, crash: Crash) -> Cause:

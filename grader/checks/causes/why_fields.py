@@ -47,9 +47,9 @@ def why_field(scene: CrashScene) -> Cause | None:
     value = assigned(scene, field)
     resolved = value and _resolved(scene, value)
     if match["inner"] != "of":
-        return Cause("field-type", f"The field {field} is a {wanted} with its own fields. Set these fields.")
+        return Cause("field-type", f"The field {field} has the type {wanted}, with its own fields. Set these fields.")
     if wanted not in FLOAT:
-        point = isinstance(resolved, ast.Constant) and isinstance(resolved.value, float)
+        point = wanted == "int" and isinstance(resolved, ast.Constant) and isinstance(resolved.value, float)
         more = ": write it without a decimal point" if point else ""
         return Cause("field-type", f"The value of the field {field} must be {KINDS.get(wanted, wanted)}{more}.")
     cause = _whole_parameter(scene, field, resolved) or why_no_float(field, resolved)

@@ -56,7 +56,7 @@ def _catches_ctrl_c(handler: ast.ExceptHandler) -> bool:
 
 
 def _leaves(node: ast.AST) -> bool:
-    """Return whether a statement in the node may leave a loop or end the program."""
+    """Return whether a statement in this part of the source may leave a loop or end the program."""
     nodes = list(ast.walk(node))
     calls = [dotted(each.func) or "" for each in nodes if isinstance(each, ast.Call)]
     ends = any(name.rpartition(".")[2] in ("exit", "quit", "_exit") for name in calls)

@@ -24,7 +24,7 @@ OF_A_TYPE = "_TYPE_SUPPORT"
 
 
 def why_interface(scene: CrashScene) -> Cause | None:
-    """Return the cause if the node used the wrong part of an interface type or of a response, else None."""
+    """Return the cause if the node used an interface type, a part of it or a future in the wrong way, else None."""
     whole = NO_OBJECT.match(scene.crash.message)
     if whole is not None:
         part = PARTS[whole[1]]

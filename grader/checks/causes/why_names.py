@@ -104,7 +104,7 @@ def _set_in_class(own: ast.ClassDef) -> set[str]:
 
 
 def _of_string(scene: CrashScene, name: str) -> Cause | None:
-    """Return the cause if the name is used where rclpy expects a string (a node name or a topic), else None."""
+    """Return the cause if rclpy expects a string here (the name of a node, topic or service), else None."""
     for function, place in TAKE_A_STRING.items():
         for call in scene.calls_on_line(function):
             given = call.args[place] if len(call.args) > place else None
@@ -204,7 +204,7 @@ def _bound_elsewhere(scene: CrashScene, name: str) -> Cause | None:
 
 
 def _stores(scene: CrashScene, name: str) -> Iterator[tuple[int, Function | None]]:
-    """Yield each line that assigns or defines the name, with the function in which the name is local."""
+    """Yield each line that assigns or defines the name, with the function in which the name is local, or None."""
     for node in scene.nodes:
         stored = isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Store)
         defined = isinstance(node, Function | ast.ClassDef) and node.name == name

@@ -22,7 +22,7 @@ Held = tuple[ast.ClassDef, ast.FunctionDef]
 def never_set(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
     """Return the cause if each method that sends something waits for an attribute that stays None, else None.
 
-    `sends` contains the names of the methods that publish or log.
+    `sends` contains the names of the methods that send something, such as publish, info or call_async.
     """
     modules = evidence.code.modules
     if any(isinstance(node, ast.Name) and node.id == "setattr" for module in modules for node in module.nodes):
@@ -57,7 +57,7 @@ def _why(evidence: Evidence, module: Module, held: Held, sends: Sequence[str]) -
 
 
 def _local(own: ast.ClassDef, name: str) -> int | None:
-    """Return the first line in the methods of the class that assigns a local variable with this name, or None."""
+    """Return a line in a method other than __init__ that assigns a local variable with this name, or None."""
     for method in own.body:
         inside = ast.walk(method) if isinstance(method, ast.FunctionDef) and method.name != "__init__" else ()
         for node in inside:

@@ -1,4 +1,4 @@
-"""Explain why no goal reaches the action (a wrong name or type, or a wait in a callback), or why a goal is aborted."""
+"""Explain why no goal reaches the action (for example, because its name is wrong), or why a goal is aborted."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ FEEDBACK = "/_action/feedback"
 OF_A_TYPE = "_FeedbackMessage"
 SENDS = ("send_goal_async", "send_goal")
 ONE_FRAME_S = 0.04
-"""The maximum time (s) from the event that aborts a goal to the end of the goal: one frame, and another frame to be
-safe."""
+"""An event may have aborted a goal if it was recorded between this time (s) before the goal was sent and this time
+after the goal ended: one frame, and another frame to be safe."""
 
 
 def why_no_goal(evidence: Evidence, action: str, type_name: str) -> Cause:

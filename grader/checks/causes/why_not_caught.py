@@ -72,7 +72,8 @@ def _wrong_name(evidence: Evidence) -> Cause | None:
     strange = [name for call in calls if (name := str(call.request["name"])) not in names]
     if not strange:
         return None
-    text = f'The node called {CATCH} with the name "{shorten(strange[0])}". The targets were {a_list(sorted(names))}.'
+    were = f"{'The target was' if len(names) == 1 else 'The targets were'} {a_list(sorted(names))}."
+    text = f'The node called {CATCH} with the name "{shorten(strange[0])}". {were if names else "No target existed."}'
     return Cause("target-name", text, evidence.place("call_async"))
 
 
@@ -93,7 +94,8 @@ def _never_drives(evidence: Evidence, left: list[Track]) -> Cause:
         return Cause("never-drives", text, evidence.place("publish"))
     text = "The node does not subscribe to the pose of any target."
     if poses:
-        text = f"The node subscribes to {shorten(poses[0])}, but not to the pose of a target: {a_list(wanted)}."
+        topics = f": {a_list(wanted)}" if wanted else ""
+        text = f"The node subscribes to {shorten(poses[0])}, but not to the pose of a target{topics}."
     return Cause("never-drives", text, evidence.place("create_subscription"))
 
 
@@ -114,8 +116,8 @@ def _stands_still(evidence: Evidence, left: list[Track]) -> Cause:
     for track in recording.tracks:
         if track.turtle in recording.withdrawn and distance_m(recording, track, until) <= NEAR_M:
             text = (
-                f"The turtle stood where {shorten(track.turtle)} had been, which was no longer announced. In the "
-                "callback of the topic, forget each target whose name is not in the message."
+                f"The turtle stood where {shorten(track.turtle)} had been, but this target was no longer announced. "
+                "In the callback of the topic, forget each target whose name is not in the message."
             )
             return Cause("not-forgotten", text, evidence.place("create_subscription"))
     near = min(left, key=lambda track: distance_m(recording, track, until), default=None)
@@ -134,7 +136,7 @@ def _stands_still(evidence: Evidence, left: list[Track]) -> Cause:
 
 
 def _called_too_early(evidence: Evidence) -> Cause | None:
-    """Return the cause if the node was near a target before the trial's service existed, and never called it later.
+    """Return the cause if turtle1 was near a target before /catch existed, and no call of /catch arrived, else None.
 
     The node must have code that calls the service, and no code that finds out whether the service exists.
     """

@@ -54,7 +54,7 @@ def why_not_heard(run: NodeRun, code: TestCode, right: Behaviour) -> Cause | Non
 
 
 def _too_few(events: NodeEvents, run: NodeRun, code: TestCode, right: Behaviour) -> Cause | None:
-    """Return the reason why a test has received too few commands, if the calls of the timer show the reason."""
+    """Return the reason why a test has received too few commands, or None if the timer's calls do not show it."""
     counted = COUNTED.match(run.message)
     if counted is None or int(counted["received"]) >= int(counted["wanted"]):
         return None

@@ -63,7 +63,7 @@ def _constant(evidence: Evidence, name: str) -> Where | None:
 
 
 def _wrong_angle(evidence: Evidence) -> Cause | None:
-    """Return the cause if the source computes the direction to a target from swapped arguments, or in degrees."""
+    """Return the cause if the arguments of atan2 are swapped, or an angle is converted to degrees, else None."""
     for call in evidence.code.calls("atan2"):
         axes = [_axes(argument) for argument in call.node.args]
         if axes == [{"x"}, {"y"}]:
@@ -108,12 +108,12 @@ def _negates(key: ast.expr) -> bool:
 
 
 def wrong_turn(evidence: Evidence) -> Cause | None:
-    """Return the cause if the source computes a wrong angle, or if turtle1 turned away from the nearest target."""
+    """Return the cause if the source computes a wrong angle or turtle1 turned away from the target, else None."""
     return _wrong_angle(evidence) or _turns_away(evidence)
 
 
 def _turns_away(evidence: Evidence) -> Cause | None:
-    """Return the cause if, in most commands to turn, turtle1 turned or faced away from the nearest target."""
+    """Return the cause if turtle1 usually turned away, or faced away, from the nearest target, else None."""
     turns = list(_turns(evidence))
     away, faced = turns.count("away"), turns.count("behind")
     if away < FEWEST_AWAY or len(turns) < FEWEST or away + faced < MOST * len(turns):

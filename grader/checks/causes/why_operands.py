@@ -52,7 +52,7 @@ def why_operands(scene: CrashScene) -> Cause | None:
 
 
 def _default_in_quotes(scene: CrashScene) -> Cause | None:
-    """Return the cause if the module declares a parameter whose default value is a number in quotation marks."""
+    """Return the cause if the default value of a parameter is a number in quotation marks, else None."""
     for node in scene.nodes:
         declares = isinstance(node, ast.Call) and (dotted(node.func) or "").endswith("declare_parameter")
         if isinstance(node, ast.Call) and declares and len(node.args) > 1:

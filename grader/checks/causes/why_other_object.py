@@ -37,9 +37,9 @@ def published_other(scene: CrashScene, wanted: str, got: str) -> Cause:
     kind = got.rpartition(".")[2]
     if kind == f"Metaclass_{wanted}":
         return Cause("class-for-object", f"{wanted} is a class. {CREATE_OBJECT}")
-    text = f"This publisher sends a {wanted}, but publish was called with a {shorten(kind)}."
+    text = f"This publisher sends {wanted} messages, but publish was called with an object of type {shorten(kind)}."
     if kind == "NoneType":
-        text = f"This publisher sends a {wanted}, but publish was called with None."
+        text = f"This publisher sends {wanted} messages, but publish was called with None."
         for call in scene.calls_on_line("publish"):
             maker = without_return(scene, call.args[0]) if call.args else None
             if maker is not None:
@@ -90,7 +90,7 @@ def message_for_class(scene: CrashScene) -> Cause | None:
 
 
 def subscription_for_publisher(scene: CrashScene) -> Cause | None:
-    """Return the cause if publish is called on a subscription and the node creates no publisher, else None."""
+    """Return the cause for a call of publish if the node has one subscription and no publisher, else None."""
     calls = scene.evidence.code.calls
     if calls("create_publisher") or len(calls("create_subscription")) != 1:
         return None

@@ -46,9 +46,10 @@ def too_few(scene: CrashScene, function: str, names: str) -> Cause | None:
             return Cause("callback-called", text, scene.at(called))
         used = {node.id for node in ast.walk(own[0]) if isinstance(node, ast.Name)}
         if not used & set(re.findall(r"'(\w+)'", names)):
+            what, them = ("parameters", "them") if " and " in names else ("parameter", "it")
             text = (
-                f"{function} does not use its parameter {shorten(names)}, and the call on line {called.lineno} passes "
-                "no value for it."
+                f"{function} does not use its {what} {shorten(names)}, and the call on line {called.lineno} passes "
+                f"no value for {them}."
             )
             return Cause("argument-missing", text, scene.at(own[0]))
         text = f"{function} is called here without a value for {shorten(names)}."

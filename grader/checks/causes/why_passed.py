@@ -103,7 +103,7 @@ def _field(scene: CrashScene, call: Call) -> Cause | None:
 
 
 def _is_no_number(given: ast.expr, scene: CrashScene) -> bool:
-    """Return whether the expression is certainly not meant as a number: a method, a new object, or a string."""
+    """Return whether the expression is not meant as a number: a method, a class, an object, or a string of words."""
     if isinstance(given, ast.Call):
         return kind_of(given.func, scene) == "class"
     if isinstance(given, ast.Constant):

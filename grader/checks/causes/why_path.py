@@ -33,7 +33,7 @@ def steady_command(evidence: Evidence) -> tuple[float, float] | None:
 
 
 def radius_of_commands(evidence: Evidence) -> str:
-    """Return a sentence about the radius that follows from the commands, or an empty string if the commands change."""
+    """Return a sentence about the radius that follows from the commands, or "" if they change or are not finite."""
     speed = steady_command(evidence)
     if speed is None or not all(map(math.isfinite, speed)):
         return ""
@@ -69,7 +69,7 @@ def why_elsewhere(evidence: Evidence) -> Cause:
 
 
 def why_replaced(evidence: Evidence) -> Cause | None:
-    """Return the cause if each command that drives the turtle is followed at once by a command that does not."""
+    """Return the cause if a command with linear.x 0 follows at once after each command to drive, else None."""
     commands = evidence.commands
     after = {id(command): later for command, later in pairwise(commands)}
     driving = [command for command in commands[:-1] if command.linear[0]]

@@ -111,7 +111,7 @@ def why_timers_grow(evidence: Evidence) -> Cause | None:
 
 
 def why_sleep_in_callback(evidence: Evidence) -> Cause | None:
-    """Return the cause if a callback sleeps, else None."""
+    """Return the cause if a callback sleeps for a time that is known from the source, else None."""
     found = _made_in_callback(evidence, "sleep")
     if found is None or not any(call.where == found[1] and _length(call) for call in evidence.code.calls("sleep")):
         return None

@@ -43,9 +43,9 @@ def why_response(scene: CrashScene) -> Cause | None:
 
 
 def _returned_instead(method: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
-    """Return the first constant that the method returns, or its first parameter, the request, or an empty string."""
+    """Return a phrase for the returned value if it is the request or a constant, else an empty string."""
     returned = [node.value for node in ast.walk(method) if isinstance(node, ast.Return)]
     request = method.args.args[1].arg if len(method.args.args) > 1 else ""
     if any(isinstance(value, ast.Name) and value.id == request for value in returned):
-        return f"{shorten(request)}, its first parameter"
+        return f"the request ({shorten(request)})"
     return next((repr(value.value) for value in returned if isinstance(value, ast.Constant)), "")

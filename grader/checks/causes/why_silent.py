@@ -46,7 +46,7 @@ def why_qos(evidence: Evidence) -> Cause | None:
 
 
 def why_nothing(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
-    """Return the reason why the node sends nothing, or None. `sends` contains the methods that publish or log."""
+    """Return the reason why the node sends nothing, or None. `sends` are the names of methods such as publish."""
     fault = timer_fault(evidence)
     if fault is not None:
         return fault

@@ -25,16 +25,16 @@ IN_TESTS = frozenset({"AttributeError", "KeyError", "NameError", "TypeError", "V
 
 
 def why_test_raised(message: str, code: TestCode, where: Where | None) -> Cause | None:
-    """Return the cause if pytest's message is about such an exception, else None."""
+    """Return the cause if pytest's message is about an exception in IN_TESTS, else None."""
     raised = RAISED.match(message)
     if raised is None or raised["error"] not in IN_TESTS:
         return None
-    text = f"The code of the test raises this exception before it compares anything. {MEANINGS[raised['error']]}"
+    text = f"The code of the test raises this exception itself, so no assert has failed. {MEANINGS[raised['error']]}"
     return _class_for_object(message, code) or _without_self(message, code) or Cause("rejects-right", text, where)
 
 
 def _class_for_object(message: str, code: TestCode) -> Cause | None:
-    """Return the cause if a fixture or helper returns the class whose method lacks an argument, else None."""
+    """Return the cause if the tests return, yield or assign the class whose method lacks an argument, else None."""
     missing = MISSING.search(message)
     if missing is None:
         return None
@@ -47,7 +47,7 @@ def _class_for_object(message: str, code: TestCode) -> Cause | None:
 
 
 def _without_self(message: str, code: TestCode) -> Cause | None:
-    """Return the cause if the test is a method whose first parameter is not self, else None."""
+    """Return the cause if a method of the test class has another first parameter than self, else None."""
     owner = NO_ATTRIBUTE.search(message)
     if owner is None:
         return None

@@ -45,6 +45,15 @@ def test_several_exercises_that_begin_alike_are_named(tmp_path: Path) -> None:
     assert "several exercises start with" not in str(raised.value)
 
 
+@pytest.mark.parametrize(("names", "end"), [((), "The course has no exercises."), (("03-a",), "The exercise is 03-a.")])
+def test_a_course_with_few_exercises_is_told(names: tuple[str, ...], end: str, tmp_path: Path) -> None:
+    for name in names:
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "exercise.toml").touch()
+    with pytest.raises(UsageError, match=f"there is no exercise '04'. {end}$"):
+        find_exercise("04", tmp_path)
+
+
 def test_the_exercise_follows_from_a_folder_below_solutions_and_exercises() -> None:
     root = course_folder().parent
     inside = root / "solutions" / "03-circle-publisher" / "my_robot_controller"

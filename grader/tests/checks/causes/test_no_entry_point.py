@@ -155,7 +155,12 @@ SCRIPT = replace(BUILD, entry_points={})
             'scripts/draw_circle is installed as a script, and its first line, "import rclpy", does not start Python.',
         ),
         ({"scripts/draw_circle": "#!/bin/sh\necho python\n"}, "script-shebang", "scripts/draw_circle:1", '"#!/bin/sh"'),
-        ({"scripts/draw_circle": "#!/usr/bin/python\r\n1\r\n"}, "script-shebang", "scripts/draw_circle:1", ""),
+        (
+            {"scripts/draw_circle": "#!/usr/bin/python\r\n1\r\n"},
+            "script-shebang",
+            "scripts/draw_circle:1",
+            '"#!/usr/bin/python", has a Windows line ending and does not start Python.',
+        ),
         ({"draw_circle": "python3\n"}, "script-shebang", "draw_circle:1", '"python3"'),
         ({}, "script-shebang", f"{NODE_FILE}:1", '"import rclpy"'),
         ({NODE_FILE: None}, "entry-point-missing", "setup.py:13", ""),

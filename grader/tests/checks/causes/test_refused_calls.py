@@ -138,8 +138,8 @@ def test_a_misspelt_init_is_found_in_the_class_of_the_new_object(name: str, *, f
     source = INIT.format(name=name, look="  # look" if found else "")
     given = reported(source, NO_NAME)
     words = (
-        f"The class has a method {name}, but only __init__ is called when an object is created. Write two "
-        "underscores on each side."
+        f"The class has a method {name}, but only __init__ is called when an object is created. Write __init__, with "
+        "two underscores on each side."
     )
     assert (given.cause == words) == found
     assert given.line == to_look_at(source)

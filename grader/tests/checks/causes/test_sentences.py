@@ -80,6 +80,12 @@ def cause(line: str, error: str) -> str:
             TOO_FEW.format("turn", "step"),
         ),
         (
+            "turn does not use its parameters 'step' and 'more', and the call on line 10 passes no value for them.",
+            "self.turn()",
+            "self.drive()",
+            TOO_FEW.format("turn", "step' and 'more"),
+        ),
+        (
             "drive is called immediately. To pass the method itself",
             "other(self.drive())",
             "x = self.drive()",
@@ -227,7 +233,7 @@ def test_a_function_without_return_whose_value_is_published_is_told(body: str, *
     error = "TypeError: Expected <class 'geometry_msgs.msg._twist.Twist'>, got <class 'NoneType'>"
     given = reported(source, error)
     assert given.line == to_look_at(source)
-    assert "This publisher sends a Twist, but publish was called with None." in given.cause
+    assert "This publisher sends Twist messages, but publish was called with None." in given.cause
     assert ("make has no return statement with a value, so it returns None." in given.cause) == found
 
 

@@ -132,7 +132,7 @@ SAID = {
     "(unicode error) 'utf-8' codec can't decode byte 0xe4": "Save the file as UTF-8.",
     "inconsistent use of tabs and spaces in indentation": "Tabs and spaces look alike but are different.",
     "Missing parentheses in call to 'print'. Did you mean print(...)?": "In Python 3, print is a function",
-    "expected ':'": "try or else must end with a colon.",
+    "expected ':'": "with or else, must end with a colon.",
     "unmatched ')'": "There is one closing bracket too many, or it is the wrong kind of bracket.",
     "unterminated triple-quoted string literal": "A string that begins with three quotation marks must end with three.",
     "unterminated string literal": "A string must end on the same line",

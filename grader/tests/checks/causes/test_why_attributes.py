@@ -52,7 +52,7 @@ from grader.tests.checks.crashes import DRIVER, reported, to_look_at
         (
             "'Publisher' object has no attribute 'send'",
             "attribute-missing",
-            "A Publisher has no attribute or method with that name.",
+            "Publisher objects have no attribute or method with that name.",
         ),
         ("'RcutilsLogger' object has no attribute 'Info'", "attribute-misspelt", "A similar name exists: info."),
         ("'str' object has no attribute 'speed'", "attribute-missing", "This value is a string,"),
@@ -81,7 +81,7 @@ def test_a_class_that_was_made_nowhere_is_reported_where_it_crashed() -> None:
         "count = 3\nmsg.linear.x = 2.0  # crashed\n", "AttributeError: 'property' object has no attribute 'x'"
     )
     assert (found.diagnosis, found.line) == ("class-for-object", 2)
-    assert "It is a class." in found.cause
+    assert "This line uses a class instead of an object." in found.cause
 
 
 def test_a_pose_of_another_package_is_not_described_by_the_fields_of_turtlesims_pose() -> None:

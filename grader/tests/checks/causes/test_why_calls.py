@@ -107,7 +107,13 @@ def test_a_call_over_several_lines_is_shown_where_it_begins() -> None:
             "fill() missing 1 required keyword-only argument: 'node_name'",
             "argument-missing",
             "",
-            "fill needs more arguments: 'node_name'.",
+            "fill needs another argument: 'node_name'.",
+        ),
+        (
+            "fill() missing 2 required keyword-only arguments: 'x' and 'y'",
+            "argument-missing",
+            "",
+            "fill needs more arguments: 'x' and 'y'.",
         ),
         (
             "Twist.__init__() takes 1 positional argument but 3 were given",
@@ -174,7 +180,7 @@ def test_a_call_over_several_lines_is_shown_where_it_begins() -> None:
             "Expected <class 'geometry_msgs.msg._twist.Twist'>, got <class 'float'>",
             "publish-other",
             "",
-            "This publisher sends a Twist, but publish was called with a float.",
+            "This publisher sends Twist messages, but publish was called with an object of type float.",
         ),
         (
             "Expected <class 'geometry_msgs.msg._twist.Twist'>, got <class 'geometry_msgs.msg._twist.Metaclass_Twist'>",

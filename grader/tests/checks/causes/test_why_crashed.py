@@ -67,6 +67,7 @@ def test_an_exception_without_a_known_cause_is_explained_by_its_class(error: str
     ("said", "exit_code", "found"),
     [
         ("draw_circle: error: the following arguments are required: --speed", 2, True),
+        ("draw_circle: error: the following arguments are required: --speed, --rate", 2, False),
         ("draw_circle: error: unrecognized arguments: --speed", 2, False),
         ("draw_circle: error: the following arguments are required: --speed", 3, False),
     ],
@@ -81,8 +82,9 @@ def test_an_argument_that_the_program_requires_is_named(said: str, exit_code: in
     assert crash is not None
     cause = why_crashed(given, crash)
     words = "The program needs the argument --speed, but the grader starts it without arguments."
-    assert (words in cause.text) == found
-    assert (cause.where is not None) == found
+    several = "The program needs the arguments --speed, --rate, but the grader starts it without arguments. Give each"
+    assert (words in cause.text, several in cause.text) == (found, "--rate" in said)
+    assert (cause.where is not None) == (found or "--rate" in said)
 
 
 @pytest.mark.parametrize(

@@ -48,9 +48,10 @@ def test_the_value_tells_why_it_is_no_float(line: str, diagnosis: str, words: st
         (
             "msg.linear = 2.0",
             "The 'linear' field must be a sub message of type 'Vector3'",
-            "The field linear is a Vector3 with its own fields. Set these fields.",
+            "The field linear has the type Vector3, with its own fields. Set these fields.",
         ),
         ("msg.data = 2", "The 'data' field must be of type 'str'", "The value of the field data must be a string."),
+        ("msg.data = 2.0", "The 'data' field must be of type 'str'", "The value of the field data must be a string."),
         (
             "msg.data = 1",
             "The 'data' field must be of type 'bool'",
@@ -87,7 +88,7 @@ def test_a_value_of_which_nothing_is_known_is_of_another_type() -> None:
         (
             "The 'linear' field must be a sub message of type 'Vector3'",
             "field-type",
-            "The field linear is a Vector3 with",
+            "The field linear has the type Vector3, with",
         ),
         ("Invalid arguments passed to constructor: x", "message-arguments", "Create the message without arguments,"),
         ("it did not hold", "crash", "An assertion failed: a condition was false"),

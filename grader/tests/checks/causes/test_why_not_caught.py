@@ -71,7 +71,17 @@ def test_the_way_to_a_target_counts_while_the_target_exists(from_s: float, near:
 @pytest.mark.parametrize(("name", "found"), [("turtle1", True), ("far", False)])
 def test_a_name_that_no_target_has_is_told(name: str, *, found: bool) -> None:
     said = cause(AHEAD, calls=(catch(name),))
-    assert (said == 'The node called /catch with the name "turtle1". The targets were far.') == found
+    assert (said == 'The node called /catch with the name "turtle1". The target was far.') == found
+
+
+def test_the_sentences_hold_without_any_target() -> None:
+    poses = Endpoint("subscription", "/draw_circle", "/far/pose", "turtlesim/msg/Pose")
+    graphs = (replace(graph(), endpoints=(*graph().endpoints, poses)),)
+    code = submission({NODE_FILE: CATCHER})
+    named = why_not_caught(evidence(recording(AHEAD, calls=(catch("far"),)), code), []).text
+    assert named == 'The node called /catch with the name "far". No target existed.'
+    still = why_not_caught(evidence(recording(speed(0.0, 0.0), graphs=graphs), code), []).text
+    assert still == "The node subscribes to /far/pose, but not to the pose of a target."
 
 
 @pytest.mark.parametrize(("x", "found"), [(6.4, True), (9.0, False)])

@@ -39,7 +39,7 @@ MUST = "The callback of a service must return its response."
         ("request, response", "response.success = True", "TypeError", f"pause returns nothing. {MUST}"),
         ("request, response", "return", "TypeError", f"pause returns nothing. {MUST}"),
         ("request, response", "return True", "TypeError", f"pause returns True. {MUST}"),
-        ("request, response", "return request", "TypeError", f"pause returns request, its first parameter. {MUST}"),
+        ("request, response", "return request", "TypeError", f"pause returns the request (request). {MUST}"),
         ("request, response", "return response", "TypeError", ""),
         ("request, response", "return True", 'TypeError: can only concatenate str (not "int") to str', ""),
         ("request, response", "response.success = True", "TypeError: 'int' object is not callable", ""),

@@ -13,7 +13,7 @@ MISSING = "TypeError: Bench.run() missing 1 required positional argument: 'steps
 NO_RUN = "AttributeError: 'TestGuard' object has no attribute 'run'"
 FIXTURE = "def bench():\n    {}\n"
 CLASS = "class TestGuard:\n    def test_it({}):\n        bench.run()\n"
-RAISES = "The code of the test raises this exception before it compares anything."
+RAISES = "The code of the test raises this exception itself, so no assert has failed."
 COMPARE = "Compare the test with the promises in wall_guard.py."
 
 
