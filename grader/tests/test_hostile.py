@@ -136,7 +136,8 @@ def test_an_attack_is_stopped_for_an_ordinary_user(attack: Attack, runs: Runs) -
 
 def assert_held(attack: Attack, done: Graded) -> None:
     left = done.left
-    # If other programs keep the machine busy, the report may mention it. The attacker alone must not cause this.
+    # If other programs keep the machine busy, the report may mention it, and the attack may not get as far as it
+    # otherwise does. The attacker alone must not cause this.
     crowded = done.too_busy and os.getloadavg()[0] > 2.0 * (os.cpu_count() or 1)
     if not crowded:
         assert left.exit_code in (0, 1), left.stdout + left.stderr
@@ -152,7 +153,7 @@ def assert_held(attack: Attack, done: Graded) -> None:
     assert SECRET not in html
     assert [text for text in attack.never if text in left.stdout + left.stderr] == []
     assert [text for text in attack.never_html if text in html] == []
-    if attack.reaches:
+    if attack.reaches and not crowded:
         assert attack.reaches in said or was_there(done.evidence, attack.reaches), said
 
 
