@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from grader.ros import installation, underlay
 from grader.tests.descriptors import descriptors
@@ -27,6 +28,10 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 os.environ["ROS_DOMAIN_ID"] = str(default_domain())
 # A daemon would keep running after the test that started it.
 os.environ["GRADER_ROS2_DAEMON"] = "0"
+
+# No test fails because the machine is busy.
+settings.register_profile("unhurried", deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("unhurried")
 
 collect_ignore = ["cases", "mistakes", "unusual", "hostile"]
 """Folders with submissions. Some of these folders contain tests of their own."""

@@ -45,7 +45,6 @@ def test_a_bag_is_read_as_it_was_recorded() -> None:
     assert list(poses.t_s) == sorted(poses.t_s)
 
 
-@settings(max_examples=60, deadline=None)
 @given(st.integers(0, len(FILES[STORED]) - 1), st.binary(min_size=1, max_size=40))
 def test_a_damaged_bag_is_told_and_never_raises(at: int, other: bytes) -> None:
     data = FILES[STORED]
@@ -53,7 +52,7 @@ def test_a_damaged_bag_is_told_and_never_raises(at: int, other: bytes) -> None:
     assert bag.problem in ("", "damaged")
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.binary(max_size=200))
 def test_any_bytes_are_read(data: bytes) -> None:
     assert read_bag({**FILES, STORED: data}, "circle_bag").problem == "damaged"
