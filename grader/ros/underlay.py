@@ -9,6 +9,7 @@ import os
 import re
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import sysconfig
@@ -262,10 +263,10 @@ def _run(command: list[str], env: dict[str, str], tell: Callable[[str], None]) -
         if shutil.disk_usage(env["HOME"]).free < _FULL:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         end = "\n".join(line for line in lines[-_LOG_LINES:] if line)
-        message = (
-            f"The turtlesim interfaces could not be built: `{command[0]}` ended with exit code {process.returncode}. "
-            f"The last lines of its output:\n{end}"
-        )
+        code = process.returncode
+        how = f"was killed ({signal.Signals(-code).name})" if code < 0 else f"ended with exit code {code}"
+        shown = f" The last lines of its output:\n{end}" if end else ""
+        message = f"The turtlesim interfaces could not be built: `{command[0]}` {how}.{shown}"
         raise MachineError(message)
 
 

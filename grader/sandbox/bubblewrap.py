@@ -205,9 +205,9 @@ def why_unavailable() -> str | None:
         return entering.why_impossible()
     lines = done.stderr.strip().splitlines()[-1:] or ["no message"]
     return (
-        f"bubblewrap cannot create its namespaces ({lines[0]}). On Ubuntu 24.04, AppArmor does not let "
-        "ordinary users create them; `sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0` allows this until "
-        "the next reboot. "
+        f"bubblewrap cannot create a sandbox ({lines[0]}). On Ubuntu 24.04, AppArmor does not let ordinary users "
+        "create namespaces; `sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0` allows this until the next "
+        "reboot. "
         'docs/security.md, "Without a sandbox", has a permanent solution and the options for containers'
     )
 

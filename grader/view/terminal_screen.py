@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 BESIDE = 38
 """The minimum number of columns next to the canvas. A terminal that is too narrow has only the canvas."""
 _BELOW = 6
-"""The number of rows for the title, the simulator's output and the keys."""
+"""The number of rows for the title, the simulator's output and the keys, and of one free row."""
 _LEAST = 8
 _KEYS = "↑ ↓ ← → drive · E R T D G C V B turn, F stops · Space pause · X clear · Z reset · Tab turtle · Q quit"
 

@@ -68,15 +68,18 @@ class Parameters:
         return sorted(answer.result.names)
 
     def get(self, name: str) -> ParameterValue | None:
-        """Return the value of a parameter, or None if the node has not declared the parameter."""
+        """Return the value of a parameter, or None if the parameter is not declared or has no value."""
         found = self._call(GetParameters, "get_parameters", GetParameters.Request(names=[name])).values
         return found[0] if found else None
 
     def all_values(self) -> dict[str, Any]:
-        """Return a dictionary that maps the name of each parameter to its value."""
+        """Return a dictionary that maps the name of each parameter that has a value to its value."""
         names = self.names()
         found = self._call(GetParameters, "get_parameters", GetParameters.Request(names=names)).values
-        return {name: parameter_value_to_python(value) for name, value in zip(names, found, strict=False)}
+        if len(found) < len(names):  # if a parameter has no value, the response contains no values
+            found = [self.get(name) for name in names]
+        pairs = zip(names, found, strict=True)
+        return {name: parameter_value_to_python(value) for name, value in pairs if value and value.type}
 
     def set(self, parameters: Sequence[Parameter]) -> list[Any]:
         """Set parameters. Return a SetParametersResult for each parameter."""

@@ -266,3 +266,8 @@ def test_nothing_is_built_where_ros_has_its_own_turtlesim(
     assert underlay.ensure(replace(ros, prefixes=(tmp_path, *ros.prefixes))) is None
     assert builds == []
     assert not cache.exists()
+
+
+def test_a_build_command_that_is_killed_has_no_negative_exit_code(tmp_path: Path) -> None:
+    with pytest.raises(MachineError, match=r"`sh` was killed \(SIGKILL\)\.$"):
+        underlay._run(["sh", "-c", "kill -9 $$"], {"HOME": str(tmp_path)}, lambda _: None)

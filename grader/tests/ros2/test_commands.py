@@ -25,6 +25,16 @@ def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
 
 
 ROTATE = "/turtle1/rotate_absolute turtlesim/action/RotateAbsolute"
+HALF_SET = """
+import rclpy
+from rclpy.parameter import Parameter
+rclpy.init()
+node = rclpy.create_node("half")
+node.declare_parameter("number", 1)
+node.declare_parameter("later", Parameter.Type.DOUBLE)
+print("declared", flush=True)
+rclpy.spin(node)
+"""
 KEEPS = """
 import rclpy, signal
 from rclpy.qos import QoSProfile, DurabilityPolicy
@@ -228,6 +238,12 @@ def test_param_dump_is_a_parameter_file(still: World) -> None:
     )
     assert still.run("ros2 param get /turtlesim background_b --hide-type", ROS_DOMAIN_ID="102").stdout == "12\n"
     other.stop()
+
+
+def test_param_dump_leaves_out_only_a_parameter_without_a_value(still: World) -> None:
+    half = still.start(f"python3 -c '{HALF_SET}'", "declared")
+    assert "    number: 1\n" in still.run("ros2 param dump /half").stdout
+    half.stop()
 
 
 def test_options_of_lists(still: World) -> None:
