@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import nbformat
 from nbconvert.exporters import HTMLExporter, NotebookExporter
 from nbgrader.api import Gradebook
-from nbgrader.converters import Autograde
+from nbgrader.converters import Autograde, GenerateFeedback
 from nbgrader.converters.base import BaseConverter
 from nbgrader.exchange.default import ExchangeCollect
 
@@ -26,24 +26,27 @@ from grader.submission import tree
 from grader.submission.reader import read
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from nbformat import NotebookNode
 
     Resources = dict[str, Any]
     Converted = tuple[Any, Resources]
 
-_USERS = ("nbgrader.converters", "nbgrader.apps.autogradeapp", "nbgrader.apps.api")
-"""The modules that import Autograde by name. nbgrader has no setting that replaces this class."""
-
-
+_USERS = ("nbgrader.converters", "nbgrader.apps.autogradeapp", "nbgrader.apps.generatefeedbackapp", "nbgrader.apps.api")
+"""The modules that import Autograde or GenerateFeedback by name. nbgrader has no setting that replaces a class."""
+_SECRET = "submission_secret.txt"
+"""The file from which nbgrader makes the name of the page with the feedback in the exchange."""
 _NEVER = datetime(1, 1, 1)  # noqa: DTZ001 - nbgrader compares times without a zone
 
 
 def install() -> None:
-    """Replace Autograde with `BoundedAutograde` in nbgrader."""
+    """Replace Autograde and GenerateFeedback with `BoundedAutograde` and `BoundedFeedback` in nbgrader."""
     for name in _USERS:
         module = sys.modules.get(name)
         if module is not None:
             module.Autograde = BoundedAutograde  # type: ignore[attr-defined]
+            module.GenerateFeedback = BoundedFeedback  # type: ignore[attr-defined]
 
 
 class _Copying(BaseConverter):  # type: ignore[misc, unused-ignore]
@@ -66,10 +69,7 @@ class _Copying(BaseConverter):  # type: ignore[misc, unused-ignore]
         source = Path(self._format_source(assignment_id, student_id))
         for each in copy_of(source, Path(self._format_dest(assignment_id, student_id)), notebooks=False):
             self.log.warning("Not copied from %s: %s", source, each)
-        # nbgrader would print the names of unknown notebooks to the terminal without escaping them. If the name of the
-        # student is a pattern such as "*", nbgrader also finds the notebooks of other students.
-        found = [each for each in map(Path, self.notebooks) if each.parent == source and each.name.isprintable()]
-        self.notebooks: list[str] = list(map(str, found))
+        self.notebooks: list[str] = _in(source, self.notebooks)
 
 
 class BoundedAutograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore]
@@ -103,6 +103,30 @@ class BoundedAutograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore
         """Run nbgrader's hook, and record that this submission is finished."""
         super().run_post_convert_hook()
         self._mark.unlink()
+
+
+def _in(folder: Path, notebooks: Sequence[str]) -> list[str]:
+    """Return the notebooks in this folder whose names can be printed.
+
+    If the name of a student is a pattern such as "*", nbgrader also finds the notebooks of other students.
+    """
+    found = [each for each in map(Path, notebooks) if each.parent == folder and each.name.isprintable()]
+    return list(map(str, found))
+
+
+class BoundedFeedback(GenerateFeedback):  # type: ignore[misc, unused-ignore]
+    """nbgrader's GenerateFeedback without the student's files, which it would release if their names end in .html."""
+
+    notebooks: list[str]
+
+    def init_assignment(self, assignment_id: str, student_id: str) -> None:
+        """Copy the files that releasing the feedback needs."""
+        source, dest = (Path(make(assignment_id, student_id)) for make in (self._format_source, self._format_dest))
+        dest.mkdir(parents=True, exist_ok=True)
+        for name in (readable.TIMESTAMP, _SECRET):
+            if (source / name).is_file():
+                shutil.copyfile(source / name, dest / name)
+        self.notebooks: list[str] = _in(source, self.notebooks)
 
 
 class BoundedNotebook(NotebookExporter):

@@ -1,7 +1,8 @@
 """Write files that the user named on the command line.
 
 The file may be in the folder of a student, who may have put a symbolic link there that leads to a file of the user.
-Therefore, such links are not followed, except those of the system, such as /dev/stdout.
+Therefore, such links are not followed, except those of the system, such as /dev/stdout. A student may also have put a
+named pipe there, so the grader does not wait for a reader.
 """
 
 from __future__ import annotations
@@ -49,8 +50,11 @@ def write(file: Path, content: bytes) -> None:
         MachineError: the disk is full, or the machine failed in another way.
     """
     try:
-        no_link = 0 if _is_of_the_system(file) else os.O_NOFOLLOW
-        descriptor = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | no_link, 0o666)
+        # With O_NONBLOCK, opening a pipe without a reader fails. Otherwise, it would wait for ever.
+        safely = 0 if _is_of_the_system(file) else os.O_NOFOLLOW | os.O_NONBLOCK
+        descriptor = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | safely, 0o666)
+        if safely:
+            os.set_blocking(descriptor, True)
         with os.fdopen(descriptor, "wb") as opened:
             opened.write(content)
     except OSError as error:
@@ -61,6 +65,8 @@ def not_written(file: Path, error: OSError) -> UsageError | MachineError:
     """Return the error to raise if a file could not be written: UsageError or MachineError, with the reason."""
     if error.errno == errno.ELOOP and file.is_symlink():
         return UsageError(_link(file))
+    if error.errno == errno.ENXIO:
+        return UsageError(f"{file} is a named pipe, from which no program reads. Remove it, or choose another name.")
     message = f"{file} cannot be written: {error.strerror or error}."
     return MachineError(message) if of_the_machine(error) else UsageError(message)
 

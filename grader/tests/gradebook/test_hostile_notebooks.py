@@ -183,8 +183,7 @@ def hand_in(term: Term, student: str, change: Callable[[Path, Path], object], se
     change(to, secret)
 
 
-TITLE = "\x1b]0;a title of a student\x07"
-"""A name that changes the title of any terminal in which it is printed."""
+TITLE = "\x1b]0;a title of a student\x07"  # as a name, it changes the title of any terminal in which it is printed
 MARKDOWN = "<script>steal()</script> [a](javascript:steal()) <div onclick=steal()>x</div> <style>*{color:red}</style>"
 
 
@@ -228,21 +227,21 @@ def with_a_picture(folder: Path, _: Path) -> None:
     edited(folder, lambda notebook: notebook.cells.append(cell))
 
 
+def at_no_time(folder: Path, _: Path) -> None:
+    (folder / readable.TIMESTAMP).write_text("yesterday evening")
+
+
 def beside(folder: Path, secret: Path) -> None:
     (folder / "notes.txt").symlink_to(secret)
     sparse(folder / "large.txt")
     (folder / f"{TITLE}.ipynb").write_text("{}")
+    (folder / "index.html").write_text("<script>steal()</script>")
 
 
-SUBMISSIONS: dict[str, Callable[[Path, Path], object]] = {
-    "anna": with_script,
-    "links": with_links,
-    "when": lambda folder, _: (folder / readable.TIMESTAMP).write_text("yesterday evening"),
-}
-"""Maps a student to what is wrong with the student's folder in the exchange."""
+SUBMISSIONS: dict[str, Callable[[Path, Path], object]] = {"anna": with_script, "links": with_links, "when": at_no_time}
 BESIDE: dict[str, Callable[[Path, Path], object]] = {
     "beside": beside,
-    "never": lambda folder, _: (folder / readable.TIMESTAMP).write_text("yesterday evening"),
+    "never": at_no_time,
     "deep": lambda folder, _: (folder / f"{HOMEWORK}.ipynb").write_text("[" * 100_000),
     "blocks": lambda folder, _: pipe(folder / f"{HOMEWORK}.ipynb"),
     "copied": twice,
@@ -252,7 +251,7 @@ BESIDE: dict[str, Callable[[Path, Path], object]] = {
     TITLE: lambda folder, _: (folder / f"{HOMEWORK}.ipynb").unlink(),
     "e\nforged": lambda _, __: None,
 }
-"""Maps a student to what is wrong with the student's folder in submitted/."""
+"""Map a student to what is wrong with the student's folder in the exchange (SUBMISSIONS) or in submitted/ (BESIDE)."""
 
 
 def scores(term: Term) -> dict[str, float]:
@@ -292,7 +291,9 @@ def test_nothing_of_the_instructor_reaches_a_copy_that_a_kernel_can_read(hostile
 
 
 def test_feedback_runs_no_script_of_a_student(hostile: Hostile) -> None:
-    page = (hostile.folder / "feedback" / "anna" / HOMEWORK / f"{HOMEWORK}.html").read_text("utf-8")
+    files = list((hostile.folder / "feedback").rglob("*.*"))
+    assert {each.name for each in files} == {f"{HOMEWORK}.html", readable.TIMESTAMP}
+    page = next(each for each in files if "anna" in each.parts and each.suffix == ".html").read_text("utf-8")
     assert "<h1>Title" in page
     assert "steal()" in page  # the script is shown as text
     scripts = ("<script>steal", "<img src=x", 'href="javascript', "<div onclick", "<style>*")

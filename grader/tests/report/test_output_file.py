@@ -28,6 +28,17 @@ def test_a_file_that_may_not_be_written_is_named_before_any_work(
     assert asked == [file if there else tmp_path]
 
 
+def test_a_pipe_of_a_student_is_not_waited_for(tmp_path: Path) -> None:
+    file = tmp_path / "report.json"
+    os.mkfifo(file)
+    with pytest.raises(UsageError, match=r"report\.json is a named pipe, from which no program reads\."):
+        output_file.write(file, b"{}")
+    reads = os.open(file, os.O_RDONLY | os.O_NONBLOCK)
+    output_file.write(file, b"{}")
+    assert os.read(reads, 10) == b"{}"
+    os.close(reads)
+
+
 def test_a_dash_is_not_a_file_name() -> None:
     with pytest.raises(UsageError, match=r"cannot be -, since the command prints its own text on standard output\."):
         output_file.check_writable(Path("-"))
