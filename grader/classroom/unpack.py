@@ -111,6 +111,9 @@ def read_archive(archive: Path) -> tuple[Member, ...]:
         except (zipfile.BadZipFile, tarfile.TarError, zlib.error, EOFError, gzip.BadGzipFile) as error:
             message = f"is not a .zip or .tar.gz, or is damaged ({_shown(str(error))[:200]})"
             raise DamagedArchiveError(message) from error
+        except RecursionError as error:  # tarfile calls itself for each header that describes the next one
+            message = "is nested too deeply to be unpacked"
+            raise LargeArchiveError(message) from error
         except RuntimeError as error:  # NotImplementedError, too
             message = f"is compressed with a method that is not supported ({_shown(str(error))[:200]})"
             raise ArchiveFormatError(message) from error

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tarfile
 import unicodedata
 import zipfile
 from typing import TYPE_CHECKING
@@ -84,6 +85,12 @@ def nested_too_deeply(folder: Path) -> None:
         archive.writestr("a/" * (unpack.MOST_DEPTH + 1) + "package.xml", "<package/>")
 
 
+def headers_of_headers(folder: Path) -> None:
+    header = tarfile.TarInfo("a")
+    header.type = tarfile.XHDTYPE
+    (folder / "ben.tar").write_bytes(header.tobuf(tarfile.GNU_FORMAT) * 5000)
+
+
 @pytest.mark.parametrize(
     ("make", "diagnosis"),
     [
@@ -99,6 +106,7 @@ def nested_too_deeply(folder: Path) -> None:
         (with_password, "archive-format"),
         (many_entries, "submission-too-large"),
         (nested_too_deeply, "submission-too-large"),
+        (headers_of_headers, "submission-too-large"),
     ],
 )
 def test_each_reason_has_its_own_diagnosis(tmp_path: Path, make: Callable[[Path], None], diagnosis: str) -> None:
