@@ -15,8 +15,9 @@ if TYPE_CHECKING:
 class Cause:
     """The cause of a failed check: the id of the diagnosis, a text that explains the cause, and the place in the code.
 
-    The text is empty if the observation needs no explanation. `fix` is the smallest change that would fix the mistake,
-    if known. The grader tests this change. Students see the change only if exercise.toml sets `show_fix`.
+    The text is empty if the observation needs no explanation, or if no explanation is known. `fix` is the smallest
+    change that would fix the mistake, if known. In simulated time, the grader can test this change in a copy of the
+    submission. Students see the change only if exercise.toml sets `show_fix`.
     """
 
     diagnosis: Diagnosis

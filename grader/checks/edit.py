@@ -1,4 +1,4 @@
-"""A small change that would fix a mistake in the files of a submission. The grader tests the change in a copy."""
+"""A small change that would fix a mistake in the files of a submission. The grader can test it in a copy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Find and load exercises by path, by name or by course folder."""
+"""Find and load exercises: by their id, by a path, or from a folder in exercises/ or solutions/."""
 
 from __future__ import annotations
 

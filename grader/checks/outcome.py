@@ -44,7 +44,7 @@ class Finding:
     where: Where | None = None
     near_edge: bool = False
     fix: tuple[Edit, ...] = field(default=(), compare=False)
-    """The change that would fix the mistake. The grader tests this change in a copy of the submission."""
+    """The change that would fix the mistake. The grader can test this change in a copy of the submission."""
     tried: str = ""
     """A text for students that says whether the check passed, or failed later, when the change was tested.
 

@@ -52,7 +52,7 @@ class CrashScene:
 
     @cached_property
     def on_line(self) -> tuple[ast.AST, ...]:
-        """The nodes of the syntax tree on the line, except classes, functions, and if, for, while, try and with."""
+        """The syntax nodes on the line, except classes, functions, and if, for, while, try and with statements."""
         return tuple(
             node for node in self.nodes if getattr(node, "lineno", 0) <= self.line <= _end(node) and _small(node)
         )
@@ -132,7 +132,7 @@ def _end(node: ast.AST) -> int:
 
 
 def _small(node: ast.AST) -> bool:
-    """Return whether the syntax node is neither a class, nor a function, nor an if, for, while, try or with."""
+    """Return whether the syntax node is no class, no function, and no if, for, while, try or with statement."""
     return not isinstance(
         node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef | ast.If | ast.For | ast.While | ast.Try | ast.With
     )

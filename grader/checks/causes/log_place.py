@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 LEVELS = ("info", "warning", "warn", "error", "fatal")
 """The methods of a logger that write a line which is also visible without --log-level debug."""
 PLACEHOLDER = re.compile(r"%(?:\([^)]*\))?[-+# .\d]*[a-zA-Z%]|\{[^{}]*\}")
-"""A place in a string where % or the method format puts a value."""
+"""Matches a place in a string where the operator % or the method format puts a value."""
 
 
 def log_place(evidence: Evidence, line: str) -> Where | None:
