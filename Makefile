@@ -8,12 +8,12 @@
 export PATH := $(if $(PATH),$(PATH):)/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 
 BIN := .venv/bin
-# `make demo PYTHON=python3.12` chooses the Python of .venv, and replaces a .venv of another Python.
 # The first python3 that runs: pyenv, asdf and Windows put programs with this name into PATH that are not Python.
 RUNS = -EsB -c "print(3)" 2> /dev/null
 STARTER = $(shell for each in python3 /usr/bin/python3; do [ "$$($$each $(RUNS))" = 3 ] && echo $$each && break; done)
 # Without compiled modules: a full disk may have truncated them, and the set-up must still start.
 SET_UP = $(STARTER) -EsB -X pycache_prefix=/dev/null -m grader.setup.bootstrap
+# `make demo PYTHON=python3.12` chooses the Python of .venv, and replaces a .venv of another Python.
 CHOSEN := $(if $(findstring command line,$(origin PYTHON)),--python $(PYTHON))
 
 help: ## this list

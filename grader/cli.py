@@ -101,7 +101,7 @@ def check(
         bool,
         typer.Option(
             "--explain",
-            help="For instructors: fix each reported cause in a copy of the submission, run the copy, and show what "
+            help="For instructors: test fixes for the reported causes in a copy of the submission, and show what "
             "was changed.",
         ),
     ] = False,

@@ -19,7 +19,7 @@ _TARGETS = ("help", "demo", "notebooks", "clean", "python3")
 """The targets of the Makefile that work without tests, solutions and the other pages."""
 _NOT_FOR_STUDENTS = ("tests", "benchmarks", "__pycache__", "*.pyc", "nbgrader_config.py")
 _IN_A_WHEEL = ("course", "exercises", "solutions", "repository")
-"""Folders that are inside the package in a wheel, and next to the package in a checkout (see hatch_build.py)."""
+"""Folders that a wheel has inside the package (hatch_build.py). In a checkout, their files are next to the package."""
 
 
 def hand_out(to: Path) -> None:
@@ -54,7 +54,7 @@ def hand_out(to: Path) -> None:
 def _makefile(text: str) -> str:
     """Return the Makefile with only the targets for students."""
     parts = text.split("\n\n")
-    names = [re.match(r"([a-z.-]+[a-z0-9]): ", part) for part in parts]
+    names = [re.match(r"(?:\.PHONY: .*\n)?([a-z.-]+[a-z0-9]): ", part) for part in parts]
     kept = [part for part, name in zip(parts, names, strict=True) if name is None or name[1] in _TARGETS]
     phony = f".PHONY: {' '.join(_TARGETS)}"
     return re.sub(r"^\.PHONY: help.*$", phony, "\n\n".join(kept), flags=re.MULTILINE)

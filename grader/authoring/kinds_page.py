@@ -169,7 +169,7 @@ def _file() -> Path:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command. Return 1 if --check finds an outdated page."""
+    """Run the command. Return the exit code, which is 1 if --check finds an outdated page."""
     parser = argparse.ArgumentParser(prog="python -m grader.authoring.kinds_page", description="Write docs/kinds.md.")
     parser.add_argument("--check", action="store_true", help="change nothing, and fail if the page is out of date")
     options = parser.parse_args(arguments)
@@ -181,7 +181,7 @@ def main(arguments: list[str] | None = None) -> int:
             return 0 if fresh else 1
         file.write_text(page(), encoding="utf-8")
     except OSError as error:
-        failure = MachineError(f"{file} could not be written: {error.strerror}.")
+        failure = MachineError(f"{file} could not be {'read' if options.check else 'written'}: {error.strerror}.")
         print(failure, file=sys.stderr)
         return failure.exit_code
     return 0

@@ -16,6 +16,7 @@ from typer.exceptions import TyperException
 
 from grader.authoring.console_blocks import blocks
 from grader.authoring.parse_colcon import colcon_faults
+from grader.common.words import a_list
 from grader.errors import GraderError
 from grader.exercise.model import catalogue
 from grader.ros.failure import did_you_mean
@@ -113,10 +114,11 @@ def _grader_fault(words: Sequence[str], course: Path, app: typer.Typer) -> str:
         context = command.make_context(name, rest, parent=context)
     except (TyperException, GraderError) as error:
         return str(error)
-    return " ".join(_step_faults(context, course))
+    missing = list(_missing_steps(context, course))
+    return f"the course has no step {a_list(missing, 'or')}." if missing else ""
 
 
-def _step_faults(context: Any, course: Path) -> Iterator[str]:  # noqa: ANN401 - typer's Context
+def _missing_steps(context: Any, course: Path) -> Iterator[str]:  # noqa: ANN401 - typer's Context
     known = list(catalogue(course))
     for name, value in context.params.items():
         given = [str(each) for each in (value if isinstance(value, list | tuple) else [value]) if each is not None]
@@ -124,7 +126,7 @@ def _step_faults(context: Any, course: Path) -> Iterator[str]:  # noqa: ANN401 -
             number = f"{int(each):02}" if each.isascii() and each.isdigit() else each
             is_step = name in STEPS or (name in ("path", "submission") and each.isdigit())
             if is_step and each != "next" and not any(step.startswith(number) for step in known):
-                yield f"the course has no step {each}."
+                yield each
 
 
 class _Strict(Parser):

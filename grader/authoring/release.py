@@ -2,10 +2,10 @@
 
     python -m grader.authoring.release [--check]
 
-First, source notebooks are updated from the files and checks of the solution. Then each marked region of the solution
-is replaced with the text that students start from (grader/exercise/markers.py). Notebooks are converted in the same way
-as nbgrader converts them (grader/notebook/released.py). All other files are copied. Recorded bags, and files that would
-be empty without their solutions, are not written, because students create them.
+First, source notebooks are updated from the files of the solution and the checks in exercise.toml. Then each marked
+region of the solution is replaced with the text that students start from (grader/exercise/markers.py). Notebooks are
+converted in the same way as nbgrader converts them (grader/notebook/released.py). All other files are copied. Recorded
+bags, and files that would be empty without their solutions, are not written, because students create them.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def _fresh_notebooks(solution: Path) -> dict[str, bytes]:
 
 
 def stale(solutions: Path, exercises: Path) -> tuple[str, ...]:
-    """Return one sentence for each outdated source notebook, and for each file that `release` would change."""
+    """Return one message for each outdated source notebook, and for each file that `release` would change."""
     steps = sorted({folder.name for root in (solutions, exercises) for folder in root.iterdir() if folder.is_dir()})
     return tuple(line for step in steps for line in _stale_step(solutions / step, exercises / step))
 
@@ -109,7 +109,8 @@ def _stale_step(solution: Path, exercise: Path) -> list[str]:
     wanted = released(solution) if solution.is_dir() else {}
     present = _read(exercise) if exercise.is_dir() else tree.Tree()
     lines = [
-        f"{solution}/{path} does not match the files and checks of the solution." for path in _fresh_notebooks(solution)
+        f"{solution}/{path} does not match the solution's files and exercise.toml."
+        for path in _fresh_notebooks(solution)
     ]
     for path in sorted(wanted.keys() | present.files.keys()):
         if path not in present.files:
@@ -173,7 +174,7 @@ def _read(folder: Path) -> tree.Tree:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command. Return 1 if --check finds something out of date."""
+    """Run the command. Return the exit code, which is 1 if --check finds something out of date."""
     parser = argparse.ArgumentParser(
         prog="python -m grader.authoring.release", description="Create exercises/ from solutions/."
     )

@@ -11,7 +11,7 @@ from grader.authoring.lesson_commands import command_problems
 from grader.authoring.release import stale
 from grader.checks.exercises import load_exercise
 from grader.checks.outcome import Status
-from grader.common.words import a_list
+from grader.common.words import a_list, count
 from grader.errors import UsageError
 from grader.exercise.model import catalogue, course_folder
 from grader.grading.grade import grade
@@ -38,7 +38,7 @@ _CODE = re.compile(r"^```.*?^```|`[^`\n]*`", re.MULTILINE | re.DOTALL)
 def validate(
     names: list[str], app: typer.Typer, tell: Callable[[str], None] = lambda _: None, *, course: Path | None = None
 ) -> list[str]:
-    """Return the problems of the exercises in `names` (or of all exercises if `names` is empty), as one sentence each.
+    """Return the problems of the exercises in `names` (or of all exercises if `names` is empty), as one message each.
 
     Files that are out of date in solutions/ or exercises/ are reported for all exercises.
     `app` is the command `grader`, whose parser checks the commands in the lessons. `tell` is called with progress
@@ -92,7 +92,7 @@ class _Validation:
             self._starting_point = pool.submit(self._graded, "starting point", "exercises")
 
     def problems(self) -> Iterator[str]:
-        """Yield one sentence per problem."""
+        """Yield one message per problem."""
         if self._unreadable:
             yield self._unreadable
             return
@@ -136,7 +136,10 @@ def _starting_point(exercise: Exercise, report: Report) -> Iterator[str]:
     failed = {outcome.id: outcome for outcome in report.with_status(Status.FAILED)}
     for outcome in report.with_status(Status.ERROR):
         yield f"exercises/{exercise.id} could not be judged: {_in_words(outcome)}"
-    if not exercise.unsolved:
+    if not exercise.unsolved and not report.with_status(Status.ERROR) and not failed:
+        yield f"exercises/{exercise.id} fails no check. A starting point must fail at least one check."
+        return
+    if not exercise.unsolved and failed:
         yield (
             f"course/{exercise.id}/exercise.toml does not list the checks that the starting point fails. Add: "
             f"starting_point_fails = {list(failed)}"
@@ -159,7 +162,7 @@ def lesson_problems(file: Path, app: typer.Typer) -> Iterator[str]:
     words = len(_CODE.sub("", text).split())
     low, high = LESSON_WORDS
     if not low <= words <= high:
-        yield f"{file} has {words} words (without code). A lesson should have {low} to {high}."
+        yield f"{file} has {count(words, 'word')} (without code). A lesson should have {low} to {high}."
     for target in _LINK.findall(_CODE.sub("", text)):
         if (
             not target.startswith(("http://", "https://", "#"))

@@ -3,9 +3,9 @@
     python -m grader.benchmarks.causes [--count 200] [--seed 1] [--only OPERATOR ...] [--keep FOLDER]
 
 The benchmark puts mistakes into correct packages with the operators of grader/tests/operators (two operators in a third
-of the packages), and judges the packages in simulated time. The correct packages are the solutions and the cases of
-tests/unusual that follow ROS time. A package that passes despite the mistake is ignored. For all other packages, the
-benchmark prints how often each of these statements is true:
+of the packages), and judges the packages in simulated time. The correct packages are four of the solutions, and cases
+of tests/unusual that follow ROS time. Packages that pass despite the mistake are only counted. For all other packages,
+the benchmark prints how often each of these statements is true:
 
 - first: the first failed check names the cause and a line that must change;
 - at all: any failed check names the cause in this way;
@@ -38,6 +38,7 @@ from grader.checks.edit import difference
 from grader.checks.exercises import find_exercise
 from grader.checks.judge import judge
 from grader.checks.outcome import Status
+from grader.common.words import count
 from grader.grading.grade import grade
 from grader.grading.options import Options
 from grader.sandbox import bubblewrap
@@ -207,7 +208,7 @@ def tell(all_: Iterable[Judged], *, everything: bool = False) -> None:
         broken = [outcome.finding.observed for outcome in each.outcomes if outcome.status is Status.ERROR]
         if broken:
             print(f"\n{each.made.name} {each.made.operators}: error: {broken[0]}")
-    print(f"\nstill passing: {len(passed)} ({', '.join(sorted(set(passed)))})")
+    print(f"\nstill passing: {len(passed)}" + (f" ({', '.join(sorted(set(passed)))})" if passed else ""))
     marks = [each.marks() for each in wrong]
     for label in marks[0] if marks else ():
         hits = sum(mark[label] for mark in marks)
@@ -263,8 +264,8 @@ def main() -> None:
             : wanted.explained
         ]
         if proved:
-            ratio = cost_of_explain(proved, Path(name) / "explained")
-            print(f"Testing the causes multiplies the CPU time of a check by {ratio:.2f} ({len(proved)} packages)")
+            ratio, packages = cost_of_explain(proved, Path(name) / "explained"), count(len(proved), "package")
+            print(f"Testing the causes multiplies the CPU time of a check by {ratio:.2f} ({packages})")
         print(f"{len(right)} correct packages, seed {wanted.seed}: {time.monotonic() - begun:.0f} s")
 
 

@@ -31,6 +31,7 @@ from typing import TYPE_CHECKING
 from grader.benchmarks.bare import bare_costs
 from grader.benchmarks.measure import Cost, cost
 from grader.common.interpreter import interpreter
+from grader.common.words import count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -154,7 +155,7 @@ def _graded(submitted: Path, size: int, out: Path, options: list[str], also: lis
         measured = cost(command) if also is None else _alone(command)
     found = len(list((out / "reports").glob("*.json")))
     if found != size:
-        message = f"{size} submissions, and {found} results"
+        message = f"{count(size, 'submission')}, but {count(found, 'result')}"
         raise RuntimeError(message)
     return ClassCost(size, measured.wall_s / size, measured.cpu_s / size, max(peak, default=0.0))
 

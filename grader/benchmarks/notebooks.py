@@ -4,14 +4,14 @@
 
 In one run on the same machine, this benchmark measures:
 
-- `nbgrader autograde` of the solved notebook of step 03;
+- `nbgrader autograde` of the notebook of step 03 next to the solved package;
 - `nbgrader autograde` of the notebook with empty cells, which shows nbgrader's own cost (imports, a kernel, the
   database);
 - `grader check` of the package.
 
-Autograding the solved notebook should take at most 1.5 times as long as the other two measurements together. After
-these measurements, a class is measured: nbgrader autogrades the submissions one by one, and `grader gradebook sync`
-grades several in parallel.
+Autograding the notebook next to the solved package should take at most 1.5 times as long as the other two measurements
+together. After these measurements, a class is measured: nbgrader autogrades the submissions one by one, and `grader
+gradebook sync` grades several in parallel.
 """
 
 from __future__ import annotations

@@ -3,8 +3,8 @@
     python -m grader.benchmarks.ros2 [--times N]
 
 Everything is measured in one run. The measurements alternate, so that other programs slow down all of them alike. The
-first command starts the ROS 2 daemon, and all later commands use this daemon. The benchmark also prints in how many
-runs `ros2 topic list` and Tab found all topics.
+first `ros2 topic list` starts the ROS 2 daemon, which its later runs use. The benchmark also prints in how many runs
+`ros2 topic list` and Tab found all topics.
 """
 
 from __future__ import annotations

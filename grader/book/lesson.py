@@ -48,7 +48,8 @@ def lesson_of(folder: Path) -> Lesson:
     try:
         text = file.read_text(encoding="utf-8")
     except (OSError, ValueError) as error:
-        message = f"The lesson {file} cannot be read: {error}."
+        detail = error.strerror if isinstance(error, OSError) else str(error)
+        message = f"The lesson {file} cannot be read: {detail}."
         raise MachineError(message) from error
     made = rendered(text, FIGURES.get(folder.name))
     title = re.sub(r"^Step \d+: ", "", made.title)
@@ -57,7 +58,7 @@ def lesson_of(folder: Path) -> Lesson:
 
 
 def lessons(course: Path | None = None) -> list[Lesson]:
-    """Return the lessons of all steps, in order.
+    """Return the lessons of all steps that have one, in order.
 
     Raises:
         MachineError: a file cannot be read.

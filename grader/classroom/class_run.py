@@ -26,8 +26,8 @@ LOOK_S = 0.5
 def run(order: Order, todo: list[Todo], engine: Engine, results: Results, screen: Screen) -> list[Result]:
     """Grade the submissions and write each result as soon as it is ready, in any order.
 
-    Submissions that end with an `error` are graded once more at the end if at least one other submission could be
-    judged. In this case, the machine works, so the error occurred by chance or was caused by the submission.
+    Submissions that end with an `error` are graded once more at the end if at least one other submission has a final
+    result. In this case, the machine works, so the error occurred by chance or was caused by the submission.
 
     Raises:
         MachineError: the machine can no longer grade submissions or write results. The results so far are kept.
@@ -60,7 +60,7 @@ class _Run:
             if len(self.again) < len(self.graded):
                 self.waiting.extend(self.again.values())
             else:
-                # No submission could be judged, so the machine would fail again.
+                # No submission has a final result, so the machine would probably fail again.
                 for name in self.again:
                     self.screen.finished(self.graded[name])
             self.again.clear()

@@ -107,7 +107,7 @@ def grade(
         bool,
         typer.Option(
             "--explain/--no-explain",
-            help="Prove the causes of failed checks: fix each cause in a copy of the submission, and run the copy. "
+            help="Prove the causes of failed checks: test fixes for the causes in a copy of the submission. "
             "For a failed submission, this takes up to 1.5 times as long as a build and a run.",
         ),
     ] = True,

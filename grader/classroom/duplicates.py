@@ -1,4 +1,4 @@
-"""Submissions whose student is not clear: there are several, or their names are too similar.
+"""Submissions whose student is not clear: a student has several, or the names of students are too similar.
 
 Two names are one student id if they have the same normal form, as for the students' own numbers. Both submissions are
 graded, with the same numbers, because a student who chooses the name of an archive could otherwise take the points of
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 def without_duplicates(found: Iterable[Found]) -> Iterator[Found]:
     """Yield one submission per name and exercise.
 
-    If there are several submissions with the name, it has the reason why it is not graded. If another name is the same
-    student id, it has a remark.
+    If a name has several submissions, the yielded one has the reason why none of them is graded. If another name is the
+    same student id, the submission has a remark.
     """
     alike: dict[tuple[str, str], dict[str, list[Found]]] = {}
     for each in found:

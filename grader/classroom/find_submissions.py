@@ -46,7 +46,7 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
     """Return all submissions in the given folders, archives and packages except `leave_out`, sorted by student.
 
     Raises:
-        UsageError: no submission was found, or the exercise cannot be determined.
+        UsageError: a path cannot be used, no submission was found, or the exercise cannot be determined.
     """
     wanted = find_exercise(exercise).id if exercise else None
     found = [each for path in given for each in _in(path, wanted, leave_out)]
@@ -86,7 +86,7 @@ def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
 
 
 def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:
-    """Return the names of the entries in these folders that are not submissions, except for hidden files."""
+    """Return the names of the entries in the folders that are not submissions, except hidden files and `leave_out`."""
     folders = [path for path in given if os.path.isdir(path) and not _is_one_alone(path)]
     return tuple(
         shown(entry.name)
@@ -189,7 +189,10 @@ def _student(entry: Path) -> str | None:
 
 
 def _why_not_graded(entry: Path) -> Refused | None:
-    """Return the reason why a link, a hidden folder or a hidden archive is not graded, or None for any other entry."""
+    """Return the reason why a link, a hidden folder or a hidden archive is not graded, or None for any other entry.
+
+    The result is also None for what programs create.
+    """
     # macOS stores the properties of a file x in a file ._x, for example on a USB stick.
     of_macos = entry.name.startswith("._") and os.path.isfile(entry) and os.path.isfile(entry.with_name(entry.name[2:]))
     if entry.name in _OF_PROGRAMS or (of_macos and not os.path.islink(entry)):
@@ -249,7 +252,7 @@ def misnamed(student: str, path: Path) -> Iterator[Found]:
 def left_out(folder: Path, other_assignments: Collection[str]) -> tuple[Found, ...]:
     """Return what nbgrader does not see in submitted/: entries that are not in a folder STUDENT/EXERCISE.
 
-    Each has the reason why it is not graded. A student with one of the other assignments needs no exercise.
+    Each has the reason why it is not graded. A student with one of the other assignments need not have an exercise.
     """
     found: list[Found] = []
     for each in _in(folder, None, folder) if os.path.isdir(folder) and not _is_one_alone(folder) else ():

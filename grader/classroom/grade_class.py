@@ -85,17 +85,18 @@ def grade_found(
         trusted=request.trusted,
     )
     assert order.exercises  # report mistakes in private checks before grading
-    with results.opened(request.out, request.submissions) as folder:
+    # `grader gradebook sync` gives no folders, and its folder of results cannot be chosen.
+    with results.opened(request.out, request.submissions, chosen=bool(request.submissions)) as folder:
         tell(f"Reading {count(len(found), 'submission')}")
         kept, todo = sort_out(order, folder)
         say(_reported(kept, todo))
         if beside:
-            say(f"Ignored, because these are not submissions: {a_list(beside)}.")
+            say(f"Ignored: {a_list(beside)} {'is not a submission' if len(beside) == 1 else 'are not submissions'}.")
         unlisted = [shown_name(each.student) for each in found if roster and normal_id(each.student) not in roster]
         if unlisted:
             say(
-                "These submissions are not in the roster, so individual numbers, if the exercise has any, are derived "
-                f"from the names of their folders or archives: {a_list(unlisted)}."
+                f"Submissions that are not in the roster: {a_list(unlisted)}. Individual numbers, if the exercise has "
+                "any, are derived from the name of the folder or archive."
             )
         graded: list[Result] = []
         if todo:
@@ -133,7 +134,7 @@ def exit_code(graded: Sequence[Result], fail_under: float | None) -> int:
 def _ros(*, local: bool, tell: Callable[[str], None]) -> str:
     """Return the name of the ROS 2 installation that the results depend on.
 
-    With Dask, all workers must have the same ROS 2.
+    With Dask, all workers must have the same ROS 2. If this machine has none, the name is "of the workers".
     """
     try:
         ros = find_ros()

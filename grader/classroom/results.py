@@ -122,10 +122,11 @@ class Results:
 
 
 @contextmanager
-def opened(folder: Path, submissions: Sequence[Path] = ()) -> Iterator[Results]:
+def opened(folder: Path, submissions: Sequence[Path] = (), *, chosen: bool = True) -> Iterator[Results]:
     """Create the folder if necessary, lock it against other runs, and yield it.
 
     `submissions` are the folders of the class, in which a student could have put a folder with forged results.
+    If the user has `chosen` the folder, the messages advise choosing another one.
 
         with opened(Path("grades")) as results:
             old = results.load("anna", "03-circle-publisher")
@@ -143,7 +144,8 @@ def opened(folder: Path, submissions: Sequence[Path] = ()) -> Iterator[Results]:
         )
         raise UsageError(message)
     if folder.exists() and not (folder.is_dir() and (lock.exists() or not any(folder.iterdir()))):
-        message = f"{folder} contains files that are not results of `grader grade`. Choose a new folder with --out."
+        message = f"{folder} contains files that are not results of `grader grade`. "
+        message += "Choose a new folder with --out." if chosen else "Move them to another folder."
         raise UsageError(message)
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
@@ -153,19 +155,15 @@ def opened(folder: Path, submissions: Sequence[Path] = ()) -> Iterator[Results]:
             mark(lock)
         file = lock.open("a")
     except OSError as error:
-        message = (
-            f"The results cannot be written to {folder}: {error.strerror}. "
-            "Free some space, or choose another folder with --out."
-        )
+        instead = ", or choose another folder with --out" if chosen else ", or make the folder writable"
+        message = f"The results cannot be written to {folder}: {error.strerror}. Free some space{instead}."
         raise MachineError(message) from error
     with file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
-            message = (
-                f"Another `grader grade` or `grader gradebook sync` is using {folder}. Let that command finish, "
-                "or choose another folder with --out."
-            )
+            instead = ", or choose another folder with --out" if chosen else ""
+            message = f"Another `grader grade` or `grader gradebook sync` is using {folder}. Let it finish{instead}."
             raise UsageError(message) from error
         for leftover in folder.rglob(f"*{_PARTIAL}"):
             leftover.unlink(missing_ok=True)

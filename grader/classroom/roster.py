@@ -10,7 +10,7 @@ import csv
 import io
 from typing import TYPE_CHECKING
 
-from grader.common.words import a_list, shorten
+from grader.common.words import a_list, count, shorten
 from grader.errors import UsageError
 from grader.exercise.own_numbers import SAME, normal_id
 
@@ -40,9 +40,10 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
     (_, names), *lines = _lines(file) or [(1, [])]
     columns = [name.lower() for name in names]
     if any(columns.count(name) != 1 for name in needed):
+        columns_of = "the column" if len(needed) == 1 else "the columns"
         wanted = a_list([f'"{name}"' for name in needed]) + (f", and perhaps {a_list(also)}" if also else "")
         header = shorten(",".join(names))
-        message = f'{file} is not a roster: its first line must name the columns {wanted}, but it is "{header}".'
+        message = f'{file} is not a roster: its first line must name {columns_of} {wanted}, but it is "{header}".'
         raise UsageError(message)
     if not lines:
         message = f"{file} is not a roster: it has only one line."
@@ -56,9 +57,8 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
         empty = [name for name in needed if not rows[line][name]]
         name = rows[line][needed[0]]
         if any(values[len(columns) :]):
-            fault = (
-                f"{len(values)} values for {len(columns)} columns. Put a value in quotes if it contains a separator."
-            )
+            fault = f"{len(values)} values for {count(len(columns), 'column')}."
+            fault += " Put a value in quotes if it contains a separator."
         elif empty:
             fault = f"the {empty[0]} is missing."
         elif (first := lines_of.setdefault(normal_id(name), line)) != line:

@@ -57,7 +57,7 @@ class ArchiveFormatError(NotUnpackedError):
 
 
 class LargeArchiveError(NotUnpackedError):
-    """The archive exceeds a limit: its size, its number of entries, or the length or the depth of a path."""
+    """The archive exceeds a limit: size, number of entries, length or depth of a path, time or memory for unpacking."""
 
     diagnosis: ClassVar[Diagnosis] = "submission-too-large"
 

@@ -2,7 +2,7 @@
 
 nbgrader keeps every message in memory: as text, as Python objects, and in the notebook that it writes. Therefore, the
 budget limits the number of messages, their size in bytes, and the number of values in their JSON. For example,
-`[[],[],[]]` needs 30 times as many bytes in memory as in the message.
+`[[],[],[]]` needs more than 20 times as many bytes in memory as in the message.
 """
 
 from __future__ import annotations

@@ -86,7 +86,8 @@ class ClassFolders:
     def left_out(self, steps: Sequence[str], assignments: Collection[str]) -> tuple[str, ...]:
         """Return why entries in the folder of the submissions are not graded.
 
-        `steps` selects the exercises; if it is empty, all are used. `assignments` are the names in the gradebook.
+        `steps` selects the exercises; if it is empty, all are used. `assignments` are the
+        names of the assignments in the gradebook.
         """
         root = Path(self.course.root) / self.course.submitted_directory
         found = left_out(root, [name for name in assignments if name not in catalogue()])

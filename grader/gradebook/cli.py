@@ -78,12 +78,12 @@ def sync(
     typer.echo(f"{count(done.changed, 'score')} of {count(done.submissions, 'submission')} changed.{kept}")
     if done.elsewhere:
         typer.echo(
-            f"Not in the gradebook, because the notebook has no cell for these checks: {a_list(done.elsewhere)}."
+            f"Checks without a cell in the notebook, whose points are not in the gradebook: {a_list(done.elsewhere)}."
         )
     for reason in done.left_out:
         typer.echo(printable(f"Not graded: {reason}"))
     if done.maxima:
-        typer.echo(f"The maximum points of these checks have changed in the gradebook: {a_list(done.maxima)}.")
+        typer.echo(f"Changed maximum points in the gradebook: {a_list(done.maxima)}.")
     for each in done.unconfirmed:
         which = f" {', '.join(each.checks)}" if each.checks else ""
         typer.echo(printable(f"{each.student} {each.step}{which}: 0 points, needs manual grading: {each.why}."))
@@ -106,7 +106,8 @@ def compare(steps: Steps = None, course: Course = None) -> None:
             f"grader gradebook sync {' '.join(done.not_synced)}"
         )
     elif not done.synced:
-        typer.echo("The gradebook has no submissions yet. First type `nbgrader autograde STEP` for a step.")
+        of_steps = f" of {a_list(steps)}" if steps else ""
+        typer.echo(f"The gradebook has no submissions{of_steps} yet. First type `nbgrader autograde STEP` for a step.")
     if not done.synced:
         return
     for each in done.differences:

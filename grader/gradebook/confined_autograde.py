@@ -106,7 +106,7 @@ class ConfinedKernelManager(AsyncKernelManager):
 class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
     """Runs a submitted notebook in a sandbox cell.
 
-    If the kernel dies, each remaining cell of the notebook gets an error as its output.
+    If the kernel dies, each remaining code cell of the notebook gets an error as its output.
     """
 
     trust_submissions = Bool(

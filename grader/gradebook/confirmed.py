@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 NOT_SYNCED = "not confirmed by `grader gradebook sync`"
-NOT_JUDGED = "the grader could not judge it"
-NO_CHECK = "the exercise has no check for this cell"
+NOT_JUDGED = "not judged by the grader"
+NO_CHECK = "the exercise has no such check"
 
 Name = tuple[str, str]
 """A student and an exercise."""

@@ -12,7 +12,10 @@ if TYPE_CHECKING:
 
 
 def kernel_scores(notebook: Path) -> dict[str, float | None] | None:
-    """Return the points in the output of each graded cell, or None if there is no readable autograded notebook."""
+    """Return the points in the output of each graded cell, or None if there is no readable autograded notebook.
+
+    The points are None for a cell that has not run, or whose output nbgrader cannot interpret.
+    """
     try:
         return read(_scores_in, notebook)
     except UnreadableError:

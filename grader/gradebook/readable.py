@@ -52,7 +52,7 @@ def time_of(folder: Path) -> datetime | None:
         if when.year not in YEARS:
             raise ValueError(when.year)  # noqa: TRY301
     except Exception as error:  # dateutil raises other exceptions than ValueError, too
-        message = f"{TIMESTAMP} does not contain a time"
+        message = f"{TIMESTAMP} does not contain a valid time"
         raise UnreadableError(message) from error
     return when
 
@@ -62,7 +62,8 @@ def notebook(path: Path) -> str:
 
     Raises:
         TooLargeError: the notebook exceeds one of the limits in this module.
-        UnreadableError: the path does not lead to a regular file, or the file is not a notebook.
+        UnreadableError: the path does not lead to a regular file.
+        Exception: the file is not a notebook. The reading process turns the exception into an UnreadableError.
     """
     import nbformat
 

@@ -19,7 +19,7 @@ from grader.classroom.grade_class import Request, grade_found
 from grader.classroom.refused import Refused
 from grader.classroom.results import Results
 from grader.common.system_errors import OF_THE_DISK
-from grader.common.words import shorten
+from grader.common.words import a_list, shorten
 from grader.errors import UnreadableError, UsageError
 from grader.gradebook.confirmed import (
     Unconfirmed,
@@ -59,7 +59,8 @@ class Synced:
     maxima: tuple[str, ...]
     """The cells whose maximum points have changed in the gradebook, each with the old and the new points."""
     unconfirmed: tuple[Unconfirmed, ...]
-    """The cells without a confirmed score, and the submissions that could not be read or written."""
+    """The cells without a confirmed score, and the submissions that could not be read or whose scores could not be
+    written."""
 
 
 def sync(
@@ -92,8 +93,8 @@ def sync(
         withhold_unconfirmed(gradebook, results, wanted)
     if not submissions:
         message = (
-            f"{folders.course.submitted_directory} has no submissions yet. Run `nbgrader collect STEP`, or "
-            "copy submissions to this folder."
+            f"{folders.course.submitted_directory} has no submissions{f' of {a_list(wanted)}' if wanted else ''} yet. "
+            "Run `nbgrader collect STEP`, or copy submissions to this folder."
         )
         raise UsageError(message)
     doubtful = unclear({student for student, _ in submissions}, enrolled)
@@ -135,7 +136,7 @@ def _readable(
     submissions: Sequence[tuple[str, str]],
     doubtful: Mapping[str, Refused] = MappingProxyType({}),
 ) -> tuple[tuple[Found, ...], dict[tuple[str, str], str]]:
-    """Return the submissions to grade, and the reasons why other submissions are not graded.
+    """Return all submissions, and the reasons why some of them are not graded.
 
     `doubtful` maps a student to the reason why it is not clear whose submissions these are.
     """

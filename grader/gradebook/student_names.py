@@ -42,9 +42,10 @@ def unclear(folders: Collection[str], enrolled: Collection[str]) -> dict[str, Re
 def _reason(name: str, alike: list[str], enrolled: set[str]) -> Refused:
     ids = enrolled.intersection(alike)
     if not ids:
-        return similar(alike, "Keep one of these folders, and remove or rename the others.")
+        return similar(alike, "Remove or rename all of these folders but one.")
     if len(ids) == 1:
         (other,) = ids
         todo = f"{shown(other)} is the id in the gradebook. Rename the folder {shown(name)} to {shown(other)}."
         return similar(alike, todo)
-    return similar(alike, "Keep one of them, in the gradebook (`nbgrader db student remove ID`) and as a folder.")
+    remove = "remove the ids from the gradebook (`nbgrader db student remove ID`)"
+    return similar(alike, f"Keep one. Of the others, {remove}, and remove or rename the folders.")

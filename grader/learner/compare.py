@@ -59,7 +59,7 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
         if path not in same:
             _print_file(path, theirs.get(path, ""), ours[path], console)
     if same:
-        console.print(f"Identical files: {', '.join(same)}", soft_wrap=True, markup=False)
+        console.print(f"Identical to the solution: {', '.join(same)}", soft_wrap=True, markup=False)
     thoughts = exercise.folder / "afterwards.md"
     if thoughts.is_file():
         text = thoughts.read_text(encoding="utf-8").removeprefix("# ").rstrip()

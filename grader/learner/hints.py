@@ -83,7 +83,7 @@ def _part(exercise: Exercise, part: str) -> str:
     letter = part.lower().rstrip(")")
     parts = sorted({each.part for each in exercise.hints if each.part})
     if letter not in parts:
-        has = f"has the parts {a_list(parts)}" if parts else "has no parts"
+        has = f"has the part{'s' * (len(parts) > 1)} {a_list(parts)}" if parts else "has no parts"
         message = (
             f"{part!r} is not a part of {exercise.id}, which {has}. "
             f"`grader hint {exercise.id[:2]}` gives the next hint."

@@ -11,11 +11,13 @@ from grader.common.words import a_list, count
 def difference(theirs: str, ours: str, path: str) -> str:
     """Return one or more sentences about the differences between the learner's text and the solution's text."""
     if not theirs:
-        return "Your work does not contain this file, or the file is empty."
+        return "Your work does not contain this file, or the file is empty or not UTF-8."
     mine, solution = (_parts(text) if path.endswith(".py") else None for text in (theirs, ours))
     if mine is None or solution is None:
         changes = SequenceMatcher(None, theirs.splitlines(), ours.splitlines(), autojunk=False).get_opcodes()
         lines = sum(max(a2 - a1, b2 - b1) for tag, a1, a2, b1, b2 in changes if tag != "equal")
+        if not lines:
+            return "Only line breaks differ."
         return f"{count(lines, 'line')} differ{'s' if lines == 1 else ''}."
     same = [name for name in solution if mine.get(name) == solution[name]]
     other = [name for name in solution if name in mine and name not in same]

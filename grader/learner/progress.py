@@ -147,8 +147,9 @@ def _read(file: Path) -> dict[str, Any]:
     except FileNotFoundError:
         return {"schema": _SCHEMA, "workspaces": {}}
     except (OSError, ValueError) as error:
+        detail = error.strerror if isinstance(error, OSError) else str(error)
         message = (
-            f"Your progress in {file} cannot be read ({error}). Move the file away to start again. Your work is not "
+            f"Your progress in {file} cannot be read ({detail}). Move the file away to start again. Your work is not "
             "lost."
         )
         raise MachineError(message) from error

@@ -1,4 +1,7 @@
-"""Run the node of a step with a turtlesim and its view. Ctrl-C stops them, but not a turtlesim that already ran."""
+"""Run the node of a step with a turtlesim and its view.
+
+Ctrl-C stops both, but not a turtlesim that was already running.
+"""
 
 from __future__ import annotations
 
@@ -58,7 +61,7 @@ def program_of(step: str | None, executable: str | None, workspace: Path | None)
     if name not in names:
         guess = nearest(name, names)
         hint = f" Did you mean {guess}?" if guess else ""
-        message = f"{exercise.id} has no program {name}.{hint} Its programs are: {', '.join(names)}."
+        message = f"{exercise.id} has no program {name}.{hint} Its programs: {', '.join(names)}."
         raise UsageError(message)
     folder = place if (place / "package.xml").is_file() else place / exercise.package
     return Program(folder.resolve(), exercise.package, name)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from shlex import quote
@@ -41,7 +42,9 @@ class Begun:
 
 
 def start(step: str, folder: Path | None, *, student: str | None = None, fresh: bool = False) -> Begun:
-    """Start a step in the workspace. "next" stands for the first step after the current one that has not passed.
+    """Start a step in the workspace. "next" stands for the first later step that has not passed.
+
+    If all later steps have passed, "next" is the step after the current one. For a new learner, it is the first step.
 
     Raises:
         UsageError: the step does not exist, `student` is empty, or `step` is "next" and the learner has not passed the
@@ -72,9 +75,10 @@ def begin_message(begun: Begun) -> str:
     if new:
         lines.append(f"Added {', '.join(new)}.")
     if started.earlier:
+        these = "this file" if len(started.earlier) == 1 else "these files"
         lines.append(
             f"Also added, from earlier steps: {', '.join(started.earlier)}. "
-            "The tasks (TODO) in these files are not part of this step."
+            f"The tasks (TODO) in {these} are not part of this step."
         )
     if started.present:
         lines.append(f"Not changed: {', '.join(started.present)}.")
@@ -135,17 +139,16 @@ def note(exercise: Exercise, submission: Path, report: Report, folder: Path | No
         return f"{last}You have passed all steps."
     part = next((title for title, names in parts().items() if exercise.id == names[-1]), "")
     lines = [f"That was the last step of {part.lower()}."] if part else []
-    return "\n".join(
-        [
-            *lines,
-            _following(known),
-            f'Our solution next to yours, and the answers to "To think about": grader solution {exercise.id[:2]}',
-        ]
-    )
+    lines.append(_following(known))
+    with suppress(UsageError):  # the repository for students has no solutions
+        workspace.solution(exercise)
+        command = f"grader solution {exercise.id[:2]}"
+        lines.append(f'Our solution next to yours, and the answers to "To think about": {command}')
+    return "\n".join(lines)
 
 
 def _following(known: progress.Progress) -> str:
-    """Return the line that names the next step, or the current step if it has not passed yet."""
+    """Return the line about what is left to do: the current step, the next step, or a step that was left out."""
     if known.current is not None and not known.step(known.current).passed:
         return f"Your current step, {known.current}, has not passed yet."
     return "The next step: grader start next" if _waiting(known) else _open_steps(known)

@@ -34,9 +34,7 @@ def run(exercise: Exercise, folder: Path, workspace: Path | None) -> None:
         UsageError: the folder does not exist.
     """
     if not folder.is_dir():
-        message = (
-            f"The folder {folder} does not exist. Start a step with `grader start`, or name the folder of your package."
-        )
+        message = f"There is no folder {folder}. Start a step with `grader start`, or name the folder of your package."
         raise UsageError(message)
     console = Console(highlight=False)
     options = Options(in_cell=bubblewrap.usable())

@@ -50,7 +50,7 @@ class Verdict:
         Raises UsageError if the check does not exist.
         """
         if check not in self.all_points:
-            message = f"{self.exercise} has no check {check!r}. Its checks are {', '.join(self.all_points)}."
+            message = f"{self.exercise} has no check {check!r}. Its checks: {', '.join(self.all_points)}."
             raise UsageError(message)
         print(self.reasons[check])
         return float(self.all_points[check])

@@ -25,9 +25,9 @@ _SIZE = 4
 
 
 class FrameError(ValueError):
-    """The data is not a frame, or the frame is too large.
+    """A kernel sent data that is not a message, or more than a limit allows.
 
-    The error message says which of the two is the case.
+    The error message completes a sentence that begins with "The kernel sent".
     """
 
 

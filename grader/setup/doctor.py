@@ -25,6 +25,7 @@ from rich.text import Text
 
 from grader.common import package_managers, xdg
 from grader.common.terminal_text import hanging
+from grader.common.words import count
 from grader.errors import MachineError
 from grader.ros import underlay
 from grader.ros.installation import DISTRO, Ros, find_ros
@@ -115,7 +116,7 @@ def render(lines: Iterable[Line], console: Console) -> None:
 
 def look_at_system() -> Line:
     """Return a line with the distribution, the kernel, the architecture and the number of cores."""
-    observed = f"{_distribution()}, {platform.system()} on {platform.machine()}, {os.cpu_count()} cores"
+    observed = f"{_distribution()}, {platform.system()} on {platform.machine()}, {count(os.cpu_count() or 1, 'core')}"
     return Line("system", observed)
 
 

@@ -1,6 +1,6 @@
 """The second half of the set-up: fill .venv from the lock file.
 
-This module runs in .venv before any packages are installed there.
+This module runs in .venv, even if no packages have been installed there yet.
 
 `python -m grader.setup.install STAMP`: STAMP is the stamp of bootstrap.py as JSON. The stamp is written to .venv at the
 end, with the duration of each stage (s), so an interrupted set-up has no stamp.
@@ -84,7 +84,7 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
     say("Installing " + ("what the grader needs" if sourced else "ROS 2 Jazzy and what the grader needs"))
     selected = lock.select(text, parts, without=without)
     if sourced and numpy_is_missing():
-        say("The system has no numpy that can draw the images: .venv gets one, and the system is not changed")
+        say("The system has no numpy that matplotlib can use: .venv gets one, and the system is not changed")
         selected += _NUMPY.read_text(encoding="utf-8")
     rest = _write("rest", selected)
     downloading = _uv("-r", str(rest), *_OPTIONS, "--compile-bytecode")
@@ -139,7 +139,7 @@ def ascii_only(lines: str) -> str:
 def numpy_is_missing() -> bool:
     """Return whether .venv needs its own numpy although a ROS 2 is sourced.
 
-    The system may have no numpy, or one that is too old to draw the images. A numpy inside the prefix of the sourced
+    The system may have no numpy, or one that is too old for matplotlib. A numpy inside the prefix of the sourced
     ROS 2 does not count: the grader's own processes do not search PYTHONPATH.
     """
     try:

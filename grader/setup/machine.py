@@ -274,13 +274,14 @@ def lack_message(
 ) -> str:
     """Return a message with the missing programs, the command that installs them, and `why` they were not installed."""
     whats = [f"  - {what}" for what in dict.fromkeys(need.what for need in needs)]
+    them, parts = ("it", "part was") if len(whats) == 1 else ("them", "parts were")
     lines = ["The course needs the following, which this system does not have:", *whats]
-    lines += [f"The missing parts were not installed: {why}."] if why else []
+    lines += [f"The missing {parts} not installed: {why}."] if why else []
     how = package_managers.command(manager, needs, root=root)
     if manager is None:
-        lines.append(f"Install them with {how}, then run make again.")
+        lines.append(f"Install {them} with {how}, then run make again.")
     else:
-        lines += ["Install them with this command, then run make again:", "", "    " + how, ""]
+        lines += [f"Install {them} with this command, then run make again:", "", "    " + how, ""]
     if any(need.what.startswith("CPython") for need in needs):
         lines += [
             "If the system's Python is older, use a newer system (Debian 12, Ubuntu 22.04), or",

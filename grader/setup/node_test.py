@@ -43,7 +43,9 @@ DOMAIN = 101
 
 
 def why_not_heard(ros: Ros, *, confined: bool) -> str | None:
-    """Publish for up to 20 s. Return None if another node received a message, or else the last line of the output.
+    """Publish for up to 20 s. Return None if another node received a message, or else why not.
+
+    The reason is the last line of the error output if there is one.
 
     If `confined` is True, the publisher is in a cell, and the other node is outside.
     """

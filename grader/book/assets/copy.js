@@ -17,7 +17,7 @@ export function addCopyButtons(root) {
     button.type = "button";
     button.className = "copy";
     button.textContent = "Copy";
-    button.setAttribute("aria-label", block.classList.contains("console") ? "Copy the command" : "Copy the code");
+    button.setAttribute("aria-label", block.classList.contains("console") ? (block.querySelectorAll("kbd").length > 1 ? "Copy the commands" : "Copy the command") : "Copy the code");
     button.addEventListener("click", async () => {
       try {
         await navigator.clipboard.writeText(textOf(block));

@@ -44,8 +44,8 @@ export const FIGURES = {
       return {
         shapes,
         text: `Radius = v / w = ${said(Math.abs(v))} / ${said(Math.abs(w))} = ${said(Math.abs(v / w))} m. `
-          + `One turn takes 2π / w = ${said(2 * Math.PI / Math.abs(w))} s. The circle is on the turtle's ${w > 0 ? "left" : "right"}.`
-          + `${v < 0 ? ` The turtle drives backwards, so its path bends to the ${side}.` : ""}${wall}`,
+          + `One turn takes 2π / w = ${said(2 * Math.PI / Math.abs(w))} s. The circle is on the turtle's ${side}.`
+          + `${v < 0 ? " The turtle drives backwards." : ""}${wall}`,
       };
     },
   },

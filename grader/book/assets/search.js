@@ -21,7 +21,7 @@ export function find(index, query) {
   return found.slice(0, MOST).map((each) => each.entry);
 }
 
-// Return the text around the first word. The text begins and ends with whole words.
+// Return the text around one of the words. The text begins and ends with whole words.
 export function excerpt(text, query) {
   const at = Math.max(...words(query).map((word) => text.toLowerCase().indexOf(word)), 0);
   const from = at > AROUND ? text.indexOf(" ", at - AROUND) + 1 : 0;
@@ -64,11 +64,11 @@ export function addSearch(box, root) {
       if (query !== input.value) return;
       const list = document.createElement(entries.length ? "ul" : "p");
       if (entries.length) list.append(...entries.map((entry) => result(entry, query, root)));
-      else list.textContent = "No section contains all of these words.";
+      else list.textContent = words(query).length > 1 ? "No section contains all of these words." : "No section contains this word.";
       found.replaceChildren(list);
     } catch {
       index = null;
-      found.textContent = "The search needs a web server.";
+      found.textContent = "The search index could not be loaded. The search needs a web server.";
     }
   }
 

@@ -58,6 +58,11 @@ def test_no_page_for_students_tells_an_instructor_what_to_do(students: Path) -> 
     assert not (students / "course" / "nbgrader_config.py").exists()
 
 
+def test_the_makefile_has_only_targets_that_work_without_tests(students: Path) -> None:
+    targets = re.findall(r"^([a-z0-9.-]+):", (students / "Makefile").read_text("utf-8"), re.MULTILINE)
+    assert targets == ["help", "demo", "notebooks", "clean", "python3"]
+
+
 def test_every_link_on_a_page_for_students_leads_somewhere(students: Path) -> None:
     for page in (students / "README.md", *students.glob("docs/*.md"), *students.glob("course/*/*.md")):
         links = re.findall(

@@ -24,6 +24,7 @@ def problems(*lines: str, language: str = "console") -> list[str]:
         ("grader check ~/mine --exercise 44", "the course has no step 44."),
         ("grader check 77", "the course has no step 77."),
         ("grader gradebook sync 03 99", "the course has no step 99."),
+        ("grader gradebook sync 98 03 99", "the course has no step 98 or 99."),
         ("ros2 topci list", "there is no topci. Did you mean 'topic'?"),
         ("ros2 topic lst", "there is no lst. Did you mean 'list'?"),
         ("ros2 topic echo /a --onec", "unrecognized arguments: --onec."),

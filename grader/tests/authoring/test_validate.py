@@ -11,7 +11,7 @@ import pytest
 
 from grader.authoring.console_blocks import blocks
 from grader.authoring.release import main as release
-from grader.authoring.validate import _Validation, validate
+from grader.authoring.validate import _Validation, lesson_problems, validate
 from grader.cli import app
 from grader.errors import UsageError
 from grader.tests.case import copy_solution
@@ -145,6 +145,19 @@ def test_a_check_that_the_starting_point_fails_needs_a_hint(root: Path) -> None:
 def test_unexpected_results_of_gradings_are_reported(root: Path, spoil: Callable[[Path], None], reported: str) -> None:
     spoil(root)
     assert any(problem.startswith(reported) for problem in problems(root))
+
+
+def test_a_starting_point_that_fails_nothing_is_reported(root: Path) -> None:
+    solved_starting_point(root)
+    change(root / "course" / NEW / "exercise.toml", 'starting_point_fails = ["values"]', "")
+    reported = f"exercises/{NEW} fails no check. A starting point must fail at least one check."
+    assert problems(root) == [reported]
+
+
+def test_a_lesson_of_one_word_has_1_word(tmp_path: Path) -> None:
+    (tmp_path / "lesson.md").write_text("Short.\n")
+    (problem,) = lesson_problems(tmp_path / "lesson.md", app)
+    assert "has 1 word (without code)" in problem
 
 
 def test_all_missing_things_are_reported_together(root: Path) -> None:

@@ -127,6 +127,8 @@ def test_the_search_leads_to_a_section(page: Page, url: str) -> None:
     page.wait_for_url(f"{url}{CIRCLE}#the-parts-you-need")
     page.get_by_label("Search").fill("quokka zyzzyva")
     page.get_by_text("No section contains all of these words.").wait_for()
+    page.get_by_label("Search").fill("quokka")
+    page.get_by_text("No section contains this word.").wait_for()
     page.keyboard.press("Escape")
     assert page.get_by_label("Search").input_value() == ""
 

@@ -85,6 +85,22 @@ def test_the_sliders_change_the_circle_by_keyboard(page: Page) -> None:
     )
 
 
+@pytest.mark.parametrize(("v", "w", "side"), [(1, 1, "left"), (1, -1, "right"), (-1, 1, "right"), (-1, -1, "left")])
+def test_the_text_names_the_side_of_the_circle(page: Page, v: int, w: int, side: str) -> None:
+    """The turtle starts at an angle of 0, so its left is up."""
+    step(page, "03-circle-publisher")
+    text, y = page.evaluate(
+        """async ([v, w]) => {
+            const { FIGURES } = await import("../assets/figures.js");
+            const { drive, START } = await import("../assets/motion.js");
+            return [FIGURES.circle.draw({ v, w }).text, drive(START, v, w, 3).at(-1).y - START.y];
+        }""",
+        [v, w],
+    )
+    assert f"The circle is on the turtle's {side}." in text
+    assert (y > 0) == (side == "left")
+
+
 def test_the_other_figures_say_what_they_show(page: Page) -> None:
     step(page, "09-parameters")
     page.get_by_text("angular.z = speed / radius = 1.00 / 2.00 = 0.50 rad/s. One turn takes 12.57 s.").wait_for()

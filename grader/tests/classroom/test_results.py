@@ -32,6 +32,18 @@ def test_other_users_cannot_read_the_marks(tmp_path: Path) -> None:
         assert (tmp_path / "new" / "grades").stat().st_mode & 0o777 == 0o700
 
 
+@pytest.mark.parametrize("chosen", [True, False])
+def test_only_a_folder_that_was_chosen_can_be_another(tmp_path: Path, *, chosen: bool) -> None:
+    """`grader gradebook sync` has no option --out."""
+    with opened(tmp_path / "grades"), pytest.raises(UsageError) as used, opened(tmp_path / "grades", chosen=chosen):
+        pass
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "file").touch()
+    with pytest.raises(UsageError) as foreign, opened(tmp_path / "other", chosen=chosen):
+        pass
+    assert ["--out" in str(error.value) for error in (used, foreign)] == [chosen, chosen]
+
+
 @pytest.fixture
 def of_the_student(tmp_path: Path) -> Path:
     """Return a folder with forged results that a student has handed in."""

@@ -45,11 +45,12 @@ def test_line_numbers_are_those_of_the_file_and_missing_columns_are_empty(file: 
 @pytest.mark.parametrize(
     ("data", "why"),
     [
-        (b"", 'the columns "id", and perhaps name and email, but it is "".'),
+        (b"", 'the column "id", and perhaps name and email, but it is "".'),
         (b"ada,Ada\nbob,Bob\n", 'but it is "ada,Ada".'),
         (b"id,name,id\nada,Ada,a1\n", 'but it is "id,name,id".'),
         (b"id,name\n\n", "it has only one line"),
         (b"id,name\nada,Lovelace, Ada\n", "line 2: 3 values for 2 columns"),
+        (b"id\nada,Ada\n", "line 2: 2 values for 1 column. Put"),
         (b"id,name\n\n,Ada\n", "line 3: the id is missing"),
         (b"id\nada\n\nbob\nada\n", 'line 5: the id "ada" is already on line 2'),
         (b"id\nada\nAda\n", 'line 3: the id "Ada" is already on line 2, as "ada": capital letters'),
@@ -82,7 +83,9 @@ def test_a_submission_finds_its_student_in_any_spelling(file: Path, tmp_path: Pa
 def test_a_name_that_is_not_in_the_roster_changes_no_terminal(tmp_path: Path, file: Path) -> None:
     (tmp_path / "class" / "eve\x1b]0;owned\x07\u202e").mkdir(parents=True)
     file.write_text("submission,student\nann,ann\n")
+    (tmp_path / "class" / "notes.txt").touch()
     done = grade(tmp_path / "class", "--exercise", STEP, "--out", tmp_path / "out", "--roster", file)
     (line,) = [line for line in (done.stdout + done.stderr).splitlines() if "not in the roster" in line]
     assert "eve" in line
+    assert "Ignored: notes.txt is not a submission." in done.stdout
     assert all(char.isprintable() for char in line)

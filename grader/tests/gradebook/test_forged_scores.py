@@ -156,7 +156,7 @@ def test_a_forged_score_never_counts(term: Term, monkeypatch: pytest.MonkeyPatch
     assert not any(waits for _, _, waits in grades(term, "honest").values())
     assert "unreadable" in (term.root / "class" / "results" / "summary.csv").read_text()
     said = term.run("grader", "gradebook", "compare")
-    assert f"forger {STEP} circle: kernel 25, grader 0, needs manual grading (the grader could not judge it)" in said
+    assert f"forger {STEP} circle: kernel 25, grader 0, needs manual grading (not judged by the grader)" in said
     assert f"gone {STEP} circle: kernel 25, grader 0, needs manual grading" in said
     assert "honest" not in said
 

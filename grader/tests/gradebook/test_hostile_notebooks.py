@@ -270,7 +270,7 @@ def test_collect_takes_only_regular_files_of_the_submission(hostile: Hostile) ->
     files = {path.name for path in (submitted / "links" / HOMEWORK).iterdir()}
     assert files == {f"{HOMEWORK}.ipynb", readable.TIMESTAMP}
     assert "does not contain a valid time" in hostile.collected
-    assert "timestamp.txt does not contain a time" in hostile.collected
+    assert "timestamp.txt does not contain a valid time" in hostile.collected
     assert "notes.txt is a link to" in hostile.collected
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
         (["ada", "bob"], ["ada"], {}),
         (["ada"], ["Ada"], {"ada": "Rename the folder ada to Ada."}),
         (["zoe\u0308"], ["zo\u00eb"], {"zoe\u0308": "is the id in the gradebook."}),
-        (["Ada", "ada"], [], dict.fromkeys(["Ada", "ada"], "Keep one of these folders")),
+        (["Ada", "ada"], [], dict.fromkeys(["Ada", "ada"], "Remove or rename all of these folders but one.")),
         (["Ada"], ["Ada", "ada"], {"Ada": "Ada and ada are one student id"}),
         (["Ada", "ada"], ["ada"], {"Ada": "Rename the folder Ada to ada."}),
         (["ada", "ADA", "Ada"], ["ada"], dict.fromkeys(["ADA", "Ada"], "ada is the id in the gradebook.")),

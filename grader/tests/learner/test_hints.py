@@ -134,6 +134,10 @@ def test_an_unknown_part_is_an_error_that_lists_the_parts() -> None:
         hints.hint("07", None, "e")
     with pytest.raises(UsageError, match="'a' is not a part of 03-circle-publisher, which has no parts"):
         hints.hint("03", None, "a")
+    exercise = find_exercise("07")
+    only_a = replace(exercise, hints=tuple(each for each in exercise.hints if each.part == "a"))
+    with pytest.raises(UsageError, match=r"which has the part a\."):
+        hints._part(only_a, "e")
 
 
 def test_hints_without_a_step_say_how_to_start_one() -> None:

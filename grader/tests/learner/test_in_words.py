@@ -38,7 +38,7 @@ REST = "The code is the same in __init__ and the lines outside functions."
             OURS.replace("class Node:", "class Node(Base):"),
             "The code is the same in __init__ and step. The code is different in the lines outside functions.",
         ),
-        ("", "Your work does not contain this file, or the file is empty."),
+        ("", "Your work does not contain this file, or the file is empty or not UTF-8."),
     ],
 )
 def test_it_is_said_in_words(theirs: str, said: str) -> None:
@@ -55,3 +55,4 @@ def test_other_files_are_compared_by_their_lines() -> None:
     assert difference("a\nb\n", "a\nc\n", "setup.cfg") == "1 line differs."
     assert difference("a\nb\n", "a\nc\nd\n", "setup.cfg") == "2 lines differ."
     assert difference("a\nb\na\n", "a\na\nb\n", "package.xml") == "2 lines differ."
+    assert difference("a\nb", "a\nb\n", "setup.cfg") == "Only line breaks differ."

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import pytest
 
 from grader.checks.exercises import find_exercise
-from grader.errors import UsageError
-from grader.learner import progress, steps
+from grader.errors import MachineError, UsageError
+from grader.learner import progress, steps, workspace
 from grader.tests.report.reports import report
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 FIRST, SECOND = "01-first-node", "02-discover-topics"
 
@@ -24,8 +29,24 @@ def test_the_next_step_is_named_only_if_the_current_step_has_passed() -> None:
     assert "The next step: grader start next" in steps.note(find_exercise(FIRST), own, report("passed"))
 
 
+def test_the_command_for_the_solution_is_named_only_if_there_is_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = steps.start(FIRST, None).started.folder
+    assert "grader solution 01" in steps.note(find_exercise(FIRST), own, report("passed"))
+    monkeypatch.setattr(workspace, "course_folder", lambda: tmp_path / "course")
+    assert "solution" not in steps.note(find_exercise(FIRST), own, report("passed"))
+
+
 @pytest.mark.parametrize(("current", "another"), [("04", "05"), ("13", "01")])
 def test_a_step_that_has_not_passed_can_be_skipped_for_another_one(current: str, another: str) -> None:
     steps.start(current, None)
     with pytest.raises(UsageError, match=f"To skip this step for now, .*`grader start {another}`"):
         steps.start("next", None)
+
+
+def test_a_progress_file_that_cannot_be_read_is_named_once() -> None:
+    progress.state_file().mkdir(parents=True)
+    with pytest.raises(MachineError) as refused:
+        progress.load(progress.workspace_of(None))
+    assert str(refused.value).startswith(f"Your progress in {progress.state_file()} cannot be read (Is a directory). ")

@@ -106,6 +106,8 @@ def test_a_step_alone_names_the_files_of_earlier_steps_with_their_tasks() -> Non
     assert "two_pens.py" not in first
     assert second.startswith("Also added, from earlier steps: ")
     assert second.endswith("The tasks (TODO) in these files are not part of this step.")
+    one = replace(begun, started=replace(begun.started, earlier=("two_pens.py",)))
+    assert "The tasks (TODO) in this file are not part of this step." in steps.begin_message(one)
 
 
 def test_a_workspace_that_has_the_earlier_steps_gets_no_file_of_them() -> None:

@@ -104,7 +104,7 @@ def test_the_users_settings_of_colcon_are_for_the_workspace(learner: Learner, se
 
 def test_it_names_what_it_can_run(learner: Learner) -> None:
     told = " ".join(learner.reads("run", "03", "drawcircle").split())
-    assert "Did you mean draw_circle? Its programs are: draw_circle." in told
+    assert "Did you mean draw_circle? Its programs: draw_circle." in told
     learner.reads("start", "02")
     assert "02-discover-topics has no node to run." in learner.reads("run")
 

@@ -76,7 +76,7 @@ def test_one_message_with_one_command() -> None:
 
 def test_why_it_was_not_installed_is_reported() -> None:
     message = machine.lack_message([Need("a compiler", "g++")], APT, root=False, why="sudo is not here")
-    assert "  - a compiler\nThe missing parts were not installed: sudo is not here.\nInstall them" in message
+    assert "  - a compiler\nThe missing part was not installed: sudo is not here.\nInstall it with" in message
 
 
 def test_without_apt_the_things_are_named_all_the_same() -> None:
