@@ -15,7 +15,15 @@ PAGES = {
     "Learn": ["docs/learner", "course/*/lesson", "docs/commands", "docs/glossary", "docs/ros2-differences"],
     "Teach": ["docs/instructor", "grader/classroom/templates/README", "docs/security"],
     "Write exercises": ["docs/authors", "docs/kinds", "grader/checks/README"],
-    "Project": ["docs/design", "docs/development", "docs/costs", "docs/strangers", "CONTRIBUTING", "SECURITY", "CHANGELOG"],
+    "Project": [
+        "docs/design",
+        "docs/development",
+        "docs/costs",
+        "docs/strangers",
+        "CONTRIBUTING",
+        "SECURITY",
+        "CHANGELOG",
+    ],
 }
 """The contents of the site, by caption."""
 include_patterns = ["README.md", *(f"{page}.md" for pages in PAGES.values() for page in pages)]
