@@ -14,7 +14,7 @@ HIGHEST = 232
 def wrong_domain(env: Mapping[str, str]) -> str:
     """Return an error message if ROS_DOMAIN_ID is not a valid domain id, or else an empty string."""
     text = env.get("ROS_DOMAIN_ID", "") or "0"
-    if text.isascii() and text.isdecimal() and int(text) <= HIGHEST:
+    if text.isascii() and text.isdecimal() and len(text) < 100 and int(text) <= HIGHEST:
         return ""
     return (
         f"ROS_DOMAIN_ID is '{text[:40]}'; a whole number from 0 to {HIGHEST} was expected. "
