@@ -46,7 +46,7 @@ def unknown_calls(trials: Sequence[TrialSpec], checks: Sequence[CheckSpec]) -> I
         wanted = check.params.get("call")
         known = calls.get(check.trial, ())
         if wanted is not None and wanted not in known:
-            has = f"the calls {', '.join(known)}" if known else "no calls"
+            has = f"the call{'s' if len(known) > 1 else ''} {', '.join(known)}" if known else "no calls"
             yield f'[[check]] ({check.id}): "call" is "{shorten(str(wanted))}"; the trial {check.trial} has {has}.'
 
 

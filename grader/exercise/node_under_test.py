@@ -23,7 +23,10 @@ SIDE_M = 11.0
 
 @dataclass(frozen=True, kw_only=True)
 class Behaviour:
-    """The behaviour of a node. The correct node has the defaults, except for the keys of `[trial.tests.right]`."""
+    """The behaviour of a node.
+
+    The correct node has the defaults, except for the keys of `[trial.tests.right]` and the student's own numbers.
+    """
 
     topic: str = "/turtle1/cmd_vel"
     type: str = MESSAGES[0]

@@ -79,12 +79,18 @@ def _counts(char: str) -> bool:
     return ord(char) not in _INVISIBLE and (kind == "Cs" or kind not in UNSAFE_CATEGORIES)
 
 
+def without_surrogates(student: str) -> str:
+    """Return the id without surrogates, which TOML cannot contain."""
+    return "".join(char for char in student if unicodedata.category(char) != "Cs")
+
+
 def draw_numbers(spec: NumbersSpec, student: str) -> OwnNumbers:
     """Return a student's individual numbers.
 
-    The numbers are the same on every machine and for every spelling of the student's id (see `normal_id`).
+    The numbers are the same on every machine and for every spelling of the student's id (see `normal_id`). Surrogates
+    do not count, because the file cannot contain them.
     """
-    drawn = hashlib.sha256(f"{spec.step} {normal_id(student)}".encode("utf-8", "surrogatepass")).digest()
+    drawn = hashlib.sha256(f"{spec.step} {normal_id(without_surrogates(student))}".encode()).digest()
     values = {
         name: options[byte % len(options)] for byte, (name, options) in zip(drawn, spec.options.items(), strict=False)
     }
@@ -94,12 +100,11 @@ def draw_numbers(spec: NumbersSpec, student: str) -> OwnNumbers:
 def to_toml(numbers: OwnNumbers) -> str:
     """Return the text of the file. The id can be any string.
 
-    Surrogates, which TOML cannot contain, are left out of the id. The numbers do not depend on them (see `normal_id`).
+    Surrogates are left out of the id. The numbers do not depend on them (see `draw_numbers`).
     """
     escaped = "".join(
         char if char.isprintable() and char not in '"\\' else f"\\U{ord(char):08X}"
-        for char in numbers.student
-        if unicodedata.category(char) != "Cs"
+        for char in without_surrogates(numbers.student)
     )
     lines = [
         "# Your own numbers. They come from your id: do not change this file. The lesson says where to write them.",

@@ -83,6 +83,8 @@ def problem_of(table: Mapping[str, Any], trials: Sequence[Mapping[str, Any]]) ->
     if not isinstance(name, str) or name not in PRESETS:
         return f'"preset" is "{shorten(str(name))}"; it must be {_one_of(PRESETS)}.{_guess(str(name), PRESETS)}'
     ids = [str(trial.get("id")) for trial in trials]
+    if not ids:
+        return f'the preset "{name}" needs a [[trial]].'
     if table.get("trial", ids[0] if ids else "") not in ids:
         return (
             f'"trial" is "{shorten(str(table.get("trial", "")))}"; it must be the id of a [[trial]]: {", ".join(ids)}.'

@@ -163,7 +163,7 @@ def _call(table: Table) -> CallInput:
 
 
 def _set(table: Table, node: str) -> CallInput:
-    """Return the service call that sets one or more parameters of the node, as `ros2 param set` does."""
+    """Return the service call that sets one or more parameters of the node. Several parameters are set atomically."""
     at_s = table.number("at_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)")
     first = _parameter(table.string("parameter"), table.setting("value"))
     others = [_parameter(name, value) for name, value in table.settings("also").items()]

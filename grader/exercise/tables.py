@@ -125,7 +125,7 @@ class Table:
         return tuple(float(each) for each in self._get(key, allowed, good, default=None) or ())
 
     def options(self, key: str) -> tuple[Any, ...]:
-        """Return a list of at least two different values, either all strings or all numbers."""
+        """Return a list of at least two values, which all differ, and are either all strings or all numbers."""
 
         def good(value: object) -> bool:
             if not isinstance(value, list) or len(value) != len(set(map(repr, value))) or len(value) < 2:
@@ -133,7 +133,9 @@ class Table:
             numbers = all(isinstance(each, int | float) and not isinstance(each, bool) for each in value)
             return numbers or all(isinstance(each, str) for each in value)
 
-        return tuple(self._get(key, "a list of at least two different numbers or strings", good, default=["", ""]))
+        return tuple(
+            self._get(key, "a list of at least two numbers or strings, which all differ", good, default=["", ""])
+        )
 
     def setting(self, key: str) -> Any:  # noqa: ANN401 - one of four types
         """Return the value of a node's parameter: true or false, a number, or a string."""

@@ -17,6 +17,8 @@ from grader.evidence.targets import distance_m
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from grader.evidence.evidence import Evidence
     from grader.trial.observed import Track
 
@@ -72,9 +74,16 @@ def _wrong_name(evidence: Evidence) -> Cause | None:
     strange = [name for call in calls if (name := str(call.request["name"])) not in names]
     if not strange:
         return None
-    were = f"{'The target was' if len(names) == 1 else 'The targets were'} {a_list(sorted(names))}."
-    text = f'The node called {CATCH} with the name "{shorten(strange[0])}". {were if names else "No target existed."}'
+    text = f'The node called {CATCH} with the name "{shorten(strange[0])}". {targets_were(names)}'
     return Cause("target-name", text, evidence.place("call_async"))
+
+
+def targets_were(names: Collection[str]) -> str:
+    """Return a sentence with the names of all targets of the trial."""
+    if not names:
+        return "No target existed."
+    listed = a_list([shorten(name) for name in sorted(names)])
+    return f"{'The target was' if len(names) == 1 else 'The targets were'} {listed}."
 
 
 def _never_drives(evidence: Evidence, left: list[Track]) -> Cause:

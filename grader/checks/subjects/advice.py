@@ -71,5 +71,5 @@ USES_TIMER = Kind(
     uses_timer,
     advice=True,
     about="Advises the student to use a timer if the submission never calls `create_timer`, or publishes or logs in "
-    "a loop that sleeps.",
+    "an endless loop that sleeps.",
 )

@@ -102,14 +102,14 @@ def _wrong_names(evidence: Evidence, message: Announcement, heard: list[Announce
     """Return a failed finding if the message does not contain exactly the names of the existing turtles, else None.
 
     The message may or may not contain the name of a turtle that appeared or disappeared at most LATE_S before it or
-    AT_ONCE_S after it, that was caught, or that the node has asked turtlesim to remove.
+    AT_ONCE_S after it. The name of a turtle that was caught, or that the node has asked turtlesim to remove, may be
+    missing while the turtle still exists.
     """
     tracks = evidence.recording.tracks
     from_s, to_s = message.t_s - LATE_S, message.t_s
     where = evidence.place("publish")
     around = {track.turtle for track in tracks if is_there(track, from_s, to_s + AT_ONCE_S)}
     earlier = [call for call in calls_of(evidence) if call.t_s <= to_s]
-    # A turtle that was caught, or that the node has asked turtlesim to remove, may be missing.
     called = {str(call.request.get("name")) for call in earlier if call.by_trial or call.service == "/kill"}
     throughout = {
         track.turtle

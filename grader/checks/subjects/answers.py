@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 KEY = "the name of the answer in answers.toml"
 STRING = "a string in quotation marks"
 LIST_OF_STRINGS = "a list of strings in quotation marks"
-NUMBER = "a number, without quotation marks"
+NUMBER = "a number without quotation marks"
 EXAMPLES = {STRING: '"answer"', LIST_OF_STRINGS: '["first", "second"]', NUMBER: "12.5"}
 """Maps each form of an answer to an example."""
 KEEP_LOOKING = "Run the `ros2` command again and compare letter by letter."
@@ -101,7 +101,7 @@ class GraphQuestion:
     """A question about the topics, types or nodes in the ROS graph. Only endpoints that match all parameters count.
 
     If `connected_to` is set, a topic counts only if the node with that name has an endpoint of the opposite kind on
-    the topic.
+    the topic (of any kind if `among` is "all").
     """
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
@@ -118,7 +118,7 @@ class GraphQuestion:
         "a node's full name",
         start="/",
         default="",
-        about="A topic counts only if this node has an endpoint of the opposite kind on it.",
+        about='A topic counts only if this node has an endpoint of the opposite kind (with "all", of any kind) on it.',
     )
     form: str = choice("text", "list", about="Whether the answer is a single string or a list of all matching strings.")
 
@@ -210,10 +210,8 @@ def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
     why = Cause("wrong-answer", "`ros2 topic hz` shows the number of messages per second.")
     # The answer cannot be 0 here: the handout contains 0 for an answer that is still missing.
     if Band.around(truth, truth * params.tolerance_percent / 100.0).holds(1.0 / given):
-        why = Cause(
-            "period-for-rate",
-            "This is the period, the time between two messages in seconds. The rate is 1 divided by the period.",
-        )
+        text = "This is the period, the time between two messages in seconds. The rate is 1 divided by the period."
+        why = Cause("period-for-rate", text)
     return _wrong(evidence, params.answer, given, f"{params.answer} is the rate that `ros2 topic hz` measures.", why)
 
 
@@ -226,7 +224,7 @@ def _given(evidence: Evidence, name: str, form: str, kind: type) -> Answer | Fin
     if answer is None and not unusable:
         return failed(f"{name} is not answered yet.", f"{name} is {form}.", Cause("no-answer", where=where))
     if answer is None or not isinstance(answer, kind):
-        observed = f"{name} is not {form}." if answer is None else f"{name} is {_shown(answer)}."
+        observed = f"{name} is not {form}." if answer is None else f"{name} is {shown_answer(answer)}."
         cause = f"Write the answer in this form: `{name} = {EXAMPLES[form]}`."
         return failed(observed, f"{name} is {form}.", Cause("answer-form", cause, where))
     return answer
@@ -241,7 +239,7 @@ def _compare(evidence: Evidence, name: str, given: Answer, truth: Collection[str
     parts = [f"{surplus} too many" if surplus else "", f"{missing} missing" if missing else ""]
     difference = " and ".join(part for part in parts if part)
     where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
-    observed = f"{name} is {_shown(given)}: {difference}."
+    observed = f"{name} is {shown_answer(given)}: {difference}."
     diagnosis: Diagnosis = "wrong-list" if surplus and missing else "list-too-long" if surplus else "list-incomplete"
     expected = "The list contains all correct items, and no other items."
     return failed(observed, expected, Cause(diagnosis, cause.strip(), where))
@@ -249,14 +247,15 @@ def _compare(evidence: Evidence, name: str, given: Answer, truth: Collection[str
 
 def _wrong(evidence: Evidence, name: str, given: Answer, expected: str, why: Cause) -> Finding:
     where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
-    return failed(f"{name} is {_shown(given)}.", expected, why.at(where))
+    return failed(f"{name} is {shown_answer(given)}.", expected, why.at(where))
 
 
 def _plain(answer: str) -> str:
     return " ".join(answer.lower().split())
 
 
-def _shown(answer: Answer) -> str:
+def shown_answer(answer: Answer) -> str:
+    """Return an answer in the form in which a message shows it."""
     if isinstance(answer, tuple):
         return f"[{', '.join(shorten(each, 30) for each in answer[:8])}]"
     return f'"{shorten(answer)}"' if isinstance(answer, str) else f"{answer:g}"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.kind import Kind, choice, number, string
 from grader.checks.outcome import Finding, failed, passed
-from grader.checks.subjects.answers import KEY
+from grader.checks.subjects.answers import KEY, shown_answer
 from grader.checks.subjects.recorded_bag import BAG
 from grader.checks.tolerance import Band
 from grader.common.lazy import np
@@ -68,7 +68,8 @@ def bag_answer(evidence: Evidence, params: BagAnswer) -> Finding:
         return failed(f"{params.answer} is not answered yet.", expected, Cause("no-answer", where=where))
     match = NUMBER.fullmatch(f"{given:.0f}" if isinstance(given, float) and not unit else str(given).strip())
     if match is None:
-        return failed(f"{params.answer} is {shorten(str(given))}.", expected, Cause("answer-form", where=where))
+        written = shown_answer(given) if isinstance(given, tuple) else shorten(str(given))
+        return failed(f"{params.answer} is {written}.", expected, Cause("answer-form", where=where))
     value, has = float(match["number"]), match["unit"]
     observed = f"{params.answer} is {shorten(match[0])}."
     if has != unit:

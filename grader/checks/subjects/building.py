@@ -31,6 +31,8 @@ SETUP_PY_FRAME = re.compile(r"(?P<before>, in run_setup\n.*\n(?:[ ^~]+\n)?\s+Fil
 """Matches the traceback entry for setup.py if colcon ran setup.py to read the arguments of setup()."""
 UNREAD_SETUP = "return ast.literal_eval(output)"
 """The line in colcon's source that reads the arguments of setup()."""
+UNNAMED = re.compile(r"And (?P<files>\d+) more\.")
+"""Matches the last entry of `rejected` if there are more files than it names."""
 NO_FILE = re.compile(r"can't copy '?(?P<file>[^':]*)'?: doesn't exist")
 IGNORE_MARKERS = (IGNORE_MARKER, "AMENT_IGNORE", "CATKIN_IGNORE")
 """Files with these names make colcon ignore a ROS 2 package."""
@@ -49,7 +51,10 @@ def plain_files(evidence: Evidence, _: NoParams) -> Finding:
     rejected = evidence.submission.rejected
     if rejected:
         observed = f"Left out: {shorten(rejected[0], 150)}"
-        more = f" (and {len(rejected) - 1} more)." if len(rejected) > 1 else "."
+        rest = len(rejected) - 1
+        if uncounted := UNNAMED.fullmatch(rejected[-1]):
+            rest += int(uncounted["files"]) - 1
+        more = f" (and {rest} more)." if rest else "."
         expected = "A package contains only normal files and folders of a limited size."
         return failed(observed.rstrip(".") + more, expected, Cause("rejected-file"))
     return passed("The package contains only normal files and folders.")
@@ -255,7 +260,8 @@ PLAIN_FILES = Kind(
     "The package contains only normal files",
     NoParams,
     plain_files,
-    about="The submission contains only files and folders: no links to the outside, no devices, no huge files.",
+    about="The submission contains only normal files and folders of a limited size: for example, no devices, and no "
+    "links that lead out of the package.",
 )
 BUILDS = Kind(
     "builds",

@@ -44,7 +44,7 @@ class SaysWhetherActive:
 
 @dataclass(frozen=True, kw_only=True)
 class NoGoalAfter:
-    """The service that the trial calls. After the call, the node must not send any more goals."""
+    """The service that the trial calls. After a call during a goal, the node must not send any more goals."""
 
     service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
 
@@ -94,7 +94,7 @@ def _goes_on(evidence: Evidence, params: CancelsGoal, goal: Goal, took_s: float,
 
 
 def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
-    """After the trial has called the service, no goal arrives."""
+    """After the trial's first call to the service during a goal, no goal arrives."""
     expected = f"After a call to {params.service}, the node sends no more goals."
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     goals = goals_of(evidence)
@@ -193,7 +193,8 @@ NO_GOAL_AFTER = Kind(
     "No goal follows a cancelled one",
     NoGoalAfter,
     no_goal_after,
-    about="After a `[[trial.call]]` to the service, the node sends no more goals to `/turtle1/rotate_absolute`.",
+    about="After the first `[[trial.call]]` to the service during a goal, the node sends no more goals to "
+    "`/turtle1/rotate_absolute`.",
 )
 SAYS_WHETHER_ACTIVE = Kind(
     "says_whether_active",

@@ -11,13 +11,13 @@ from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_again import why_again
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_killed import SAME_TIME_S, why_killed
-from grader.checks.causes.why_not_caught import why_not_caught
+from grader.checks.causes.why_not_caught import targets_were, why_not_caught
 from grader.checks.causes.why_unasked import why_unasked
 from grader.checks.kind import Kind, NoParams, number, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.starved import unless_starved
 from grader.checks.subjects.services import calls_of
-from grader.common.words import a_list, count, shorten
+from grader.common.words import count, shorten
 from grader.evidence import activity
 from grader.evidence.interventions import KILL, RESET, moved_by
 from grader.evidence.targets import caught, distance_m, is_there, moved_targets
@@ -65,7 +65,8 @@ class WithinReach:
 def catches(evidence: Evidence, params: Catches) -> Finding:
     """At least `turtles` targets appeared, all were caught before SIGINT, and turtle1 moved only by driving.
 
-    A target that the trial itself removed need not be caught.
+    A target that the trial itself removed need not be caught. If `service` is set, each caught target must have been
+    removed after a call to this service. The node may neither remove nor move the trial's own targets by itself.
     """
     recording = evidence.recording
     expected = f"All targets are caught within {recording.duration_s:g} s, and turtle1 moves only by driving."
@@ -97,7 +98,7 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
         return crash_finding(evidence, crash, end_observed(evidence), expected)
     observed = f"{len(gone)} of {count(len(tracks), 'target')} {'was' if len(gone) == 1 else 'were'} caught."
     if len(tracks) < params.turtles:
-        observed = f"Only {count(len(tracks), 'target')} of {params.turtles:.0f} appeared."
+        observed = f"{len(tracks)} of {count(int(params.turtles), 'target')} appeared."
     if end_observed(evidence):
         observed = f"{end_observed(evidence)} {observed}"
     finding = failed(observed, expected, why_not_caught(evidence, left))
@@ -117,7 +118,7 @@ def _uncaught(recording: Recording, gone: list[Track], service: str) -> Track | 
 
 
 def _without_driving(evidence: Evidence) -> tuple[str, str] | None:
-    """Return how the node caught a target without driving to it, and the cause, or None.
+    """Return how the node removed or moved targets by itself, and an explanation, or None.
 
     If the submission itself spawns the targets, it may move and remove them, so the result is None.
     """
@@ -202,7 +203,7 @@ def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
         track = tracks.get(str(call.request["name"]))
         if track is None:
             observed = f'The node called {params.service} with the name "{shorten(str(call.request["name"]))}".'
-            text = f"The targets were {a_list(sorted(tracks))}. The name is a field of the request."
+            text = f"{targets_were(tracks)} The name is a field of the request."
             return failed(observed, expected, Cause("target-name", text, where))
         if track.gone_s is not None and track.gone_s < call.t_s:
             continue
@@ -246,7 +247,8 @@ CATCHES = Kind(
     "All turtles are caught",
     Catches,
     catches,
-    about="All turtles except turtle1 are removed before the end, and only velocity commands move turtle1.",
+    about="All turtles except turtle1 are removed before the end, and only velocity commands move turtle1. If the "
+    "trial has `targets`, the node may neither remove nor move them itself.",
     drives=True,
 )
 NEAREST_FIRST = Kind(

@@ -15,6 +15,7 @@ from grader.checks.subjects.goals import goals_of, no_goal
 from grader.checks.subjects.log import LogFormat, lines_in
 from grader.checks.tolerance import Band
 from grader.common.lazy import np
+from grader.common.words import count
 from grader.evidence import activity, student_log
 from grader.turtlesim.turtle import normalize
 
@@ -75,7 +76,8 @@ def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
     turning_s = sum(_ended_s(evidence, goal) - goal.t_s for goal in goals)
     amount = Band(0.5 * turning_s / params.period_s - 1.0, 2.0 * turning_s / params.period_s + 1.0)
     if not amount.holds(len(told)):
-        observed = f"{len(told)} lines with the feedback appeared while the turtle turned for {turning_s:.1f} s."
+        lines_told = count(len(told), "line")
+        observed = f"{lines_told} with the feedback appeared while the turtle turned for {turning_s:.1f} s."
         if len(told) > turning_s / params.period_s:
             text = (
                 "The feedback arrives 62 times per second. Store the number, and log the stored number in the "

@@ -140,7 +140,7 @@ def _late(evidence: Evidence, called: Called, expected: str, name: str) -> Findi
     observed = f"{name} did not end in time."
     if not called.ended:
         observed = f"{name} was not called with this input, because an earlier call did not end."
-    cause = "A loop may never end, or the function may wait for something that never happens."
+    cause = "A loop may never end, or the code may wait for something that never happens."
     return failed(observed, expected, Cause("call-too-long", cause, evidence.code.start))
 
 
@@ -219,7 +219,7 @@ def refuses(evidence: Evidence, params: OneCall) -> Finding:
 def _form(called: Called) -> str:
     if called.values is not None:
         numbers = a_list([f"{each:.3g}" for each in called.values])
-        return f"{count(len(called.values), 'number')} ({numbers})"
+        return f"{count(len(called.values), 'number')} ({numbers})" if numbers else "no numbers"
     return {"NoneType": "None", "str": "a string"}.get(called.kind, f"a value of type {shorten(called.kind, 30)}")
 
 

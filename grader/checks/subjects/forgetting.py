@@ -32,7 +32,10 @@ class Forgets:
 
 
 def forgets(evidence: Evidence, params: Forgets) -> Finding:
-    """Later than REACTS_S after the topic first lacks a withdrawn target, the node does not call the service for it."""
+    """The node soon stops calling the service for a withdrawn target.
+
+    It may still call the service until REACTS_S after the first message on the topic without the name of the target.
+    """
     recording = evidence.recording
     expected = f"The node forgets a target that {params.topic} no longer contains, and does not drive to it."
     topic = [

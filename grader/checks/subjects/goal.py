@@ -18,6 +18,7 @@ from grader.checks.subjects.path import MOVED_M, not_driven
 from grader.checks.subjects.standstill import no_standstill
 from grader.checks.tolerance import Band
 from grader.common.lazy import np
+from grader.common.words import count
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -55,9 +56,10 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
     if still is not None:
         if still.diagnosis != "not-moving" or trajectory.turned_rad < math.tau:
             return still
+        turns = count(round(trajectory.turned_rad / math.tau), "full turn")
         text = (
-            f"The turtle only turned on the spot, by {trajectory.turned_rad / math.tau:.0f} full turns in total. The "
-            "angle to turn by is the direction to the goal minus theta."
+            f"The turtle only turned on the spot, by {turns} in total. "
+            "The angle to turn by is the direction to the goal minus theta."
         )
         where = evidence.code.assigned("angular", "z") or where
         return still.because(Cause("turns-on-the-spot", text, where))
@@ -109,10 +111,10 @@ def _not_there(evidence: Evidence, params: Goal, expected: str, where: Where | N
 
 
 def _on_the_way(evidence: Evidence, params: Goal) -> str:
-    """Return how a turtle that ends nearer to the goal than it started, but not at the goal, drove."""
+    """Describe the drive of a turtle that ends nearer to the goal than it started, but not at the goal."""
     trajectory = evidence.trajectory
     if trajectory.wall.any():
-        return "The turtle ran into a wall. Keep the angle between -pi and pi with atan2(sin(a), cos(a))."
+        return "The turtle ran into a wall. Keep the angle a between -pi and pi with atan2(sin(a), cos(a))."
     turns = [command.angular[2] for command in evidence.commands if command.angular[2]]
     changes = sum(before * after < 0 for before, after in pairwise(turns))
     if changes >= max(SWAYS_LEAST, SWAYS * len(turns)):

@@ -94,7 +94,7 @@ def first_call_s(evidence: Evidence) -> float:
 
 
 def _reached(evidence: Evidence, goal: Goal) -> bool:
-    """Return whether the turtle reached the goal, or the trial requested the cancellation of the goal."""
+    """Return whether the turtle reached the goal, or the goal was cancelled after the trial's first call."""
     by_trial = goal.cancel_asked_s is not None and goal.cancel_asked_s >= first_call_s(evidence)
     return goal.status == "succeeded" or (goal.status == "canceled" and by_trial)
 
@@ -163,9 +163,15 @@ def _other_turn(before: Goal, goal: Goal, turn_deg: float) -> str:
         return "A goal is an absolute heading, not a turn: 0 is to the right, whatever the heading was before."
     more = math.degrees(normalize(theta - float(before.request["theta"])))
     return (
-        f"This heading is {abs(more):.0f} degrees further to the {'left' if more >= 0 else 'right'} than the previous "
+        f"This heading is {_degrees(abs(more))} further to the {'left' if more >= 0 else 'right'} than the previous "
         f"one. The exercise asks for {turn_deg:g} degrees to the left."
     )
+
+
+def _degrees(angle: float) -> str:
+    """Return '1 degree' or '40 degrees'. The angle can be NaN."""
+    shown = f"{angle:.0f}"
+    return f"{shown} degree{'' if shown.lstrip('-') == '1' else 's'}"
 
 
 def _again(before: Goal, goal: Goal) -> str:
@@ -183,8 +189,7 @@ def _other_heading(
 ) -> Finding:
     theta = float(goal.request["theta"])
     where = evidence.code.assigned("theta") or evidence.place("Goal", *SENDS)
-    shown = f"{math.degrees(theta):.0f}"
-    degrees = f"{shown} degree{'' if shown.lstrip('-') == '1' else 's'}"
+    degrees = _degrees(math.degrees(theta))
     observed = f"The goal sent at {goal.t_s:.1f} s has theta={theta:.2f} rad, which is {degrees}."
     if abs(theta) > LARGE_RAD and abs(theta - heading) < 1.0:
         text = "The field theta is in radians. math.radians converts degrees to radians."

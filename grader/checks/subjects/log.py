@@ -138,7 +138,7 @@ def _other_numbers(format_: str) -> Cause:
 
 
 def unless_other_numbers(finding: Finding, evidence: Evidence, format_: str) -> Finding:
-    """Return the failed finding or, if some log lines have the right words but other numbers, one about these lines."""
+    """Return the finding or, if it failed and some log lines have the right words but other numbers, one about them."""
     right = student_log.in_format(evidence.recording, format_)
     pattern = student_log.Format(format_).pattern()
     logged = (line.text for line in student_log.students(evidence.recording))
@@ -146,8 +146,8 @@ def unless_other_numbers(finding: Finding, evidence: Evidence, format_: str) -> 
     if finding.status is not Status.FAILED or not others:
         return finding
     observed = (
-        f"The format fits only {len(right)} of {count(len(right) + len(others), 'log line')}. Another line is "
-        f'"{shorten(others[-1], 90)}".'
+        f"The format does not fit {len(others)} of {count(len(right) + len(others), 'log line')} with the right words, "
+        f'for example "{shorten(others[-1], 90)}".'
     )
     return failed(observed, finding.expected, _other_numbers(format_).at(log_place(evidence, others[-1])))
 

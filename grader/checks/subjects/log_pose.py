@@ -227,8 +227,9 @@ def _trusted(recording: Recording, format_: str) -> list[Line]:
 def _too_few(evidence: Evidence, text_: str, from_s: float = 0.0) -> Finding:
     if sum(line.t_s >= from_s for line in student_log.in_format(evidence.recording, text_)) >= FEWEST:
         return too_busy()
-    expected = f"The log has at least {FEWEST} lines in this format."
-    where = log_place(evidence, student_log.Format(text_).example())
+    example = student_log.Format(text_).example()
+    expected = f'The log has at least {FEWEST} lines such as "{example}".'
+    where = log_place(evidence, example)
     finding = failed("There are too few lines to compare.", expected, Cause("too-few-log-lines", where=where))
     return unless_other_numbers(finding, evidence, text_)
 
@@ -248,7 +249,7 @@ def _at(recording: Recording, t_s: float, values: Floats) -> float:
 
 
 def _is_chords(logged: list[Line], numbers: list[float]) -> bool:
-    """Return whether the distance grows by the straight lines between the positions in the lines, if there are any."""
+    """Return whether the lines show positions, and the distance grows by the straight line from each to the next."""
     if not logged[0].numbers.keys() >= {"x", "y"}:
         return False
     steps = np.hypot(np.diff([line.numbers["x"] for line in logged]), np.diff([line.numbers["y"] for line in logged]))

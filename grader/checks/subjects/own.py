@@ -13,7 +13,7 @@ from grader.checks.own_values import drawn_numbers, numbers_spec, read_numbers
 from grader.checks.subjects.path import CircleParams, circle, requested_circle
 from grader.checks.subjects.rate import Rate, rate
 from grader.common.words import shorten
-from grader.exercise.own_numbers import draw_numbers, normal_id
+from grader.exercise.own_numbers import draw_numbers, normal_id, without_surrogates
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
     if isinstance(found, Finding):
         return found
     spec, by = numbers_spec(evidence), evidence.submission.student
-    if by is not None and normal_id(found.student) != normal_id(by):
+    if by is not None and normal_id(found.student) != normal_id(without_surrogates(by)):
         observed = (
             f'The numbers in {spec.file} were assigned to "{shorten(found.student)}", '
             f'but "{shorten(by)}" submitted them.'

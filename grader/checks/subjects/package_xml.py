@@ -79,7 +79,10 @@ class Dependencies:
 
 
 def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
-    """package.xml declares these packages (and imported ROS 2 packages, if required) as <depend> or <exec_depend>."""
+    """package.xml declares these packages (and imported ROS 2 packages, if required) as <depend> or <exec_depend>.
+
+    It declares no class, such as Twist.
+    """
     manifest = evidence.manifest
     imported = _imported(evidence) if params.imports == "declared" else {}
     needed = tuple(dict.fromkeys((*params.packages, *imported)))
@@ -227,7 +230,8 @@ DEPENDENCIES = Kind(
     "package.xml declares what the node uses",
     Dependencies,
     dependencies,
-    about="package.xml declares the required packages with `<depend>` or `<exec_depend>`.",
+    about="package.xml declares the required packages with `<depend>` or `<exec_depend>`, and declares no class, such "
+    "as Twist.",
 )
 NAME = Kind(
     "package_name",

@@ -34,7 +34,10 @@ OTHER_TYPE = "Wrong parameter type"
 STEP = "valid step"
 READ_ONLY = "Trying to set a read-only parameter"
 OUT_OF_RANGE = re.compile(r"Parameter .* out of range|The parameter value for .* valid step")
-"""The reasons that rclpy itself gives when it refuses a value. Every other reason comes from the student's callback."""
+"""Matches the reason that rclpy gives for a value outside the range.
+
+A reason that fits none of these five constants comes from the student's callback.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,7 +108,7 @@ def sets_parameter(evidence: Evidence, params: SetsParameter) -> Finding:
     successful, reason = result["successful"], result["reason"].strip()
     if params.answer == "accepted" and not successful:
         return _refused(
-            evidence, f"The node refused {name} = {value}: {shorten(reason or 'no reason')}.", expected, reason
+            evidence, f"The node refused {name} = {value}: {_sentence(reason or 'no reason')}", expected, reason
         )
     if params.answer == "refused" and successful:
         text = (
@@ -118,7 +121,12 @@ def sets_parameter(evidence: Evidence, params: SetsParameter) -> Finding:
         text = "Set the field reason of the SetParametersResult to a sentence for the user."
         observed = f"The node refused {name} = {value} without a reason."
         return failed(observed, expected, Cause("no-reason", text, where))
-    return passed(f"The node {params.answer} {name} = {value}" + (f": {shorten(reason)}." if reason else "."))
+    return passed(f"The node {params.answer} {name} = {value}" + (f": {_sentence(reason)}" if reason else "."))
+
+
+def _sentence(reason: str) -> str:
+    """Return the reason with one full stop at the end."""
+    return f"{shorten(reason).removesuffix('.')}."
 
 
 def _unanswered(evidence: Evidence, observed: str, expected: str, where: Where | None) -> Finding:

@@ -221,7 +221,7 @@ def _not_round(
 
 
 def _too_short(evidence: Evidence, trajectory: Trajectory, turns: float, expected: str, *, near_edge: bool) -> Finding:
-    observed = f"The turtle drove {turns:.2f} of a turn."
+    observed = f"The turtle drove {turns:.2f} turns."
     crash, early = crash_of(evidence), ended_early(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, observed, expected)
@@ -229,14 +229,14 @@ def _too_short(evidence: Evidence, trajectory: Trajectory, turns: float, expecte
         return failed(observed, expected, Cause("ended-early", early, evidence.place("publish")), near_edge=near_edge)
     commands = all_commands(evidence)
     if commands[0].t_s > LATE_S:
-        observed = f"The turtle drove {turns:.2f} of a turn; the first command arrived at {commands[0].t_s:.1f} s."
+        observed = f"The turtle drove {turns:.2f} turns; the first command arrived at {commands[0].t_s:.1f} s."
         text = "A turtle that starts late has less time for the circle."
         why = Cause("late-start", text, evidence.place("sleep", "publish"))
     elif trajectory.rests:
-        observed = f"The turtle drove {turns:.2f} of a turn, with {count(trajectory.rests, 'stop')} on the way."
+        observed = f"The turtle drove {turns:.2f} turns, with {count(trajectory.rests, 'stop')} on the way."
         why = Cause("stops-and-goes", "The turtle stops when no command arrives for 1 s.")
     elif activity.end_s(evidence.recording) - commands[-1].t_s > LIVES_S:
-        observed = f"The turtle drove {turns:.2f} of a turn; the last command arrived at {commands[-1].t_s:.1f} s."
+        observed = f"The turtle drove {turns:.2f} turns; the last command arrived at {commands[-1].t_s:.1f} s."
         why = Cause("stopped-early", "The turtle stops when no command arrives for 1 s.", cancelled(evidence))
     else:
         speed = steady_command(evidence)
@@ -249,7 +249,8 @@ def _too_short(evidence: Evidence, trajectory: Trajectory, turns: float, expecte
 def no_wall(evidence: Evidence, _: NoParams) -> Finding:
     """The turtle touched no wall in any frame.
 
-    The check is skipped if the turtle never drove, or if its position became NaN.
+    The check fails if something other than a velocity command moved the turtle. It is skipped if the turtle never
+    drove, or if its position became NaN.
     """
     trajectory = evidence.trajectory
     # A turtle that is always teleported away before it reaches a wall would never touch one.

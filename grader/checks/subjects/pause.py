@@ -129,6 +129,6 @@ PAUSE = Kind(
     Pause,
     pause,
     about="The turtle stands still between two times, for example from the trial's first call to the second call, and "
-    "then continues.",
+    "then continues (unless `goes_on` is 0).",
     drives=True,
 )

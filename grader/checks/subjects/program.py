@@ -108,7 +108,7 @@ def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
         observed = f"For a bag without poses, {name} printed no message ({called.ended})."
         cause = "If you call sys.exit with a string, Python prints the string."
         return failed(observed, expected, Cause("exit-code", cause, evidence.place("exit")))
-    return passed(f'{name} printed "{shorten(printed[-1], 80)}"')
+    return passed(f'{name} printed "{shorten(printed[-1], 80)}".')
 
 
 def _why(evidence: Evidence, key: str, given: dict[str, float], bag: BagInput) -> Cause:
@@ -201,7 +201,7 @@ PRINTS = Kind(
     "The program prints the content of the bag",
     Printed,
     prints,
-    about="The argument of the executable is the name of a `[[trial.bag]]`. The executable prints a line in the given "
+    about="The argument of the executable is the path of a `[[trial.bag]]`. The executable prints a line in the given "
     "format with the right numbers for the poses in the bag, and ends with exit code 0.",
 )
 ENDS = Kind(
@@ -210,6 +210,6 @@ ENDS = Kind(
     "The program reports what is missing",
     OneCall,
     ends_with_message,
-    about="The argument of the executable is the name of a `[[trial.bag]]` without poses. The executable prints a "
+    about="The argument of the executable is the path of a `[[trial.bag]]` without poses. The executable prints a "
     "sentence and ends with an exit code other than 0, without a traceback.",
 )

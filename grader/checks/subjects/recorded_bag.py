@@ -11,7 +11,7 @@ from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.tolerance import Band
 from grader.common.lazy import np
-from grader.common.words import a_list, shorten
+from grader.common.words import a_list, count, shorten
 from grader.evidence.circle_fit import fit_circle, turns_about
 from grader.submission.bag_folder import Poses
 from grader.submission.where import Where
@@ -75,7 +75,7 @@ def readable(evidence: Evidence, params: InBag) -> Finding:
     if not sum(bag.counts.values()):
         cause = "The recording ended before anything arrived, or no node published anything during the recording."
         return failed(f"The bag {params.bag} is empty.", expected, Cause("bag-empty", cause, where))
-    return passed(f"The bag contains {sum(bag.counts.values())} messages.")
+    return passed(f"The bag contains {count(sum(bag.counts.values()), 'message')}.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,17 +87,18 @@ class TopicInBag(InBag):
 
 
 def topic_in_bag(evidence: Evidence, params: TopicInBag) -> Finding:
-    """The bag contains messages on the topic."""
+    """The bag contains messages on the topic, which has the right type."""
     bag, where = evidence.bag(params.bag), Where(params.bag)
     expected = f"The bag contains {params.topic} with messages of type {params.type}."
-    held = [f"{shorten(topic)} ({count})" for topic, count in sorted(bag.counts.items())]
+    held = [f"{shorten(topic)} ({count(amount, 'message')})" for topic, amount in sorted(bag.counts.items())]
+    observed = f"The bag contains {a_list(held) or 'no topics'}."
     if bag.types.get(params.topic, params.type) != params.type:
         observed = f"{params.topic} has the type {shorten(bag.types[params.topic])} in the bag."
         return failed(observed, expected, Cause("wrong-type", "", where))
     if not bag.counts.get(params.topic):
         cause = "The last arguments of `ros2 bag record` are the topics to record. Each topic begins with a slash."
-        return failed(f"The bag contains {a_list(held)}.", expected, Cause("bag-topic", cause, where))
-    return passed(f"The bag contains {a_list(held)}.")
+        return failed(observed, expected, Cause("bag-topic", cause, where))
+    return passed(observed)
 
 
 @dataclass(frozen=True, kw_only=True)

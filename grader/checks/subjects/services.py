@@ -89,7 +89,7 @@ def calls_service(evidence: Evidence, params: CallsService) -> Finding:
 def _before_the_answer(call: Call, asked: Call) -> bool:
     """Return whether the call arrived before the response to the call `asked`.
 
-    If there was no delay, the call and the response have the same time.
+    Without a response, return False. If there was no delay, the call and the response have the same time.
     """
     return asked.answered_s is not None and call.t_s < asked.answered_s - AT_ONCE_S
 

@@ -11,6 +11,7 @@ from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.tolerance import Band
 from grader.common.lazy import np
+from grader.common.words import count
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -49,10 +50,10 @@ def short_turn(evidence: Evidence, params: ShortTurn) -> Finding:
     if most.holds(wrong) or math.pi - abs(error) <= EITHER_RAD:
         return passed("The turtle turned towards the goal the short way round.", near_edge=most.near(wrong))
     observed = (
-        f"At the start, the goal was {math.degrees(abs(error)):.0f} degrees to the {side}, but the turtle turned by "
-        f"{math.degrees(wrong):.0f} degrees to the {other}."
+        f"At the start, the goal was {count(round(math.degrees(abs(error))), 'degree')} to the {side}, but the turtle "
+        f"turned by {math.degrees(wrong):.0f} degrees to the {other}."
     )
-    text = "Bring the error into the range from -pi to pi, with atan2(sin(a), cos(a))."
+    text = "Bring the error into the range from -pi to pi, with atan2(sin(error), cos(error))."
     where = evidence.code.assigned("angular", "z") or evidence.place("publish")
     return failed(observed, expected, Cause("long-way-round", text, where), near_edge=most.near(wrong))
 

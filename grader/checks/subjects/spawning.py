@@ -68,8 +68,9 @@ class Removes:
 def spawns(evidence: Evidence, params: Spawns) -> Finding:
     """The node spawned the required number of turtles with the right names on the field, and not all in one place."""
     wanted = [f"{params.name}{index + 1}" for index in range(int(params.turtles))]
+    listed = wanted[0] if len(wanted) == 1 else f"{wanted[0]} to {wanted[-1]}"
     expected = (
-        f"The node spawns {count(len(wanted), 'turtle')}, {wanted[0]} to {wanted[-1]}, in random places. "
+        f"The node spawns {count(len(wanted), 'turtle')}, {listed}, in random places. "
         f"x and y are from {params.low_m:g} to {params.high_m:g}."
     )
     calls = _spawns(evidence)
@@ -124,7 +125,7 @@ def places_differ(evidence: Evidence, params: PlacesDiffer) -> Finding:
     views = (evidence, evidence.from_trial(params.other))
     calls = [[call for call in _spawns(each) if str(call.request["name"]).startswith(params.name)] for each in views]
     if not all(calls):
-        why = f"the node did not spawn turtles named {shorten(params.name)}... in both trials"
+        why = f"in both trials, the node did not spawn turtles whose names begin with {shorten(params.name)}"
         return Finding(Status.SKIPPED, f"Not judged, because {why}.")
     now, before = ([(float(call.request["x"]), float(call.request["y"])) for call in made] for made in calls)
     if now[: len(before)] == before[: len(now)]:

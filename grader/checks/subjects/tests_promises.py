@@ -88,7 +88,8 @@ def _sets_own(node: ast.Attribute) -> bool:
 def _names_of_nodes(module: Module, name: str) -> Iterator[str]:
     """Yield the names that refer to an object of this class.
 
-    They are the last parts of names to which such an object is assigned, and the names of functions that return one.
+    They are the last parts of names to which such an object is assigned, and the names of functions that return or
+    yield one.
     """
     known: set[str] = set()
     for node in module.nodes:

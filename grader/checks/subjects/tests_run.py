@@ -29,7 +29,7 @@ MOST_TEXT = 120
 
 
 def found(evidence: Evidence, _: NoParams) -> Finding:
-    """The package contains tests that pytest finds."""
+    """The package contains a test, or a test file that cannot be imported."""
     runs = evidence.bench.runs
     most = max((run.collected for run in runs), default=0)
     code = code_of(evidence)
@@ -91,7 +91,8 @@ def _observed(run: NodeRun) -> str:
     # pytest explains the values of a comparison in lines that begin with "+". They would hide the cause.
     compared = run.message.partition("\n +")[0]
     message = last_error(f"E   {compared}") if compared else ""
-    return f"{name} fails on the correct node: {shorten(_one_line(message), MOST_TEXT)}."
+    text = shorten(_one_line(message), MOST_TEXT)
+    return f"{name} fails on the correct node: {text}." if text else f"{name} fails on the correct node."
 
 
 def _one_line(text: str) -> str:
@@ -170,7 +171,8 @@ FOUND = Kind(
     "pytest finds tests",
     NoParams,
     found,
-    about="pytest finds at least one test, or at least a test file that cannot be imported.",
+    about="The package contains at least one test that pytest finds in some run or that the source shows, or a test "
+    "file that cannot be imported.",
 )
 PASS = Kind(
     "tests_pass",

@@ -42,7 +42,7 @@ def code_of(evidence: Evidence) -> TestCode:
 
 
 def declared(evidence: Evidence, _: NoParams) -> Finding:
-    """setup.py declares that pytest runs the tests, and package.xml declares pytest as a dependency."""
+    """setup.py (or another file that colcon reads) lists pytest for the tests, and package.xml declares pytest."""
     expected = (
         f'setup.py lists "{PYTEST}" under "test" in extras_require, '
         f"and package.xml declares {TEST_DEPEND} as a <test_depend>."

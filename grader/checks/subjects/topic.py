@@ -20,6 +20,8 @@ from grader.evidence import activity
 from grader.submission.constants import evaluate
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from grader.evidence.evidence import Evidence
     from grader.submission.where import Where
     from grader.trial.recording import Endpoint
@@ -71,11 +73,17 @@ def _expected(params: Topic) -> str:
 
 
 def _wrong_type(evidence: Evidence, params: Topic, publishers: list[Endpoint]) -> Finding:
-    types = a_list(sorted({shorten(publisher.type) for publisher in publishers}))
+    types = _types({publisher.type for publisher in publishers})
     whose = "which the turtle does not understand" if params == COMMANDS else f"and not {params.type}"
-    observed = f"The node publishes on {params.topic} with the type {types}, {whose}."
+    observed = f"The node publishes on {params.topic} with {types}, {whose}."
     cause = "The message type is the first argument of create_publisher."
     return failed(observed, _expected(params), Cause("wrong-type", cause, _publisher_line(evidence, params.topic)))
+
+
+def _types(names: Iterable[str]) -> str:
+    """Return 'the type a' or 'the types a and b'."""
+    shown = sorted({shorten(name) for name in names})
+    return f"the {'type' if len(shown) == 1 else 'types'} {a_list(shown)}"
 
 
 def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, ...]) -> Finding:
@@ -160,14 +168,14 @@ def only_type(evidence: Evidence, params: Topic) -> Finding:
     types |= {message.type for message in evidence.recording.messages if message.topic == params.topic}
     others = sorted(types - {params.type})
     where = _publisher_line(evidence, params.topic)
-    listed = a_list([shorten(other) for other in others])
+    listed = _types(others)
     if others and params.type in types:
-        observed = f"{params.topic} also has the type {listed}."
+        observed = f"{params.topic} also has {listed}."
         cause = "A topic has one type. Two publishers with different types cannot use the same topic name."
         return failed(observed, expected, Cause("second-type", cause, where))
     if others:
         cause = "The message type is the first argument of create_publisher."
-        return failed(f"{params.topic} has the type {listed}.", expected, Cause("wrong-type", cause, where))
+        return failed(f"{params.topic} has {listed}.", expected, Cause("wrong-type", cause, where))
     return passed(expected)
 
 

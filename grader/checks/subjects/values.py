@@ -73,9 +73,9 @@ def values(evidence: Evidence, params: Values) -> Finding:
     off = [index for index, band in enumerate(bands) if not band.holds(first[index])]
     actual = a_list([_field(index, shown(first[index], params.wanted[index])) for index in off])
     total, bad = sum(amounts.values()), sum(amounts[six] for six in wrong)
-    amount = (
-        f"All {total} commands were" if bad == total else f"{bad} of {total} commands {'was' if bad == 1 else 'were'}"
-    )
+    amount = f"{bad} of {total} commands {'was' if bad == 1 else 'were'}"
+    if bad == total:
+        amount = "The only command was" if total == 1 else f"All {total} commands were"
     alike = len({str(six) for six in wrong}) == 1
     observed = f"{amount} wrong: {actual}{'' if alike else ' in the first of them'}."
     why, field = _why(first, params.wanted, off)

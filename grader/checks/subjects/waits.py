@@ -75,7 +75,7 @@ NEVER_WAITS = Kind(
     NoParams,
     never_waits,
     early=_early,
-    about="No callback calls a function that waits for a response, for a server or for time to pass (`call`, "
-    "`spin_until_future_complete`, `wait_for_service` without a timeout, `sleep`), even through an alias. In a node "
+    about="No callback calls a function that waits for a response, for a server or for time to pass (such as `call`, "
+    "`spin_until_future_complete`, `wait_for_service` without a timeout, or `sleep`), even through an alias. In a node "
     "with several threads, a callback may wait for a response if the node continues after the response.",
 )

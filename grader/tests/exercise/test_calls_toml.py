@@ -8,7 +8,8 @@ import pytest
 
 from grader.errors import UsageError
 from grader.exercise.call_inputs import Arc, CallsSpec, PointsInput
-from grader.exercise.model import catalogue
+from grader.exercise.calls_toml import unknown_calls
+from grader.exercise.model import CheckSpec, catalogue
 from grader.exercise.scenario_toml import read_trials
 from grader.exercise.tables import Table
 from grader.tests.exercise.test_exercise_toml import load
@@ -73,3 +74,9 @@ def test_a_check_names_a_call_of_its_trial(tmp_path: Path) -> None:
     with pytest.raises(UsageError) as refused:
         load(tmp_path, text.replace('call = "arc"', 'call = "ark"'))
     assert '[[check]] (arc): "call" is "ark"; the trial fit has the calls whole, noise, arc' in str(refused.value)
+
+
+def test_a_single_call_is_in_the_singular() -> None:
+    (trial,) = read_trials(Table({"trial": [{**FIT, "points": FIT["points"][:1]}]}, "", []), "p")
+    check = CheckSpec("x", "fits_circle", "", 1.0, (), hidden=False, params={"call": "ark"}, trial="fit")
+    assert [*unknown_calls([trial], [check])] == ['[[check]] (x): "call" is "ark"; the trial fit has the call arc.']

@@ -177,6 +177,12 @@ def test_each_mistake_of_an_author_is_named(tmp_path: Path, old: str, new: str, 
     assert reported in str(error.value)
 
 
+def test_a_preset_without_a_trial_is_named(tmp_path: Path) -> None:
+    with pytest.raises(UsageError) as error:
+        load(tmp_path, HEAD.partition("[[trial]]")[0] + SHORT)
+    assert 'the preset "node" needs a [[trial]].' in str(error.value)
+
+
 def test_private_checks_lie_over_those_of_a_preset_and_may_use_presets() -> None:
     private = """
 schema = 2

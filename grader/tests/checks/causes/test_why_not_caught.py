@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from grader.checks.causes.why_not_caught import loop_variable, why_not_caught
+from grader.checks.causes.why_not_caught import loop_variable, targets_were, why_not_caught
 from grader.tests.checks.made import NODE, NODE_FILE, evidence, graph, recording, submission
 from grader.trial.observed import Call, Track
 from grader.trial.recording import Beside, Endpoint, Output, ProcessEnd
@@ -82,6 +82,14 @@ def test_the_sentences_hold_without_any_target() -> None:
     assert named == 'The node called /catch with the name "far". No target existed.'
     still = why_not_caught(evidence(recording(speed(0.0, 0.0), graphs=graphs), code), []).text
     assert still == "The node subscribes to /far/pose, but not to the pose of a target."
+
+
+@pytest.mark.parametrize(
+    ("names", "words"),
+    [((), "No target existed."), (("a",), "The target was a."), (("b", "a"), "The targets were a and b.")],
+)
+def test_any_number_of_targets_is_listed(names: tuple[str, ...], words: str) -> None:
+    assert targets_were(names) == words
 
 
 @pytest.mark.parametrize(("x", "found"), [(6.4, True), (9.0, False)])

@@ -228,7 +228,7 @@ PLAIN = {"find": "type", "node": "/kitchen/cook"}
         ("name is the right answer to this question.", TEXT, WORD, '"right"', '"left"'),
         ("name is a list of strings in quotation marks.", LIST, LISTED, '"x"', '["x"]'),
         ("The list contains all correct items, and no other items.", LIST, LISTED, '["x"]', '["x", "y"]'),
-        ("name is a number, without quotation marks.", RATE, {"type_ends": "/String"}, '"4"', "5"),
+        ("name is a number without quotation marks.", RATE, {"type_ends": "/String"}, '"4"', "5"),
         ("name is the rate that `ros2 topic hz` measures.", RATE, {"type_ends": "/String"}, "5", "4"),
         ("`ros2 topic hz` shows the number of messages per second.", RATE, {"type_ends": "/String"}, "5", "0.25"),
         (

@@ -156,7 +156,7 @@ def kill(name: str) -> Call:
         ("All 2 targets were caught, the last one at 3 s.", (NEAR, FAR), (NEAR, WESTERN)),
         ("All targets are caught within 10 s, and turtle1 moves only by driving.", (NEAR, WESTERN), (NEAR, FAR)),
         ("1 of 2 targets was caught.", (NEAR, WESTERN), (NEAR, FAR)),
-        ("Only 1 target of 2 appeared.", (NEAR,), (NEAR, WESTERN)),
+        ("1 of 2 targets appeared.", (NEAR,), (NEAR, WESTERN)),
     ],
 )
 def test_a_sentence_about_the_caught_targets_is_true(

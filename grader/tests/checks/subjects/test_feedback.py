@@ -119,10 +119,10 @@ def test_the_number_of_lines_is_told() -> None:
     assert "150 lines with the feedback appeared while the turtle turned for 3.0 s." in about(RIGHT, many)
     assert "The feedback arrives 62 times per second." in about(RIGHT, many)
     few = about(RIGHT, TIMES[:1])
-    assert "1 lines with the feedback appeared while the turtle turned for 3.0 s." in few
+    assert "1 line with the feedback appeared while the turtle turned for 3.0 s." in few
     assert "Log the number in the callback of the timer while there is a goal." in few
     assert "The feedback arrives 62 times per second." not in few
-    assert "lines with the feedback appeared" not in about(RIGHT)
+    assert "with the feedback appeared" not in about(RIGHT)
 
 
 def test_one_wrong_line_does_not_show_that_the_number_never_changes() -> None:

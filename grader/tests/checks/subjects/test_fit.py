@@ -139,10 +139,11 @@ TOO_MANY = raised("whole", "ValueError: too many values to unpack (expected 3)")
             RIGHT,
         ),
         ("fit_circle returned 2 numbers (5.5 and 7.25).", returned(X, Y), RIGHT),
+        ("fit_circle returned no numbers.", returned(), returned(X, Y)),
         ("fit_circle must return three numbers: `return x, y, radius`.", returned(X, Y), returned(Y, X, RADIUS)),
         ("In numpy, the square root of a negative number", returned(math.nan, Y, RADIUS), returned(X, Y, math.nan)),
         ("fit_circle did not end in time", Called("whole", TOO_LATE), Called("whole", "signal 9")),
-        ("A loop may never end, or the function may wait", Called("whole", TOO_LATE), Called("whole", "signal 9")),
+        ("A loop may never end, or the code may wait", Called("whole", TOO_LATE), Called("whole", "signal 9")),
         ("fit_circle ended the program (exit 1: the end).", Called("whole", "exit 1", stderr="the end\n"), TOO_MANY),
         ("fit_circle ended the program (no result).", Called("whole"), Called("whole", "exit 1")),
         (

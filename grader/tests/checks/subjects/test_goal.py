@@ -75,6 +75,11 @@ def test_a_turtle_that_is_no_nearer_in_the_end_has_driven_away_and_no_wall_is_na
     assert (nearer.diagnosis, "wall" in nearer.cause) == ("not-there", False)
 
 
+@pytest.mark.parametrize(("turns", "words"), [(1, "by 1 full turn in total"), (2, "by 2 full turns in total")])
+def test_full_turns_on_the_spot_are_counted(turns: int, words: str) -> None:
+    assert words in goal((60, 0.0, 1.1 * turns * math.tau / (60 * TICK_S))).cause
+
+
 SWAY = QUARTER / 3
 SWAYING = tuple((1, 0.5, side * 10 * SWAY) for side in (0.5, *(1.0, -1.0) * 5))
 

@@ -42,7 +42,7 @@ def given(numbers: OwnNumbers | str | None, by: str | None = "alice") -> Evidenc
     )
 
 
-@pytest.mark.parametrize("by", ["alice", " Alice", None])
+@pytest.mark.parametrize("by", ["alice", " Alice", "alice\udce9", None])
 def test_the_own_numbers_pass_whoever_may_write_the_name_otherwise(by: str | None) -> None:
     assert found(NUMBERS, given(ALICE, by)).status is Status.PASSED
 

@@ -69,6 +69,12 @@ def test_a_value_is_accepted_or_refused_with_a_reason(call: Call, answer: str, d
     assert found(SETS, given, parameter="radius", value=1.0, answer=answer).diagnosis == diagnosis
 
 
+@pytest.mark.parametrize(("reason", "end"), [("no", "1.0: no."), ("No.", "1.0: No."), ("", "1.0: no reason.")])
+def test_a_reason_ends_with_one_full_stop(reason: str, end: str) -> None:
+    given = evidence(recording(every(0.5, 2.0, 1.0), calls=(was_set(1.0, successful=False, reason=reason),)))
+    assert found(SETS, given, parameter="radius", value=1.0, answer="accepted").observed.endswith(end)
+
+
 def test_several_values_are_accepted_or_refused_at_once() -> None:
     values = [("radius", 0.55), ("speed", 2.0)]
     request = {"parameters": [{"name": name, "value": {"type": 3, "double_value": value}} for name, value in values]}

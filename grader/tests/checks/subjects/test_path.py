@@ -33,10 +33,10 @@ def test_a_circle_is_a_circle_whatever_the_rhythm(shape: str) -> None:
         ("clockwise", "wrong-direction", "The turtle drove the circle clockwise."),
         ("radius 2.2", "wrong-radius", "The radius of the circle is 2.2 m."),
         ("swapped", "wrong-radius", "The radius of the circle is 0.5 m."),
-        ("three quarters", "stopped-early", "The turtle drove 0.72 of a turn; the last command arrived at 4.0 s."),
-        ("half speed", "too-short", "The turtle drove 0.76 of a turn."),
-        ("stops and goes", "stops-and-goes", "The turtle drove 0.64 of a turn, with 3 stops on the way."),
-        ("crash", "crash", "The turtle drove 0.67 of a turn."),
+        ("three quarters", "stopped-early", "The turtle drove 0.72 turns; the last command arrived at 4.0 s."),
+        ("half speed", "too-short", "The turtle drove 0.76 turns."),
+        ("stops and goes", "stops-and-goes", "The turtle drove 0.64 turns, with 3 stops on the way."),
+        ("crash", "crash", "The turtle drove 0.67 turns."),
         (
             "square",
             "polygon",
@@ -118,7 +118,7 @@ def test_a_wrong_radius_is_explained_by_the_commands() -> None:
 
 def test_two_turns_may_be_requested() -> None:
     short = found_by(CIRCLE, evidence(SHAPES["good"]()), radius_m=2.0, turns=2.0)
-    assert (short.diagnosis, short.observed) == ("too-short", "The turtle drove 1.51 of a turn.")
+    assert (short.diagnosis, short.observed) == ("too-short", "The turtle drove 1.51 turns.")
     assert short.expected == "The turtle drives a circle of radius 2.0 m, counter-clockwise, for at least 2 turns."
 
 
@@ -133,7 +133,7 @@ def test_a_call_that_does_not_move_the_turtle_is_not_said_to_move_it() -> None:
 @pytest.mark.parametrize(
     ("angular", "diagnosis", "words"),
     [
-        (1.0, "stopped-early", "The turtle drove 0.16 of a turn; the last command arrived at 0.1 s."),
+        (1.0, "stopped-early", "The turtle drove 0.16 turns; the last command arrived at 0.1 s."),
         (1.5, "wrong-radius", "The radius is linear.x divided by angular.z: 2.0 / 1.5 = 1.333 m."),
     ],
 )

@@ -34,7 +34,7 @@ UNSTEADY = [(t_s, 1.0, 0.5 + 0.0001 * t_s) for t_s, _, _ in SLOW]
     ("words", "true", "near"),
     [
         ("A turtle that starts late has less time for the circle.", LATE, SLOW),
-        ("of a turn; the first command arrived at 5.0 s.", LATE, SLOW),
+        ("turns; the first command arrived at 5.0 s.", LATE, SLOW),
         ("With angular.z = 0.5 rad/s, one turn takes 12.6 s.", SLOW, UNSTEADY),
         ("linear.x is negative, so the turtle drives backwards.", every(0.5, -2.0, -1.0), every(0.5, 2.0, -1.0)),
     ],

@@ -40,6 +40,18 @@ def test_a_bag_has_a_cause(check: str, messages: list[Message], diagnosis: str |
     assert (finding.diagnosis, finding.status is Status.PASSED) == (diagnosis, diagnosis is None)
 
 
+@pytest.mark.parametrize(
+    ("check", "messages", "words"),
+    [
+        ("bag", made_bag.poses()[:1], "The bag contains 1 message."),
+        ("bag-topic", made_bag.commands()[:1], "The bag contains /turtle1/cmd_vel (1 message)."),
+        ("bag-topic", [], "The bag contains no topics."),
+    ],
+)
+def test_the_messages_are_counted(check: str, messages: list[Message], words: str, tmp_path: Path) -> None:
+    assert judged(check, files=bag_of(messages, tmp_path)).observed == words
+
+
 def bag_of(messages: list[Message], to: Path) -> dict[str, bytes]:
     made_bag.record(to / "circle_bag", messages)
     return {f"circle_bag/{file.name}": file.read_bytes() for file in (to / "circle_bag").iterdir()}

@@ -89,7 +89,7 @@ def test_places_that_are_the_same_each_time_are_not_random() -> None:
     assert "x=2.00, y=3.00 both times" in finding.observed
     assert found(PLACES_DIFFER, given(calls=[]), other=twice.trial.id).status is Status.SKIPPED
     other = found(PLACES_DIFFER, twice, other=twice.trial.id, name="prey")
-    assert other.observed == "Not judged, because the node did not spawn turtles named prey... in both trials."
+    assert "the node did not spawn turtles whose names begin with prey." in other.observed
 
 
 ALL = [spawn(0.5, name, *place) for name, place in PLACES.items()]
@@ -143,6 +143,11 @@ UNANSWERED = spawn(9.9, "target3", 5.0, 5.0, response=None)
 def test_a_sentence_about_spawned_turtles_is_true(words: str, true: list[Call], near: list[Call]) -> None:
     assert words in told(of_spawns(given(calls=true)))
     assert words not in told(of_spawns(given(calls=near)))
+
+
+def test_a_single_turtle_has_one_name() -> None:
+    expected = found(SPAWNS, given(calls=[]), turtles=1).expected
+    assert expected.startswith("The node spawns 1 turtle, target1, in random places.")
 
 
 CAUGHT, LATE = {"target2": CAUGHT_S}, {"target2": CAUGHT_S + 2.0}
@@ -217,6 +222,6 @@ def test_places_are_compared_with_those_of_another_trial() -> None:
         assert ("The node was started twice, and target1 was at x=2.00, y=3.00 both times." in reported) == is_same
         assert (reported.strip() == "Each time the node starts, the turtles are in different places.") != is_same
     none = replace(both, runs={same.trial.id: same.run, "other": given(calls=[]).run})
-    assert "the node did not spawn turtles named target... in both trials." in told(
+    assert "the node did not spawn turtles whose names begin with target." in told(
         found(PLACES_DIFFER, none, other="other")
     )

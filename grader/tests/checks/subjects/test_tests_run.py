@@ -131,6 +131,7 @@ PARTLY = dataclasses.replace(GOOD, passed=0, skipped=1)
         ("All tests pass on the correct node (3 runs).", [GOOD] * 3, [BAD, GOOD, GOOD]),
         ("All tests pass on the correct node in every run.", [BAD] * 3, [GOOD] * 3),
         ("test_it fails on the correct node: assert 9 == 10.", [BAD] * 3, [GOOD] * 3),
+        ("test_it fails on the correct node.", [dataclasses.replace(BAD, message="")] * 3, [BAD] * 3),
         ("The tests pass on the correct node in 2 of 3 runs.", [BAD, GOOD, GOOD], [BAD] * 3),
         ("The tests depend on timing, on random numbers, or on the state", [BAD, GOOD, GOOD], [BAD] * 3),
         ("No test ran to completion.", [SKIPPED] * 3, [GOOD] * 3),

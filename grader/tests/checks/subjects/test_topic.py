@@ -104,6 +104,13 @@ def test_the_line_is_that_of_the_publisher_of_this_topic(first: str, line: str) 
     assert reported(finding) == ("wrong-type", line)
 
 
+def test_several_wrong_types_are_in_the_plural() -> None:
+    trial = observed(("publisher", TOPIC, TEXT), ("publisher", TOPIC, COLOR))
+    both = f"the types {TEXT} and {COLOR}"
+    assert f"with {both}, which the turtle does not understand." in publishes(trial).observed
+    assert found(ONLY_TYPE, evidence(trial), topic=TOPIC, type=TWIST).observed == f"{TOPIC} has {both}."
+
+
 def test_a_publisher_whose_topic_is_not_known_is_better_than_none() -> None:
     trial = observed(("publisher", TOPIC, TEXT))
     assert reported(publishes(trial, ('"/turtle1/cmd_vel"', "NAME"))) == ("wrong-type", ":9")

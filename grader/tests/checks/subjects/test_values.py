@@ -94,6 +94,11 @@ def test_a_field_in_the_wrong_place_is_reported_with_what_it_does() -> None:
     assert values("angular.x").cause.endswith("the turtle turns about the z axis, which points up.")
 
 
+def test_a_single_command_is_in_the_singular() -> None:
+    found = finding("values", evidence(recording([(0.5, 2.0, 2.0)])))
+    assert found.observed == "The only command was wrong: angular.z 2.0 rad/s."
+
+
 def test_some_wrong_commands_of_a_known_kind_keep_their_name() -> None:
     some = [*every(0.5, 2.0, 1.0)[:-1], (9.504, 2.0, -1.0)]
     found = finding("values", evidence(recording(some)))
