@@ -88,7 +88,7 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
         color = ", ".join(map(str, params.color))
         other = "with another colour" if _always_draws(evidence) else "without this colour"
         observed = f"The turtle drew with the colour {color}, then {other}, and then with the first colour again."
-        text = "The node starts again after its last arc. In its last state, the node must send only zeros."
+        text = "Does the node start again after its last arc? In its last state, the node must send only zeros."
         return failed(observed, expected, Cause("drives-on", text, evidence.place("publish")))
     points = np.append(np.flatnonzero(chosen)[0], np.flatnonzero(chosen) + 1)
     x, y = trajectory.x[points], trajectory.y[points]

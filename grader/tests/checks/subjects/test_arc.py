@@ -75,7 +75,7 @@ def about(commands: list[Timed], pens: tuple[PenChange, ...] = (), **values: Any
             (pen(0.0), pen(5.0, 0), pen(6.0)),
         ),
         (
-            "The node starts again after its last arc. In its last state, the node must send only zeros.",
+            "Does the node start again after its last arc? In its last state, the node must send only zeros.",
             (pen(0.0), pen(5.0, 0), pen(6.0)),
             (pen(0.0), pen(5.0, 0)),
         ),
