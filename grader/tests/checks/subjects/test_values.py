@@ -97,6 +97,7 @@ def test_a_field_in_the_wrong_place_is_reported_with_what_it_does() -> None:
 def test_a_single_command_is_in_the_singular() -> None:
     found = finding("values", evidence(recording([(0.5, 2.0, 2.0)])))
     assert found.observed == "The only command was wrong: angular.z 2.0 rad/s."
+    assert "The only command was wrong" not in values("clockwise").observed
 
 
 def test_some_wrong_commands_of_a_known_kind_keep_their_name() -> None:
