@@ -32,7 +32,7 @@ def test_no_score_is_above_its_maximum(tmp_path: Path) -> None:
     (private / STEP).mkdir(parents=True)
     (private / STEP / "exercise.toml").write_text('schema = 2\n[[check]]\nid = "rate"\npoints = 40\n')
     said = term.run("grader", "gradebook", "sync", "--checks", str(private))
-    assert f"have changed in the gradebook: {STEP} rate (20 to 40)." in said
+    assert f"Changed maximum points in the gradebook: {STEP} rate (20 to 40)." in said
     assert table(term) == {"anna": (120, 120), "bert": (by_hand, 120)}
     with term.gradebook() as gradebook:
         assert gradebook.find_grade("rate", STEP, STEP, "bert").needs_manual_grade
