@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import grader
 from grader.checks.outcome import Finding, Outcome, Status
 from grader.common.words import a_list, count, shorten
+from grader.report.hidden import evidence_for_students
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -143,7 +144,11 @@ def _in_one_line(difference: str) -> str:
 
 
 def _why_this_clock(evidence: Evidence) -> str:
-    """Return the reason for the clock of the first trial, and the reasons for any other clocks in later trials."""
+    """Return the reason for the clock of the first trial, and the reasons for any other clocks in later trials.
+
+    Students read this, so trials that only hidden checks use are left out.
+    """
+    evidence = evidence_for_students(evidence)
     first = evidence.run.recording
     if first is None and evidence.run.called is not None:
         return "No node was run. Your code was called, without a simulator."
