@@ -52,14 +52,15 @@ class Result:
     """How many times in a row grading the submission has ended with an `error`, including this time."""
 
 
-def file_name(student: str, exercise: str) -> str:
+def file_name(student: str, exercise: str, *, ignores_case: bool = False) -> str:
     """Return the file name of a result without its extension.
 
-    The name is different for every student and valid on every file system.
+    The name is different for every student and valid on every file system. With `ignores_case`, names of students that
+    differ only in capitals get file names that differ in more.
     """
     # Characters are replaced with numbers, so that different names stay different. A dot would look like an extension.
     safe = _SAFE.sub(lambda match: "".join(f"%{byte:02X}" for byte in os.fsencode(match.group())), student)
-    if len(safe) > _LONGEST:
+    if len(safe) > _LONGEST or (ignores_case and student != student.lower()):
         import hashlib
 
         safe = f"{safe[: _LONGEST - 20]}%%{hashlib.sha256(os.fsencode(student)).hexdigest()[:16]}"
@@ -72,9 +73,14 @@ class Results:
 
     folder: Path
 
+    @property
+    def ignores_case(self) -> bool:
+        """Whether `Anna` and `anna` are one file in this folder, as on the file systems of Windows."""
+        return (self.folder / _LOCK.upper()).exists()
+
     def load(self, student: str, exercise: str) -> Result | None:
         """Return the complete result of a submission, whatever its key is, or None if there is no complete result."""
-        name = file_name(student, exercise)
+        name = file_name(student, exercise, ignores_case=self.ignores_case)
         file = self.folder / REPORTS / f"{name}.json"
         try:
             text = file.read_text(encoding="utf-8")
@@ -87,7 +93,7 @@ class Results:
 
     def save(self, student: str, report: Report, key: Key, page: bytes, errors: int = 0) -> Result:
         """Write a result. Raises MachineError if the disk is full or not writable."""
-        name = file_name(student, report.exercise)
+        name = file_name(student, report.exercise, ignores_case=self.ignores_case)
         data = {**to_data(report), "student": _encodable(student), "key": key.to_data(), ERRORS: errors}
         self.write(f"{REPORTS}/{name}.html", page)
         text = json.dumps(data, ensure_ascii=False, indent=1) + "\n"

@@ -134,6 +134,18 @@ def test_every_name_becomes_a_valid_file_name(student: str) -> None:
 def test_no_two_students_share_a_file(students: list[str]) -> None:
     first, second = (file_name(student, "x") for student in students)
     assert first != second
+    first, second = (file_name(student, "x", ignores_case=True) for student in students)
+    assert first.casefold() != second.casefold()
+
+
+def test_two_spellings_do_not_share_a_file_on_a_disk_that_ignores_capitals(tmp_path: Path) -> None:
+    with opened(tmp_path / "grades") as results:
+        ordinary = results.save("Anna", report("passed"), KEY, b"page").page
+        assert ordinary == f"{file_name('Anna', report('passed').exercise)}.html"
+        (tmp_path / "grades" / ".GRADER-RESULTS").touch()  # what such a disk shows for .grader-results
+        pages = [results.save(name, report("passed"), KEY, b"page").page for name in ("anna", "Anna", "ANNA")]
+        assert len({page.casefold() for page in pages}) == 3
+        assert all(results.load(name, report("passed").exercise) for name in ("anna", "Anna", "ANNA"))
 
 
 def test_a_name_that_is_not_utf8_can_be_saved(tmp_path: Path) -> None:
