@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Status
@@ -71,7 +71,9 @@ class _Run:
         while self.waiting and self.engine.has_room():
             one = self.waiting.popleft()
             task = self.order.task(one.found)
-            self.running[task.name] = one
+            # The student may have changed the submission since its key was made. The key must be that of the graded
+            # files, or a later run would take the result for the result of other files.
+            self.running[task.name] = replace(one, key=self.order.key(one.found, task))
             self.screen.show(task.name, "Starting")
             self.engine.start(task)
 

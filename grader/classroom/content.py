@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from grader.checks.diagnosis import Diagnosis
     from grader.classroom.found import Found
+    from grader.classroom.task import Task
     from grader.exercise.model import Exercise
 
 MOST_DEEP = 4
@@ -65,23 +66,33 @@ def _diagnosis(error: UsageError, exercise: Exercise) -> Diagnosis:
     return "submission-too-large" if isinstance(error, TooLargeError) else "unreadable"
 
 
-def fingerprint(found: Found, exercise: Exercise) -> str:
+def fingerprint(found: Found, exercise: Exercise, task: Task | None = None) -> str:
     """Return the sha256 of all relevant files of a submission, or of the reason why they cannot be read.
 
-    An archive is hashed without unpacking it.
+    An archive is hashed without unpacking it. Of a folder, the files of its `task` are hashed, if there is one: the
+    student may have changed the folder before or after the task was made.
 
     Raises:
         DiskError: the disk for temporary files failed.
     """
     archive = None if found.refused else _archive(found.path)
-    if archive is not None:
-        return _sha256(_of_archive(archive), found.alike) if found.alike else _of_archive(archive)
-    content = read(found, exercise, "")
     also = (found.alike,) if found.alike else ()
+    if archive is not None:
+        return _sha256(_of_archive(archive), *also) if also else _of_archive(archive)
+    if task is not None:
+        return _sha256(*_parts_of_task(task), *also)
+    content = read(found, exercise, "")
     if isinstance(content, Refused):
         return _sha256(f"refused {content.reason}", *also)
     parts = (content.digest, content.package_dir.name, content.remark, *content.rejected, *sorted(content.executable))
     return _sha256(*parts, *also)
+
+
+def _parts_of_task(task: Task) -> tuple[str, ...]:
+    """Return the strings that `fingerprint` hashes."""
+    if isinstance(task.content, Refused):
+        return (f"refused {task.content.reason}",)
+    return (task.digest, task.package, task.remark, *task.rejected, *sorted(task.executable))
 
 
 def _sha256(*parts: str) -> str:

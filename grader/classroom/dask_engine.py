@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
-from grader.classroom.engine import Died, Event, Finished
+from grader.classroom.engine import TASK_S, Died, Event, Finished
 from grader.classroom.worker import Worker
 from grader.errors import MachineError, UsageError
 
@@ -45,7 +45,11 @@ def perform_here(packed: bytes) -> tuple[str, object]:
     with _lock:
         worker = _idle.pop() if _idle else Worker()
     worker.send(task)
+    ends_s = time.monotonic() + TASK_S
     while True:
+        if not worker.connection.poll(max(0.0, ends_s - time.monotonic())):
+            worker.close()
+            return "died", f"it was still busy after {TASK_S / 60:.0f} minutes"
         answer = worker.receive()
         if answer is None:
             why = worker.last_words()

@@ -12,7 +12,7 @@ from multiprocessing.connection import wait
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.classroom.engine import Died, Event, Finished, Progress
+from grader.classroom.engine import TASK_S, Died, Event, Finished, Progress
 from grader.classroom.worker import Worker
 from grader.errors import MachineError
 
@@ -26,9 +26,6 @@ MEMORY_A_TASK = 1536 * 1024 * 1024
 cells do."""
 WAITING_A_JOB = 2
 """The number of additional tasks per job that may run while other tasks are in a trial in wall time."""
-TASK_S = 1800.0
-"""A worker that is busy for longer than this (s) is considered hung. This time is longer than the sum of all time
-limits for one submission."""
 
 
 def default_jobs() -> int:

@@ -48,11 +48,11 @@ class Order:
         """The exercises by id. Raises UsageError if the private checks of an exercise are not valid."""
         return {name: exercise_from(sources) for name, sources in self.sources.items()}
 
-    def key(self, found: Found) -> Key:
-        """Return the key of a submission's result. Raises DiskError, as `content.read` does."""
+    def key(self, found: Found, task: Task | None = None) -> Key:
+        """Return the key of a submission's result, or of the result of this task. Raises DiskError, as `read` does."""
         exercise = self.exercises[found.exercise]
         return Key(
-            submission=fingerprint(found, exercise),
+            submission=fingerprint(found, exercise, task),
             student=self._owner(found),
             exercise=exercise.digest,
             grader=grader_key(),

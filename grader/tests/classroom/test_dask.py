@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
 import signal
 import subprocess
 from contextlib import suppress
@@ -13,6 +14,7 @@ import pytest
 
 from grader.classroom import dask_engine
 from grader.classroom.dask_engine import DaskEngine
+from grader.classroom.worker import Worker
 from grader.common.interpreter import interpreter
 from grader.errors import UsageError
 from grader.sandbox import bubblewrap
@@ -97,6 +99,21 @@ def test_the_submission_of_a_lost_worker_is_graded_by_another(cluster: Cluster, 
     done = graded(order_of(tmp_path / "class"), Striking(cluster.address, None), tmp_path / "grades")
     assert lost.returncode == -signal.SIGKILL
     assert done["anna"].report.points == 100.0
+
+
+def test_a_submission_that_does_not_end_does_not_keep_a_worker_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Hung(Worker):
+        """A worker process that was stopped, as if its task did not end."""
+
+        def send(self, _: object) -> None:
+            self.process.send_signal(signal.SIGSTOP)
+            started.append(self)
+
+    started: list[Worker] = []
+    monkeypatch.setattr(dask_engine, "Worker", Hung)
+    monkeypatch.setattr(dask_engine, "TASK_S", 0.6)
+    assert dask_engine.perform_here(pickle.dumps(None)) == ("died", "it was still busy after 0 minutes")
+    assert [worker.process.returncode for worker in started] == [-signal.SIGKILL]
 
 
 def test_a_missing_scheduler_is_a_usage_error(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,11 +9,16 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.checks.exercises import find_exercise
+from grader.classroom.class_run import run
 from grader.classroom.content import fingerprint, read
 from grader.classroom.find_submissions import find_submissions
+from grader.classroom.order import Order, sort_out, sources_for
+from grader.classroom.progress_display import Lines
 from grader.classroom.refused import Refused
+from grader.classroom.results import opened
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import zipped
+from grader.tests.classroom.test_again import Scripted
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -78,3 +83,33 @@ def test_an_archive_that_became_a_pipe_does_not_stop_the_grader(tmp_path: Path) 
     os.mkfifo(tmp_path / "ben.zip")
     assert "is not a regular file" in reason(ben, STEP)
     assert fingerprint(ben, find_exercise(STEP))
+
+
+@pytest.mark.parametrize("archive", [False, True])
+def test_files_that_change_before_they_are_read_and_change_back_are_graded_again(tmp_path: Path, archive: bool) -> None:
+    for text in ("own", "another"):
+        copy_solution(STEP, tmp_path / text / "ben")
+        (tmp_path / text / "ben/setup.cfg").write_text(f"# {text}")
+        if archive:
+            zipped(tmp_path / text / "ben", tmp_path / text / "ben.zip", "my_robot_controller")
+            shutil.rmtree(tmp_path / text / "ben")
+
+    def hand_in(text: str) -> None:
+        shutil.rmtree(tmp_path / "class", ignore_errors=True)
+        shutil.copytree(tmp_path / text, tmp_path / "class")
+
+    def left_to_do(*, swapped: bool) -> int:
+        each = find_submissions([tmp_path / "class"], STEP, tmp_path / "grades")
+        order = Order(found=each, roster={}, sources=sources_for(each, None), ros="none")
+        with opened(tmp_path / "grades") as results:
+            _, todo = sort_out(order, results)
+            if swapped:
+                hand_in("another")
+            run(order, todo, Scripted({"ben": ["passed"]}), results, Lines(len(todo), several=False))
+        return len(todo)
+
+    hand_in("own")
+    assert left_to_do(swapped=True) == 1
+    hand_in("own")
+    assert left_to_do(swapped=False) == 1
+    assert left_to_do(swapped=False) == 0
