@@ -230,10 +230,10 @@ def _assignments(path: Path) -> list[str]:
 
 
 def misnamed(student: str, path: Path) -> Iterator[Found]:
-    """Yield the entries of a student's folder whose names are almost the name of an exercise, and are not graded.
+    """Yield the entries of a student's folder whose names are almost, but not exactly, the name of an exercise.
 
-    Examples are a name with capital letters, and an archive. If the folder of the exercise also exists, the entry is
-    not needed.
+    These entries are not graded. Examples are a name with capital letters, and an archive. If the folder of the
+    exercise also exists, the entry is not needed.
     """
     present = _assignments(path)
     try:

@@ -46,8 +46,8 @@ _IMPORTED = frozenset(
         *("traceback", "typing"),
     }
 )
-"""The packages that nodes usually import. If a node imports another package from outside the submission, that package
-could read the folder in which the node is installed, so nothing is predicted."""
+"""The modules and packages that nodes usually import. If a node imports anything else from outside the
+submission, that module could read the folder in which the node is installed, so nothing is predicted."""
 _READING = frozenset(
     {"open", "exec", "eval", "compile", "__import__", "__file__", "__path__", "__spec__", "__loader__"}
 )

@@ -19,6 +19,7 @@ from grader.exercise.model import catalogue, course_folder
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
+    from logging import Logger
 
 CONFIG = "nbgrader_config.py"
 CLASS = "class"
@@ -49,13 +50,16 @@ class ClassFolders:
         """Open nbgrader's gradebook, and create it if necessary.
 
         SQLAlchemy's warnings about nbgrader's code are not shown, because they mean nothing to an instructor.
+        nbgrader's log messages about errors of the database are not shown either, because they repeat the error with a
+        traceback.
 
         Raises MachineError if the database cannot be read or written.
         """
         from nbgrader.api import Gradebook
         from sqlalchemy.exc import DatabaseError, SAWarning
+        from tornado.log import app_log
 
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), _silent(app_log):
             warnings.simplefilter("ignore", SAWarning)
             try:
                 with Gradebook(self.course.db_url, self.course.course_id) as opened:
@@ -93,6 +97,16 @@ class ClassFolders:
         found = left_out(root, [name for name in assignments if name not in catalogue()])
         chosen = (each for each in found if not steps or each.exercise in (UNKNOWN, *steps))
         return tuple(each.refused.reason for each in chosen if each.refused)
+
+
+@contextmanager
+def _silent(log: Logger) -> Iterator[None]:
+    """Discard all messages of a log for a while."""
+    log.disabled = True
+    try:
+        yield
+    finally:
+        log.disabled = False
 
 
 def _is_folder(path: Path) -> bool:

@@ -113,9 +113,11 @@ def sync(
             name = (result.student, result.report.exercise)
             try:
                 elsewhere.update(dict.fromkeys(_write(gradebook, folders, result, tally, maxima)))
-            except OperationalError:
-                raise  # for example, another program has locked the database, so no score can be written
             except (SQLAlchemyError, ValueError) as error:
+                # nbgrader raises a ValueError in place of the error of the database.
+                for fault in (error, error.__context__):
+                    if isinstance(fault, OperationalError):
+                        raise fault from error  # another program has locked the database, or the disk is full
                 # For example, the database cannot store a name that is not valid UTF-8.
                 gradebook.db.rollback()
                 why.setdefault(name, f"its scores could not be written: {_in_words(error)}")

@@ -257,7 +257,7 @@ class Watched:
         """Prove the causes of the last report by testing fixes in a copy (see `grader.grading.explain`).
 
         Before each test, `give_up` is called to find out whether other work must be done first. If so, the tests stop,
-        and the next call of `prove` starts from the beginning. Return the report with the results of the tests, or None
+        and the next call to `prove` starts from the beginning. Return the report with the results of the tests, or None
         if the tests were stopped or no fix was tested.
         """
         if self._unproved is None or give_up():

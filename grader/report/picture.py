@@ -42,7 +42,7 @@ BAD: Rgb = (176, 28, 28)
 
 @dataclass(frozen=True)
 class Panel:
-    """The position of a canvas on the page, in pixels. `left` and `top` do not include the axes and the legend."""
+    """The position of a canvas on the page, in pixels. The axes and the legend are drawn outside the canvas."""
 
     left: int
     top: int

@@ -93,7 +93,7 @@ def _arguments(module: Module) -> dict[str, ast.expr] | None:
 
 
 def _only_call(module: Module) -> ast.Call | None:
-    """Return the call of setup(), or None if the module has calls or statements that a plain setup.py does not have."""
+    """Return the call to setup(), or None if the module has calls or statements that a plain setup.py does not have."""
     calls: list[ast.Call] = []
     for statement in module.body:
         if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):

@@ -1,4 +1,4 @@
-"""Called: the result of one call of a student's function, or of one run of a student's program."""
+"""Called: the result of one call to a student's function, or of one run of a student's program."""
 
 from __future__ import annotations
 

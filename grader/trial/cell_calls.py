@@ -28,7 +28,7 @@ from pathlib import Path
 from typing import Any
 
 FUNCTION_CPU_S = 2
-"""The maximum CPU time of one call of a function (s). Fitting a circle in plain Python takes much less.
+"""The maximum CPU time of one call to a function (s). Fitting a circle in plain Python takes much less.
 
 Unlike wall time, CPU time does not depend on the load of the machine.
 """

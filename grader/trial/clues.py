@@ -2,7 +2,7 @@
 
 In simulated time, a node that follows wall time would get a wrong verdict.
 
-The search is limited to the executable's module and the modules of the package that it imports. A call of sleep in
+The search is limited to the executable's module and the modules of the package that it imports. A call to sleep in
 another node of the package does not matter.
 """
 

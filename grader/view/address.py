@@ -52,7 +52,7 @@ class Place:
 
 
 def listen(kind: str, port: int | None = None) -> Place:
-    """Listen on `port` if given, else on the last port of this kind of view if it is free, else on any free port.
+    """Listen on `port` if given, else on the stored port of this kind of view if it is free, else on any free port.
 
     Raises:
         UsageError: the port is not available.

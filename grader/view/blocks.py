@@ -32,7 +32,7 @@ Rgb = tuple[int, int, int]
 
 
 class Picture:
-    """An image to which the trail is added.
+    """An image of the trail, to which new parts of the trail are added.
 
     The image is repainted only if the trail is cleared or replaced by an image, or if the size changes.
     """

@@ -1,4 +1,4 @@
-"""Find the line that contains the value of a message field: a constant, or the call of a helper function."""
+"""Find the line that contains the value of a message field: a constant, or a call to a helper function."""
 
 from __future__ import annotations
 

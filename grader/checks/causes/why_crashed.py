@@ -134,7 +134,7 @@ def _why_await(scene: CrashScene) -> Cause | None:
 
 
 def _why_zero(scene: CrashScene) -> Cause | None:
-    """Return the cause if the value of a float parameter is read from integer_value, which is 0 then, else None."""
+    """Return the cause if the node reads integer_value, which is 0 for a parameter that is a float, else None."""
     for node in scene.nodes:
         if isinstance(node, ast.Attribute) and node.attr == "integer_value":
             text = "integer_value is 0 if the parameter is a float. The number is then in double_value."

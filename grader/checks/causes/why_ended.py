@@ -55,7 +55,7 @@ def _returns_before_spin(evidence: Evidence) -> Cause | None:
 
 
 def _spins_only_as_script(evidence: Evidence) -> Cause | None:
-    """Return the cause if all calls of rclpy.spin are in the block of `if __name__ == "__main__"`, else None."""
+    """Return the cause if all calls to rclpy.spin are in the block of `if __name__ == "__main__"`, else None."""
     spins = evidence.code.calls("spin") if evidence.entry_point() is not None else []
     for module in evidence.code.modules:
         for node in module.body:

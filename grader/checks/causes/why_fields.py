@@ -136,7 +136,7 @@ def _whole_parameter(scene: CrashScene, field: str, value: ast.expr | None) -> C
 
 
 def _parameter(call: ast.Call, method: str) -> str | None:
-    """Return the name of the parameter if the call is a call of this method of a node, else None."""
+    """Return the name of the parameter if the call is a call to this method of a node, else None."""
     name = call.args[0] if call.args and (dotted(call.func) or "").endswith(f".{method}") else None
     return name.value if isinstance(name, ast.Constant) and isinstance(name.value, str) else None
 

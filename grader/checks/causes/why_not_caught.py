@@ -145,7 +145,7 @@ def _stands_still(evidence: Evidence, left: list[Track]) -> Cause:
 
 
 def _called_too_early(evidence: Evidence) -> Cause | None:
-    """Return the cause if turtle1 was near a target before /catch existed, and no call of /catch arrived, else None.
+    """Return the cause if turtle1 was near a target before /catch existed, and no call to /catch arrived, else None.
 
     The node must have code that calls the service, and no code that finds out whether the service exists.
     """

@@ -68,7 +68,7 @@ def _too_few(events: NodeEvents, run: NodeRun, code: TestCode, right: Behaviour)
     # The message has no measured numbers, because they differ from run to run.
     text = (
         f"On the node's clock, the timer's callback ran less than once per period ({right.period_s:g} s). "
-        "Each call of spin_once runs at most one callback. If one step of the clock is longer than the timer's "
+        "Each call to spin_once runs at most one callback. If one step of the clock is longer than the timer's "
         "period, some calls are lost."
     )
     return Cause("bench-loses-calls", text, _place(code, run, "spin_once"))

@@ -90,7 +90,7 @@ def message_for_class(scene: CrashScene) -> Cause | None:
 
 
 def subscription_for_publisher(scene: CrashScene) -> Cause | None:
-    """Return the cause for a call of publish if the node has one subscription and no publisher, else None."""
+    """Return the cause for a call to publish if the node has one subscription and no publisher, else None."""
     calls = scene.evidence.code.calls
     if calls("create_publisher") or len(calls("create_subscription")) != 1:
         return None

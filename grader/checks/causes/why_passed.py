@@ -28,7 +28,7 @@ NUMBERS = re.compile(r"period|sec|rate|time|dt|interval|delay|queue|qos|depth", 
 
 @dataclass(frozen=True)
 class Call:
-    """A call of the function that raised the exception.
+    """A call to the function that raised the exception.
 
     `parameters` are the names of the function's parameters, except self. `arguments` maps these names to the arguments
     of the call. The call is in `module`.
@@ -61,7 +61,7 @@ def why_passed(scene: CrashScene) -> Cause | None:
 
 
 def _call(scene: CrashScene) -> Call | None:
-    """Return the call of the function that crashed if the caller's line has exactly one such call, else None."""
+    """Return the call to the function that crashed if the caller's line has exactly one such call, else None."""
     function = scene.function
     line = next(iter(scene.crash.callers), None)
     module = scene.module_of(line.file) if line is not None else None

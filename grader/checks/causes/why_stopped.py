@@ -34,7 +34,7 @@ def why_stopped(evidence: Evidence, call: str) -> tuple[str, Where | None]:
 
 
 def _condition(evidence: Evidence, call: str) -> Where | None:
-    """Return the if statement that contains the only call of `call`, or None."""
+    """Return the if statement that contains the only call to `call`, or None."""
     calls = evidence.code.calls(call)
     if len(calls) != 1:
         return None

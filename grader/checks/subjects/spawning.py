@@ -66,7 +66,7 @@ class Removes:
 
 
 def spawns(evidence: Evidence, params: Spawns) -> Finding:
-    """The node spawned the required number of turtles with the right names on the field, and not all in one place."""
+    """The node spawned the required turtles with the right names, in the allowed area and not all in one place."""
     wanted = [f"{params.name}{index + 1}" for index in range(int(params.turtles))]
     listed = wanted[0] if len(wanted) == 1 else f"{wanted[0]} to {wanted[-1]}"
     expected = (
@@ -230,7 +230,7 @@ SPAWNS = Kind(
     "The node spawns turtles",
     Spawns,
     spawns,
-    about="The node spawns the given number of turtles with the right names, on the field and not all in one place.",
+    about="The node spawns the given number of turtles with the right names in the allowed area, not all in one place.",
 )
 PLACES_DIFFER = Kind(
     "places_differ",

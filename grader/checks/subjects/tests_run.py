@@ -38,7 +38,7 @@ def found(evidence: Evidence, _: NoParams) -> Finding:
     if code.tests:
         return passed(f"The files contain {count(len(code.tests), 'test')}.")
     if any(run.outcome == "import" for run in runs):
-        return passed("pytest finds the files.")
+        return passed("pytest finds a test file, but cannot import it.")
     expected = "pytest finds tests: functions named test_SOMETHING in files named test_SOMETHING.py."
     return failed("pytest finds no test.", expected, why_no_test(code))
 

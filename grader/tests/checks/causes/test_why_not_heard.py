@@ -98,7 +98,7 @@ def cause(message: str, events: NodeEvents | None, source: str = BENCH) -> str:
             "bench-loses-calls test/test_it.py:9",
             "On the node's clock, the timer's callback ran less than once per period (0.1 s).",
         ),
-        (FIVE, RARE, RIGHT, "bench-loses-calls", "Each call of spin_once runs at most one callback. If one step"),
+        (FIVE, RARE, RIGHT, "bench-loses-calls", "Each call to spin_once runs at most one callback. If one step"),
         (NINE, UNSTARTED, RIGHT, "bench-clock-not-started", "The pose arrived when the node's clock showed 0 s, which"),
         (NINE, UNSTARTED, RIGHT, "bench-clock-not-started", "Advance the clock by one step before the tests begin."),
     ],

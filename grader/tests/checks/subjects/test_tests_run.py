@@ -189,7 +189,11 @@ NONE_FOUND = NodeRun("", 5)
     [
         ("pytest finds 3 tests.", (GOOD, SOURCE), (NONE_FOUND, SOURCE)),
         ("The files contain 1 test.", (NONE_FOUND, SOURCE), (GOOD, SOURCE)),
-        ("pytest finds the files.", (dataclasses.replace(NONE_FOUND, outcome="import"), ""), (NONE_FOUND, "")),
+        (
+            "pytest finds a test file, but cannot import it.",
+            (dataclasses.replace(NONE_FOUND, outcome="import"), ""),
+            (NONE_FOUND, ""),
+        ),
         ("pytest finds no test.", (NONE_FOUND, "def it():\n    pass\n"), (NONE_FOUND, SOURCE)),
         (
             "pytest finds tests: functions named test_SOMETHING in files named test_SOMETHING.py.",
