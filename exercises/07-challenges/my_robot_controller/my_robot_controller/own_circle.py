@@ -11,7 +11,7 @@ class OwnCircleNode(Node):
 
     def __init__(self):
         super().__init__("own_circle")
-        # TODO a: drive your circle, as in step 03. Your numbers are in my_numbers.toml of step 07.xml.
+        # TODO a: drive your circle, as in step 03. Your numbers are in my_numbers.toml of step 07.
 
 
 def main(args=None):

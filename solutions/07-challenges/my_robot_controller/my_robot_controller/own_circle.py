@@ -22,7 +22,7 @@ class OwnCircleNode(Node):
         self.publisher.publish(msg)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO a: drive your circle, as in step 03. Your numbers are in my_numbers.toml of step 07.xml.
+        # # TODO a: drive your circle, as in step 03. Your numbers are in my_numbers.toml of step 07.
         # END STARTER
 
 
