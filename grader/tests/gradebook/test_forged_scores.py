@@ -149,7 +149,7 @@ def test_a_forged_score_never_counts(term: Term, monkeypatch: pytest.MonkeyPatch
     assert done.unjudged == ("forger",)
     reported = {each.student: each.why for each in done.unconfirmed}
     assert reported.keys() == {"forger", "gone", "unreadable"}
-    assert "could not judge" in reported["forger"]
+    assert "not judged" in reported["forger"]
     assert "could not be read" in reported["unreadable"]
     assert all(withheld(term, student) for student in ("forger", "gone", "unreadable"))
     assert points_of(term) == {"honest": 55, "forger": 0, "gone": 0, "unreadable": 0}

@@ -56,7 +56,7 @@ def test_a_class_has_its_students_and_no_other_data(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        ("name\nada\n", 'name the columns "id"'),
+        ("name\nada\n", 'name the column "id"'),
         ("id\nada\n\nb/c\n", 'line 4: the id is "b/c"'),
         ("id\n../ada\n", "nbgrader uses it as a folder name"),
         ("id\na+b\n", "nbgrader uses it as a folder name"),
