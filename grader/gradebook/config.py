@@ -24,7 +24,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
 
     from grader.gradebook import converters
     from grader.gradebook.confined_autograde import CHECK_S, ConfinedExecute
-    from grader.gradebook.exchange import BoundedReleaseFeedback
+    from grader.gradebook.exchange import BoundedList, BoundedReleaseFeedback
     from grader.gradebook.export import ConfirmedCsv
     from grader.gradebook.feedback import GraderReasons, HideHiddenTests
     from grader.gradebook.pages import configure_pages
@@ -68,6 +68,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
     config.GenerateFeedback.exporter_class = converters.BoundedPage
     config.ExchangeFactory.collect = converters.BoundedCollect
     config.ExchangeFactory.release_feedback = BoundedReleaseFeedback
+    config.ExchangeFactory.list = BoundedList
     configure_pages(config)
     config.Autograde.sanitize_preprocessors = [
         steps.ClearOutput,

@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 
 _USERS = ("nbgrader.converters", "nbgrader.apps.autogradeapp", "nbgrader.apps.generatefeedbackapp", "nbgrader.apps.api")
 """The modules that import Autograde or GenerateFeedback by name. nbgrader has no setting that replaces a class."""
-_SECRET = "submission_secret.txt"
-"""The file from which nbgrader makes the name of the page with the feedback in the exchange."""
 _NEVER = datetime(1, 1, 1)  # noqa: DTZ001 - nbgrader compares times without a zone
 
 
@@ -123,7 +121,7 @@ class BoundedFeedback(GenerateFeedback):  # type: ignore[misc, unused-ignore]
         """Copy the files that releasing the feedback needs."""
         source, dest = (Path(make(assignment_id, student_id)) for make in (self._format_source, self._format_dest))
         dest.mkdir(parents=True, exist_ok=True)
-        for name in (readable.TIMESTAMP, _SECRET):
+        for name in (readable.TIMESTAMP, readable.SECRET):
             if (source / name).is_file():
                 shutil.copyfile(source / name, dest / name)
         self.notebooks: list[str] = _in(source, self.notebooks)

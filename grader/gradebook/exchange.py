@@ -1,15 +1,20 @@
-"""A variant of nbgrader's step that releases feedback, which one submission cannot stop.
+"""Variants of nbgrader's steps that release feedback and list submissions, which one submission cannot stop.
 
-nbgrader reads the time of a submission, and its secret, from which nbgrader makes the name of the page with the
-feedback. A student can remove these files, or fill them with any bytes.
+nbgrader reads the time of a submission, its notebooks, and its secret, from which nbgrader makes the name of the page
+with the feedback. A student can remove these files, replace them with named pipes, or fill them with any bytes.
 """
 
 from __future__ import annotations
 
 import glob
+from pathlib import Path
+from typing import Any
 
-from nbgrader.exchange.default import ExchangeReleaseFeedback
+from nbgrader.exchange.default import ExchangeList, ExchangeReleaseFeedback
 
+from grader.errors import GraderError
+from grader.gradebook import inbound, readable
+from grader.submission.reader import read
 from grader.submission.tree import shown
 
 
@@ -26,3 +31,26 @@ class BoundedReleaseFeedback(ExchangeReleaseFeedback):  # type: ignore[misc, unu
                 super().copy_files()
             except (OSError, ValueError) as error:  # ValueError: bytes that are not UTF-8
                 self.log.warning("The feedback in %s was not released: %s", shown(folder), error)
+
+
+class BoundedList(ExchangeList):  # type: ignore[misc, unused-ignore]
+    """Lists the submissions of the exchange, except those whose files nbgrader could not read."""
+
+    assignments: list[str]
+
+    def parse_assignments(self) -> list[dict[str, Any]]:
+        """Return what the base class returns. Log a warning about each submission that is left out."""
+        if self.inbound:
+            self.assignments = [path for path in self.assignments if self._can_be_listed(path)]
+        return super().parse_assignments()  # type: ignore[no-any-return, unused-ignore]
+
+    def _can_be_listed(self, path: str) -> bool:
+        try:
+            why = inbound.why_not(Path(path), self.parse_assignment(path)["student_id"], owned=False)
+            if not why:
+                read(readable.require_listable, Path(path))
+        except (GraderError, OSError, RuntimeError) as error:  # RuntimeError: the name is not that of a submission
+            why = str(error)
+        if why:
+            self.log.warning("Not listed, because %s: %s", why, shown(path))
+        return not why

@@ -19,8 +19,10 @@ if TYPE_CHECKING:
 
 TIMESTAMP = "timestamp.txt"
 """The file in which nbgrader stores the time of a submission."""
+SECRET = "submission_secret.txt"
+"""The file from which nbgrader makes the name of the page with the feedback in the exchange."""
 MOST_TIMESTAMP = 100
-"""The maximum size of the file with the time of a submission (bytes)."""
+"""The maximum size of the file with the time or with the secret of a submission (bytes)."""
 YEARS = range(2000, 2100)
 """The years in which a time is valid. A time in the year 9999 could make nbgrader's formgrader fail for the whole
 class, because of time zones."""
@@ -55,6 +57,19 @@ def time_of(folder: Path) -> datetime | None:
         message = f"{TIMESTAMP} does not contain a valid time"
         raise UnreadableError(message) from error
     return when
+
+
+def require_listable(folder: Path) -> None:
+    """Check the files that `nbgrader list --inbound` reads: the notebooks and the secret.
+
+    Raises:
+        UnreadableError: one of them is not a regular file, is too large, or is a secret that is not a text.
+    """
+    for path in sorted(folder.glob("*.ipynb")):
+        _content(path, MOST_BYTES)
+    secret = folder / SECRET
+    if os.path.lexists(secret):
+        _content(secret, MOST_TIMESTAMP).decode()
 
 
 def notebook(path: Path) -> str:
