@@ -75,7 +75,10 @@ def run(
     workspace: Workspace = None,
     view: Annotated[bool, typer.Option("--view/--no-view", help="Show the turtle on a local web page.")] = True,
 ) -> None:
-    """Build your package and run its node together with a turtlesim that you can watch. Ctrl-C ends both."""
+    """Build your package and run its node together with a turtlesim that you can watch. Ctrl-C ends both.
+
+    A turtlesim that was already running is not ended.
+    """
     from grader.learner import run_node
 
     raise typer.Exit(run_node.run(run_node.program_of(step, program, workspace), view=view))

@@ -219,9 +219,15 @@ def _until_it_ends(program: Program, script: Path, env: Mapping[str, str]) -> in
             node.kill()
     if interrupted:
         return 0
-    how = "without an error." if code == 0 else f"with exit code {code}. The lines above may show where and why."
-    say(f"\n{program.executable} has ended {how}")
+    say(f"\n{program.executable} has ended {_how(code)}")
     return 0 if code == 0 else 1
+
+
+def _how(code: int) -> str:
+    if code == 0:
+        return "without an error."
+    because = f"because of signal {-code} ({signal.strsignal(-code)})" if code < 0 else f"with exit code {code}"
+    return f"{because}. The lines above may show where and why."
 
 
 def _interrupt(*_: object) -> None:
