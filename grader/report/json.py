@@ -33,6 +33,8 @@ from grader.submission.where import Where
 
 SCHEMA = 4
 READ = (1, 2, 3, SCHEMA)
+MOST_OUTCOMES = 1000
+"""The maximum number of outcomes in a report that is read. Students can write reports with any number of them."""
 
 
 def to_json(report: Report) -> str:
@@ -114,6 +116,9 @@ def from_json(written: str) -> Report:
 
 def _report(data: dict[str, Any]) -> Report:
     recordings = data["recordings"]
+    if len(data["outcomes"]) > MOST_OUTCOMES:
+        message = f"it has more than {MOST_OUTCOMES} outcomes"
+        raise ValueError(message)
     return Report(
         exercise=text(data["exercise"]["id"]),
         exercise_title=text(data["exercise"]["title"]),
@@ -134,6 +139,9 @@ def _report(data: dict[str, Any]) -> Report:
 
 def _read_outcome(data: dict[str, Any]) -> Outcome:
     where = data["where"]
+    if not 0 <= number(data["points"]) <= number(data["max"]):
+        message = f"the check {text(data['id'])!r:.80} has {data['points']} of {data['max']} points"
+        raise ValueError(message)
     finding = Finding(
         status=Status(data["status"]),
         observed=text(data["seen"]),

@@ -12,7 +12,7 @@ from grader.errors import UsageError
 from grader.report.hidden import for_students
 from grader.report.html import html_page
 from grader.report.html_class import ClassReports, Entry, class_page, counts, failures, read_class, save_class_page
-from grader.report.json import from_json, to_data, to_json
+from grader.report.json import MOST_OUTCOMES, from_json, to_data, to_json
 from grader.tests.report.hostile import ALL, SCRIPTS
 from grader.tests.report.reports import EVIDENCE, report
 from grader.tests.report.test_html import Tags
@@ -113,6 +113,24 @@ def test_other_files_are_ignored_and_damaged_reports_are_listed(folder: Path) ->
     assert len(reports.entries) == 7
     assert [name for name, _ in reports.unreadable] == ["damaged.json", "later.json"]
     assert "schema 99" in class_page(reports)
+
+
+@pytest.mark.parametrize(("points", "most"), [(-1e9, 10.0), (1e9, 10.0), (10.0, 0.0)])
+def test_a_report_with_impossible_points_does_not_prevent_the_page(folder: Path, points: float, most: float) -> None:
+    data = to_data(report("passed"))
+    data["outcomes"][0].update(points=points, max=most)
+    (folder / "forged.json").write_text(json.dumps(data))
+    reports = read_class(folder)
+    assert len(reports.entries) == 7
+    assert [name for name, _ in reports.unreadable] == ["forged.json"]
+    assert f"{points} of {most} points" in class_page(reports)
+
+
+def test_a_report_with_thousands_of_outcomes_is_listed_and_not_read(folder: Path) -> None:
+    data = to_data(report("failed"))
+    data["outcomes"] *= MOST_OUTCOMES
+    (folder / "long.json").write_text(json.dumps(data))
+    assert [name for name, _ in read_class(folder).unreadable] == ["long.json"]
 
 
 @pytest.mark.parametrize("share", [0.0, 0.09999999, 0.1, 0.5, 0.899999, 0.9, 0.999, 1.0])
