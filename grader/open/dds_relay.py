@@ -1,8 +1,8 @@
-"""Forward DDS datagrams between a node in a cell, which has a separate network, and the nodes of this machine.
+"""Forward DDS datagrams between a node in a sandbox cell, with its own network, and the nodes of this machine.
 
-A node in a cell can reach only this relay, and the relay can reach only 127.0.0.1: the ports of the participants of one
-ROS domain, and ports that one of these participants has announced. Other nodes cannot distinguish the node in the cell
-from a node of this machine.
+A node in a cell can reach only this relay. The relay sends its datagrams only to ports of 127.0.0.1: the ports of the
+participants in one ROS domain, and the ports that these participants have announced. To other nodes, the node in the
+cell looks like a node of this machine.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ _HERE = socket.inet_aton(HOST)
 class Relay:
     """Forwards datagrams.
 
-    The caller waits for `selector`, and calls the function in the `data` of each key that is ready.
+    The caller must call the function in the `data` of each key that `selector` reports as ready.
 
-    `inside` contains sockets in the cell's network, bound to `ports.others` in this order.
+    `inside` contains sockets in the cell's network. They are bound to the ports `ports.others`, in the same order.
     """
 
     def __init__(self, selector: BaseSelector, domain: int, ports: Ports, inside: Sequence[socket.socket]) -> None:
@@ -76,7 +76,7 @@ class Relay:
     def _as_seen_inside(self, locator: re.Match[bytes]) -> bytes:
         """Return the locator with the address of this relay, which is the only address that the cell can reach.
 
-        If the port in the locator is one of the OTHERS ports from FIRST_OWN on, also allow datagrams to this port.
+        If the port in the locator is between FIRST_OWN and FIRST_OWN + OTHERS - 1, also allow datagrams to this port.
         """
         (port,) = struct.unpack("<I", locator[2])
         if FIRST_OWN <= port < FIRST_OWN + OTHERS:

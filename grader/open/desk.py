@@ -50,9 +50,9 @@ class Content:
     number: int = 0
     verdict: Verdict | None = None
     early: dict[str, dict[str, object]] | None = None
-    """The failed checks that were judged from the files alone. They are shown until the verdict is ready."""
+    """The checks whose failure was certain before the build. They are shown until the verdict is ready."""
     digest: str = ""
-    """The digest of the submission that was read last."""
+    """The digest of the submission when it was last read."""
     lacking: list[dict[str, object]] = field(default_factory=list)
     """The lines to add to the learner's package files for this step, and the tasks to do in these files."""
 
@@ -65,7 +65,7 @@ class Desk:
         self._content = Content()
 
     def begin(self, exercise: Exercise | None, folder: Path | None) -> None:
-        """Show another step without a verdict, or no step if `exercise` is None."""
+        """Show a new step, which has no verdict yet, or no step if `exercise` is None."""
         name = exercise.id if exercise else ""
         self._set(Content(exercise=name, folder=str(folder or ""), number=self._content.number + 1))
 
@@ -79,7 +79,7 @@ class Desk:
         self._set(replace(self._content, digest=digest, lacking=lacking))
 
     def early(self, outcomes: Sequence[Outcome]) -> None:
-        """Show the failed checks that were judged from the files alone."""
+        """Show the checks whose failure is certain before the build."""
         self._set(replace(self._content, early={each.id: _check(each) for each in outcomes}, problem=""))
 
     def judged(self, report: Report) -> None:
@@ -113,14 +113,14 @@ def to_json(content: Content) -> str:
 
 
 def from_json(text: str | bytes) -> Content:
-    """Return the content that `to_json` has written."""
+    """Return the content from a line that `to_json` returned."""
     data = json.loads(text)
     made = data["verdict"]
     return Content(**{**data, "verdict": made and Verdict(**made)})
 
 
 def page_data(now: Content, workspace: Path) -> dict[str, object]:
-    """Return the data for a page except for its programs: the content, and the progress in the workspace."""
+    """Return the data for a page, without the state of the programs: the content and the learner's progress."""
     known = progress.load(workspace)
     exercise = find_exercise(now.exercise) if now.exercise else None
     step = known.step(now.exercise)
@@ -160,7 +160,7 @@ def _check(outcome: Outcome) -> dict[str, object]:
 
 
 def _checks(exercise: Exercise, now: Content) -> list[dict[str, object]]:
-    """Return all checks of the exercise in order, each with its status: failed early, judged, or not judged yet."""
+    """Return all checks of the exercise in order, each with its result or with the kind OPEN."""
     judged = {**(now.verdict.checks if now.verdict else {}), **(now.early or {})}
     return [
         judged.get(spec.id)

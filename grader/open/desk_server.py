@@ -1,8 +1,8 @@
 """The server of the page: lessons, verdict, updates and actions, protected by grader.view.guard.
 
-Lessons are public. A request for the learner's data must contain the token in a header, which pages of other sites
-cannot send. The connections for updates and for the turtle have the token in their address (for updates, it can be a
-code that works once), and the guard checks their Origin.
+Lessons are public. A request for the learner's data must contain the token in a header, because pages of other sites
+cannot send this header. The connections for updates and for the turtle have the token in their URL, and the guard
+checks their Origin. For updates, a code that works only once can replace the token.
 """
 
 from __future__ import annotations

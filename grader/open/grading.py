@@ -26,7 +26,7 @@ RERUN, STEP = "rerun", "step"
 
 
 def run(desk: Desk, events: Events, workspace: Path | None) -> None:
-    """Grade each new step, and again after each save that changes the work and on request, until the events end."""
+    """Grade the current step, and grade it again after a change or on request, until there are no more events."""
     options = Options(in_cell=bubblewrap.usable())
     current = steps.current(workspace)
     while True:
@@ -96,7 +96,7 @@ def lacking(exercise: Exercise, files: Mapping[str, bytes]) -> list[dict[str, ob
 
 
 def _prove(desk: Desk, events: Events, watched: Watched) -> None:
-    """While no events are pending, test fixes for the causes in the verdict, and show the results."""
+    """Test whether a fix for a cause in the verdict helps, and show the results. Stop when an event is pending."""
     proved = watched.prove(desk.tell, events.waiting)
     if proved is not None:
         desk.judged(proved.report)

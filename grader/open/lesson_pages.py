@@ -1,4 +1,4 @@
-"""What the server sends: lessons with panes, the contents, the search index, pictures, style sheets and scripts."""
+"""The pages and files that the server sends: lessons, contents, search index, pictures, style sheets and scripts."""
 
 from __future__ import annotations
 

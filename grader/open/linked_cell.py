@@ -47,7 +47,7 @@ _MOST_SOCKETS = 250
 class LinkedCell:
     """The process of the launcher in its cell.
 
-    When `selector` reports a key as ready, call the function that is stored in the key's `data`.
+    The caller must call the function in the `data` of each key that `selector` reports as ready.
     """
 
     process: subprocess.Popen[bytes]

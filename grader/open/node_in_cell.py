@@ -41,13 +41,13 @@ _CHUNK = 65536
 
 
 def run(program: Program) -> int:
-    """Build the package, and run the program until Ctrl-C or until it exits. Return the exit code for the user.
+    """Build the package, and run the program until Ctrl-C or until it exits. Return the exit code.
 
     The exit code is 0 if the program was stopped or exited without an error, and 1 if it failed or exceeded a limit, or
     if the package could not be built.
 
     Raises:
-        GraderError: the package cannot be read, it does not have the program, or the machine cannot build or run it.
+        GraderError: the package cannot be read or does not contain the program, or the machine cannot build or run it.
     """
     env = shell.users_environment(None, _tell)
     ros = underlay.with_turtlesim(installation.find_ros(), _tell)
@@ -118,14 +118,14 @@ def _until_it_ends(cell: LinkedCell, program: Program) -> int:
 
 
 def _read_order(cell: LinkedCell, stop: Callable[[], None]) -> None:
-    """Call `stop` when standard input is closed. No data arrives on standard input."""
+    """Call `stop` if standard input has been closed. Standard input never contains data."""
     if not os.read(sys.stdin.fileno(), _CHUNK):
         cell.selector.unregister(sys.stdin)
         stop()
 
 
 class _Output:
-    """Prints the output of the node, after replacing the paths of the copies with the paths of the learner's files."""
+    """Prints the output of the node, with the paths of the learner's files instead of those of their copies."""
 
     def __init__(self, cell: LinkedCell, program: Program) -> None:
         assert cell.process.stdout is not None

@@ -1,4 +1,4 @@
-"""The programs that a page can start: turtlesim as in a terminal, and a node of the step, in a cell if possible."""
+"""The programs that a page can start: turtlesim, and a node of the step, which runs in a sandbox cell if possible."""
 
 from __future__ import annotations
 
@@ -134,18 +134,18 @@ class Programs:
     def address(self) -> Address | None:
         """Return the address of the view of turtlesim, or None.
 
-        This is the view of the turtlesim that was started here, or else of the last turtlesim that was started in a
-        terminal. The view at this address may no longer be running.
+        This is the view of the turtlesim that the page started. If there is none, it is the view of the turtlesim that
+        was last started in a terminal, which may no longer be running.
         """
         return self._address or remembered("turtlesim")
 
     def _printed_address(self) -> Address | None:
-        """Return the first address that turtlesim has printed. Its later messages can contain any text."""
+        """Return the first address that turtlesim has printed. Its later output can contain any text."""
         found = next(filter(None, map(_ADDRESS.fullmatch, self.turtlesim.lines)), None)
         return Address(int(found[1]), found[2]) if found else None
 
     async def beside_another(self) -> bool:
-        """Return whether a turtlesim is running that this object has not started. If it has started one, return False.
+        """Return True if another turtlesim is running and `self.turtlesim` is not.
 
         A second turtlesim would receive the same commands.
         """
@@ -177,7 +177,7 @@ class Programs:
             await asyncio.sleep(_LOOK_S)
 
     async def start_node(self, step: str, executable: str, digest: str) -> None:
-        """Start this executable of the step with turtlesim: in a cell if possible, or else like `grader run`.
+        """Start turtlesim if necessary, and this executable of the step: in a cell if possible, else with `grader run`.
 
         `digest` is the digest of the code.
         """

@@ -1,4 +1,4 @@
-"""The commands of `ros2` that a page may run: a fixed list of verbs that change nothing, never a shell."""
+"""The commands of `ros2` that a page may run: a fixed list of verbs that change nothing. No shell is used."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _REFUSED: Mapping[str, tuple[str, ...]] = {
     "param": ("set", "delete", "load", "dump"),
     "action": ("send_goal", "echo"),
 }
-"""Other verbs of these groups, which need a terminal."""
+"""Other verbs of these groups. Users must type them in a terminal."""
 _OPTIONS = frozenset(
     {*("-t", "-v", "-c", "-a"), *("--show-types", "--verbose", "--count-topics", "--no-comments", "--all", "--once")}
 )
@@ -41,7 +41,7 @@ _MOST_WORDS = 8
 LONGEST = 20_000
 """The maximum length of the output of a command (bytes)."""
 HZ_S = 5.0
-"""The duration of `ros2 topic hz`, and the maximum time for a command to exit after Ctrl-C (s)."""
+"""The time after which `ros2 topic hz` is stopped, and the maximum time for any command to exit after Ctrl-C (s)."""
 PATIENCE_S = 15.0
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Recording
 
 MOST_ROWS = 100
-"""The maximum number of calls, and of goals, in a table and in a replay."""
+"""The maximum number of calls in a table or replay, and also the maximum number of goals."""
 MOST_TEXT = 120
 """The maximum length of a request, a response, a goal or a result (characters)."""
 
@@ -42,7 +42,7 @@ def goal_rows(recording: Recording) -> list[tuple[str, ...]]:
 
 
 def moments(recording: Recording) -> list[tuple[float, str]]:
-    """Return the events of a replay as (time in s, text): the first calls and goals, and what happened to these."""
+    """Return the events of a replay as (time in s, text): the first calls, and the start and end of the first goals."""
     found = [(call.t_s, f"{_caller(call)} calls {shorten(call.service)}") for call in recording.calls[:MOST_ROWS]]
     for goal in recording.goals[:MOST_ROWS]:
         found += _moments_of(goal)

@@ -199,7 +199,7 @@ def _end_s(evidence: Evidence) -> float:
 
 
 def _steps(series: Series, wanted: float | None, label: str, end_s: float, where: tuple[float, int]) -> str:
-    """Draw one field: a step at each command, and a dashed line at the required value.
+    """Draw one field of the commands: a line that keeps each value until the next command, and the required value.
 
     `where` contains the y coordinate of the chart's top, and the number of bins.
     """

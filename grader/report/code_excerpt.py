@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 AROUND = 4
 """The number of lines that are shown before and after the line."""
 MOST_COLOURED = 60_000
-"""The maximum length of the text from the beginning of the file to the end of the excerpt (characters). A longer text
-would take too long, so it gets no colours."""
+"""The maximum length of the text from the beginning of the file to the end of the excerpt (characters). Colouring a
+longer text would take too long."""
 
 NEWLINE = re.compile(r"\r\n|\r|\n")
 """The line endings that Python recognizes. str.splitlines recognizes more line endings, so it would count lines

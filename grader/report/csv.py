@@ -1,4 +1,4 @@
-"""A class as a CSV table with one line per submission, for the instructor's spreadsheet or gradebook.
+"""The results of a course's students as a CSV table, for a spreadsheet or gradebook: one line per submission.
 
     submission  the name of the folder or archive
     exercise    the id of the exercise
@@ -6,10 +6,10 @@
     max         the points of the whole exercise, including checks that could not be judged
     percent     points as a percentage of max
     status      passed, failed, or error; a submission with an error is graded again by the next run
-    failed      the ids of the failed checks or, if no check failed, of the checks that could not be judged; in the
-                order of the exercise, separated by spaces
+    failed      the ids of the failed checks or, if no check failed, of the checks that could not be judged, in the
+                order of the exercise and separated by spaces
     diagnoses   the stable ids of the causes of these checks
-    first       the observation of the first of these checks, in words
+    first       what the first of these checks observed, in words
     clock, seed
     graded_by   the version of the grader and the first digits of the sha256 of its sources
     report      the file with the full report

@@ -37,7 +37,7 @@ def requested_interval(evidence: Evidence) -> Interval | None:
 
 
 def requested_values(evidence: Evidence) -> tuple[float, ...] | None:
-    """Return the first required values of the commands, or None if no check requires certain values."""
+    """Return the first required values of the commands, or None if no check requires specific values."""
     return next((each.values for each in requested(evidence) if each.values is not None), None)
 
 

@@ -33,7 +33,7 @@ _SIGNS = {Status.PASSED: "✅", Status.FAILED: "❌", Status.SKIPPED: "\N{HEAVY 
 
 
 def to_summary(rows: Sequence[tuple[str, Report]]) -> str:
-    """Return Markdown for $GITHUB_STEP_SUMMARY: a table of the class, and the checks of as many submissions as fit."""
+    """Return Markdown for $GITHUB_STEP_SUMMARY: a table of all submissions, and the checks of as many as fit."""
     parts = ["| submission | exercise | points | |\n| --- | --- | ---: | --- |\n"]
     for student, report in rows:
         points = f"{report.points:g} of {report.max:g}"

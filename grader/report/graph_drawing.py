@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 WIDTH = 640.0
 ROW, BOX = 62.0, 40.0
 SIDE, MIDDLE = 150.0, 216.0
-"""The widths of a node and of a topic."""
+"""The widths of the boxes of a node and of a topic."""
 MOST_TOPICS, MOST_NODES = 10, 12
 NODE, TOPIC = "#1c7ed6", "#e8590c"
 NARROW = 360.0
@@ -32,7 +32,7 @@ NARROW_SIDE, NARROW_MIDDLE = 124.0, 184.0
 CHAR = 7.0
 """The approximate width of a character."""
 ASIDE = 8.0
-"""In the narrow picture, arrows in both directions touch the same side of a box. They are moved up or down by this."""
+"""In the narrow picture, arrows in both directions end at the same side of a box, and are this far off its centre."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class GraphDrawing:
 
 
 def draw_graph(recording: Recording, name: str = "graph") -> GraphDrawing | None:
-    """Draw the nodes and topics that were in the graph at any time, as far as they fit.
+    """Draw the nodes and topics that were in the graph at any time, or as many of them as fit.
 
     Hidden names, debug topics such as /rosout, and the nodes of tools are left out. Return None if there was no node.
     """

@@ -125,7 +125,7 @@ def _page(evidence: Evidence, report: Report) -> str:
 
 
 def shown_checks(evidence: Evidence, report: Report) -> list[ShownCheck]:
-    """Return all checks for a page. A check has no code if an earlier check shows the same line."""
+    """Return all checks for a page. A check shows no code if an earlier check already shows its line."""
     shown: list[ShownCheck] = []
     room = CODE_BYTES
     for number, outcome in enumerate(report.outcomes, 1):

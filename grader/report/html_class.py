@@ -1,4 +1,4 @@
-"""The page of a class, made from its reports: points, the most common failures with their causes, and machine errors.
+"""The page of a class of students, made from reports: points, common failures with their causes, and machine errors.
 
 The reports are the JSON files below a folder. If there is a page with the same name next to a report, the class page
 links to that page.

@@ -40,7 +40,7 @@ MOST_OUTCOMES = 1000
 def to_json(report: Report) -> str:
     """Return the report as indented JSON that ends with a newline.
 
-    Half of a surrogate pair, which a recording may contain and UTF-8 cannot encode, is written as an escape of JSON.
+    UTF-8 cannot encode a lone surrogate, which a recording may contain. It is written as a JSON escape sequence.
     """
     text = json.dumps(to_data(report), ensure_ascii=False, indent=2, allow_nan=False) + "\n"
     return text.encode("utf-8", "backslashreplace").decode()
@@ -91,7 +91,7 @@ def _outcome(outcome: Outcome) -> dict[str, Any]:
 def _encodable(text: str) -> str:
     """Replace lone surrogates with escapes, because JSON must be valid UTF-8.
 
-    A lone surrogate stands for a byte in a file name that is not valid UTF-8.
+    In a file name, Python represents each byte that is not valid UTF-8 by a lone surrogate.
     """
     return text.encode("utf-8", "backslashreplace").decode("utf-8")
 

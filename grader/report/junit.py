@@ -1,4 +1,4 @@
-"""A class as JUnit XML for Jenkins, GitLab and others: one test suite per submission, one test case per check.
+"""Reports as JUnit XML for Jenkins, GitLab and others: one test suite per submission, one test case per check.
 
 Students can see this XML. For a hidden check, it contains only the result. A check that only gives advice does not
 become a test case.

@@ -1,8 +1,8 @@
 """Write files that the user named on the command line.
 
-The file may be in the folder of a student, who may have put a symbolic link there that leads to a file of the user.
-Therefore, such links are not followed, except those of the system, such as /dev/stdout. A student may also have put a
-named pipe there, so the grader does not wait for a reader.
+The file may be in a student's folder, where the student may have put a symbolic link to a file of the user. Therefore,
+symbolic links are not followed, except those of the system, such as /dev/stdout. A student may also have put a named
+pipe there, so the grader does not wait until a process reads from the file.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _OF_THE_SYSTEM = ("/dev/", "/proc/")
 def check_writable(file: Path | None) -> None:
     """Check that the user may write the file, and that the path is not a folder. Call this before doing any work.
 
-    Raises UsageError if the file could not be written, or if it is `-`, which many programs use for standard output.
+    Raises UsageError if the file cannot be written, or if it is `-`, which means standard output in many programs.
     """
     if str(file) == "-":
         message = "The file cannot be -, since the command prints its own text on standard output. Choose a file name."

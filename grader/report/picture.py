@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 SIDE_PX = 640
 LEFT, TOP, RIGHT, BOTTOM = 64, 72, 300, 60
 SMALL_PX = 420
-"""The side length of each canvas (pixels) if there are several."""
+"""The side length of each canvas (pixels) if the picture has several."""
 ACROSS = 2
 HEADING = 40
 
@@ -63,8 +63,8 @@ def _png(evidence: Evidence, report: Report) -> bytes:
 def draw_picture(evidence: Evidence, report: Report) -> Image.Image:
     """Return one image with a picture of each trial, except trials without a simulator.
 
-    A program that runs beside another one is in the picture of the other one.
-    If there is no trajectory to draw, the picture shows the reason.
+    A trial whose node runs in another trial (`beside`) has no picture of its own. If there is no trajectory
+    to draw, the picture shows the reason.
     """
     trials = [each for each in evidence.views() if not each.trial.calls and not each.trial.beside] or [evidence]
     panels = _panels(len(trials))
@@ -178,7 +178,7 @@ def _sign(draw: ImageDraw.ImageDraw, role: Role, at: tuple[int, int]) -> None:
 
 
 def _middle(draw: ImageDraw.ImageDraw, text: str, panel: Panel) -> None:
-    """Draw a sentence in the lower half of the canvas."""
+    """Write a sentence in the lower half of the canvas."""
     at = (panel.left + panel.side / 2, panel.top + panel.side * 0.72)
     font = _font(20)
     left, top, right, bottom = draw.textbbox(at, text, font=font, anchor="mm")

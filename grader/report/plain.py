@@ -16,7 +16,7 @@ COLOURS = re.compile(r"\x1b\[[0-9;?]*[ -/]*[@-~]")
 """Terminal control sequences."""
 LONGEST_LINE = 400
 GROWTH = {"&": 5, "<": 4, ">": 4, '"': 5, "'": 5}
-"""The size in bytes of the entity that replaces a character in a page."""
+"""Maps a character to the size in bytes of the HTML entity that replaces it in a page."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Cut:
 
 
 def plain_line(text: str) -> str:
-    """Return the text as one line of limited length, without colours and with "?" for each unsafe character."""
+    """Return the text as one line of limited length, without colours, and with "?" for each unsafe character."""
     line = text[: 2 * LONGEST_LINE].rstrip("\r\n")
     if not line.isprintable():
         line = COLOURS.sub("", line).expandtabs(4)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Progress:
-    """Two functions: `tell` shows the current step, and `keep` shows a line until the report appears.
+    """Two functions: `tell` shows what the grader is doing, and `keep` shows a line until the report appears.
 
     Calling the object is the same as calling `tell`:
 
@@ -25,7 +25,7 @@ class Progress:
     keep: Callable[[str], None]
 
     def __call__(self, text: str) -> None:
-        """Show the current step."""
+        """Show what the grader is doing."""
         self.tell(text)
 
     def keep_all(self, lines: Iterable[str]) -> None:

@@ -71,7 +71,7 @@ class Report:
         """The exit code for the report.
 
         The code is 0 if the submission passed (perhaps with warnings), 1 if it did not pass, and 3 if the grader or the
-        machine is broken.
+        machine failed.
         """
         if self.with_status(Status.ERROR):
             return 3
@@ -105,7 +105,7 @@ def report_of(
 
 
 def _remark(evidence: Evidence) -> tuple[Outcome, ...]:
-    """Return an outcome without points that names the notebooks whose cells were not used, or an empty tuple."""
+    """If the cells of notebooks were not used, return an outcome, worth no points, that names these notebooks."""
     if not evidence.submission.remark:
         return ()
     expected = f"One notebook, {evidence.exercise.id}.ipynb, next to the files that you hand in."
@@ -119,7 +119,7 @@ REFUTED = "The supposed cause was fixed in a copy of the submission, but the che
 
 
 def _with_try(outcome: Outcome, evidence: Evidence) -> Outcome:
-    """Return the outcome with the result of fixing its cause in a copy. A refuted cause is removed."""
+    """Return the outcome with the result of testing a fix for its cause. A cause whose fix did not help is removed."""
     finding, tries = outcome.finding, evidence.tries
     if outcome.status is not Status.FAILED:
         return outcome
@@ -144,7 +144,7 @@ def _in_one_line(difference: str) -> str:
 
 
 def _why_this_clock(evidence: Evidence) -> str:
-    """Return the reason for the clock of the first trial, and the reasons for any other clocks in later trials.
+    """Return why the first trial used its clock, and why any later trials used a different one.
 
     Students read this, so trials that only hidden checks use are left out.
     """
@@ -162,7 +162,7 @@ def _why_this_clock(evidence: Evidence) -> str:
 
 
 def _why_no_clock(evidence: Evidence) -> str:
-    """Return the reason why the first trial has no clock, and the names of the nodes that ran in other trials."""
+    """Return why the first trial has no clock, with the names of the nodes that ran in other trials."""
     if evidence.run.overwhelmed is not None:
         return "The trial could not be finished."
     own = evidence.trial.executable

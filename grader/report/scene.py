@@ -35,7 +35,7 @@ TICK_M = 0.11
 
 @dataclass(frozen=True)
 class Scene:
-    """The content of a drawing: the `shapes` from bottom to top, the legend's text for each role, and some facts.
+    """The content of a drawing: the `shapes` from bottom to top, the legend's text for each role, and lines of `facts`.
 
     `notice` is the reason why there is no trajectory, or why the trajectory ends early. Otherwise, `notice` is empty.
     """
@@ -152,7 +152,7 @@ def _drawn(evidence: Evidence, points: list[Point]) -> list[Line]:
 
 
 def _others(recording: Recording) -> Iterator[tuple[list[Line | Ring | Arrow], str]]:
-    """Yield the turtles other than turtle1, if any, with their paths and the text for the legend."""
+    """If there are turtles other than turtle1, yield their shapes and the text for the legend."""
     tracks = [track for track in recording.tracks if track.rows]
     shapes: list[Line | Ring | Arrow] = []
     for track in tracks[:MOST_OTHERS]:

@@ -1,4 +1,4 @@
-"""Find submissions that an instructor should check: the grader could not judge or read them, or the student is unclear.
+"""Find submissions that an instructor should check: they could not be judged or read, or their student is uncertain.
 
 Machine faults affect submissions at random. If the grader repeatedly fails to judge a submission but can judge other
 submissions, the submission may have been designed to break the grader.
@@ -30,7 +30,7 @@ ATTENTION = {
 def suspicions(graded: Sequence[tuple[Report, int]]) -> list[str]:
     """Return one text per submission: the reason why an instructor should check the submission, or an empty string.
 
-    `graded` contains the report of each submission with the number of consecutive errors.
+    `graded` contains the report of each submission, and the number of consecutive gradings that ended with an error.
     """
     judged = sum(not report.with_status(Status.ERROR) for report, _ in graded)
     return [_suspicion(report, errors, judged) for report, errors in graded]

@@ -72,7 +72,7 @@ def render_changes(before: Report, after: Report, console: Console) -> None:
 
 
 def early(outcomes: Sequence[Outcome]) -> list[str]:
-    """Return one line for each mistake that the files alone show. Users see these lines before the package is built."""
+    """Return one line for each check whose failure is certain before the build. Users see these lines first."""
     shown = [(outcome, outcome.finding) for outcome in outcomes if not outcome.hidden]
     lines = [
         f"{outcome.title}: {finding.observed}" + (f" ({finding.where})" if finding.where else "")
@@ -104,9 +104,9 @@ def _look(outcome: Outcome) -> str:
 
 
 def _check(outcome: Outcome, console: Console, shown: str) -> None:
-    """Print one check. If the message of the previous check (`shown`) was the same, the message is not repeated.
+    """Print one check. `shown` is the message of the previous check.
 
-    A failed check then refers to the previous check.
+    If the message of this check is the same, it is not repeated, and a failed check refers to the previous one.
     """
     look = _look(outcome)
     signs = SIGNS if has_signs(console.encoding) else ASCII_SIGNS

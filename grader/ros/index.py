@@ -45,7 +45,7 @@ def has_package(name: str) -> bool:
 
 
 def contents(kind: str) -> dict[str, list[str]]:
-    """Return the lines of the resource of this kind, such as "rclcpp_components", for each package that has one."""
+    """Return the lines of each package's resource of this kind, for example "rclcpp_components", by package name."""
     return {
         name: (prefix / _INDEX / kind / name).read_text("utf-8", "replace").splitlines()
         for name, prefix in _resources(kind).items()
@@ -56,8 +56,8 @@ def prefix_of(package: str, unknown: str, likely: Iterable[str] = ()) -> Path:
     """Return the first prefix on AMENT_PREFIX_PATH that contains the package.
 
     Raises:
-        Ros2Error: the package is not installed. The message consists of `unknown` and, if one is similar enough, the
-        most similar name from `likely`, or from all packages if `likely` is empty.
+        Ros2Error: the package is not installed. The message is `unknown`, followed by the most similar name if one
+        is similar enough. The names are those in `likely`, or those of all packages if `likely` is empty.
     """
     found = packages()
     if package not in found:
@@ -69,7 +69,7 @@ def executables(package: str, unknown: str) -> list[Path]:
     """Return the executables in a package that `ros2 run` can start, sorted by path.
 
     Raises:
-        Ros2Error: the package is not installed. The message is that of `prefix_of`.
+        Ros2Error: the package is not installed. The message is the same as from `prefix_of`.
     """
     return executables_in(prefix_of(package, unknown) / "lib" / package)
 

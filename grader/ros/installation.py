@@ -38,8 +38,8 @@ _UNWATCHED = (
     "PYTHONUNBUFFERED",
     "OPENBLAS_NUM_THREADS",
 )
-"""Variables that are set only for processes that the grader starts. Nodes that users start use the users' settings. If
-the home folder is not writable, their ROS_LOG_DIR is a folder for temporary files."""
+"""Variables that are set only for processes that the grader starts. A node that a user starts uses the user's
+settings. If the home folder is not writable, however, such a node gets a ROS_LOG_DIR in a temporary folder."""
 _THEIRS = frozenset(
     {
         *("LANG", "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "RMW_IMPLEMENTATION"),
@@ -110,7 +110,7 @@ def _why_none(env: Mapping[str, str]) -> str:
 
 
 def made_for(prefix: Path) -> str | None:
-    """Return the prefix of the sourced ROS 2 that .venv was set up for, or None if there is none or it is unknown."""
+    """Return the prefix of the sourced ROS 2 that .venv was set up for, or None if no such prefix is known."""
     try:
         ros = json.loads((prefix / "course-setup.json").read_text(encoding="utf-8"))["ros"]
     except (OSError, ValueError, KeyError, TypeError):
@@ -121,9 +121,9 @@ def made_for(prefix: Path) -> str | None:
 def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: int | None = 0) -> dict[str, str]:
     """Return the complete environment of a child process. Nothing is inherited from the caller's environment.
 
-    `overlays` are install folders of packages (install/<package>), and are searched first. `home` must be writable,
-    since it is HOME, and contains ROS_LOG_DIR. `domain` is None in a sandbox room (grader.sandbox), because a room has
-    its own network.
+    `overlays` are install folders of packages (install/<package>), and are searched first. `home` becomes HOME and
+    contains ROS_LOG_DIR, so it must be writable. `domain` is None in a sandbox room (grader.sandbox), because a room
+    has its own network.
     """
     local = [*overlays, *([ros.underlay] if ros.underlay else [])]
     env = {
@@ -165,8 +165,7 @@ def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: 
 def domain_of(uid: int) -> int:
     """Return the default ROS domain id of a user, from 1 to 101. Users with adjacent user ids get different domains.
 
-    Domain 101 is the highest domain whose ports are below Linux's range of ephemeral ports. The default domain in ROS 2
-    is 0.
+    Domain 101 is the highest domain whose ports are below Linux's range of ephemeral ports.
     """
     return 1 + uid % 101
 
@@ -174,10 +173,10 @@ def domain_of(uid: int) -> int:
 def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int | None = None) -> dict[str, str]:
     """Return the environment of a node that a user starts: the user's environment with the variables of ROS 2 added.
 
-    The user's settings are kept, and workspaces that the user sourced are searched first. The ROS domain is `domain`,
-    or if `domain` is None, the domain that the user has set. If the user has set none, `domain_of` the user id is used,
-    so that classmates on one machine do not drive each other's turtles. If the ROS 2 installation was sourced, however,
-    the domain is 0, as for nodes in terminals where the user only sourced the installation.
+    The user's settings are kept, and workspaces that the user sourced are searched first. The ROS domain is `domain`.
+    If `domain` is None, it is the domain that the user has set. If the user has set none, it is 0 if the ROS 2
+    installation was sourced, as for any node in such a terminal. Otherwise, it is the result of `domain_of` for the
+    user id, so that classmates on one machine do not drive each other's turtles.
 
     Raises:
         UsageError: `domain` is None, and ROS_DOMAIN_ID is not a valid domain id.
@@ -231,7 +230,7 @@ def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str
 
 
 def _users_path(ros: Ros, env: Mapping[str, str]) -> str:
-    """Return PATH with our folder of commands. If it is missing, add it: last if a ROS 2 is sourced, else first."""
+    """Return PATH with the course's bin folder. If it is missing, add it: last if a ROS 2 is sourced, else first."""
     path = env.get("PATH", "/usr/local/bin:/usr/bin:/bin")
     ours = str(Path(sys.prefix, "bin"))
     if ours in path.split(os.pathsep):
@@ -264,9 +263,9 @@ def _sourced(env: Mapping[str, str]) -> Ros | None:
 
 
 def _this_python(started: Path) -> Path:
-    """Return the path of `python3` in the same folder if it is the same interpreter, or else the path `started`.
+    """Return the path of `python3` next to `started` if both are the same interpreter, or else `started`.
 
-    The path is a part of the underlay's key, so without this function, the underlay would be built once for each name.
+    The underlay's key contains the path. Without this function, a start as `python` would build the underlay again.
     """
     usual = started.with_name("python3")
     return usual if usual.exists() and usual.samefile(started) else started

@@ -78,8 +78,8 @@ class MisfitError(Ros2Error):
 def fill(message: Any, values: Any, stamps: list[Stamper] | None = None) -> Any:  # noqa: ANN401
     """Set the fields of a message that are in `values`, and return the message. Other fields keep their values.
 
-    If `stamps` is given, a header may be "auto" and a time may be "now". The functions that set these fields are
-    appended to the list `stamps`.
+    If `stamps` is given, the value of a header may be "auto", and the value of a time may be "now". The functions that
+    set these fields are appended to the list `stamps`.
 
     Raises:
         MisfitError: the message has no such field, the value does not match the type of the field, or `values` is not

@@ -15,9 +15,9 @@ ARRAY = re.compile(r"sequence<(?P<sequence>.+?)(?:, (?P<most>\d+))?>|(?P<array>.
 
 @dataclass(frozen=True)
 class Form:
-    """The printed part of a message: at most `limit` elements or characters, with or without arrays and strings.
+    """How a message is printed: whether the values of arrays and strings are included, and how long they may be.
 
-    If `limit` is None, nothing is truncated.
+    An array has at most `limit` elements, and a string at most `limit` characters. None means no limit.
     """
 
     limit: int | None = TRUNCATED_AT

@@ -40,7 +40,8 @@ def users_environment(
 def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sourced: bool = False) -> str:
     """Return shell code for bash, zsh and sh that sets the variables in `wanted` that have other values in `env`.
 
-    The code also unsets variables of another Python. In bash and zsh, it sets up completion for our commands.
+    The code also unsets variables that were set for another Python. In bash and zsh, it sets up completion for the
+    commands of the course.
 
     `sourced` is True if the ROS 2 installation is a sourced one, which can have its own rqt_graph.
     """

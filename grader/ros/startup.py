@@ -19,7 +19,7 @@ _STARTED_AGAIN = "_GRADER_ROS2_STARTED_AGAIN"
 
 
 def hand_over(command: str, package: str) -> None:
-    """Replace this process with the real command if a sourced ROS 2 has the package, regardless of the PATH order."""
+    """Replace this process with the real command if a sourced ROS 2 has it, even if it is not the first on PATH."""
     ours = Path(sys.argv[0])
     for prefix in filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
         theirs = Path(prefix, "bin", command)

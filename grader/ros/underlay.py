@@ -88,7 +88,7 @@ def ensure(ros: installation.Ros, tell: Callable[[str], None] = _report_nothing)
 def _name(ros: installation.Ros, compiler: Path | None) -> str:
     """Return a name for the build.
 
-    The name depends on the ROS 2, the Python, the sources and the C++ compiler. No process is started to find the name.
+    The name depends on the ROS 2, the Python, the sources and the C++ compiler. The compiler is not run.
     """
     return f"turtlesim-{_key_of_sources(ros)}-{_key_of_compiler(compiler)}"
 
@@ -122,7 +122,7 @@ def _compiler(search: str) -> Path | None:
 def _built_by_another_compiler(ros: installation.Ros) -> Path | None:
     """Return the newest finished build of these sources by any compiler, or None.
 
-    If the compiler has since been removed, such a build can still be used.
+    Such a build can be used even if its compiler has been removed.
     """
     builds = xdg.cache().glob(f"turtlesim-{_key_of_sources(ros)}-*")
     return max(builds, key=lambda build: build.stat().st_mtime, default=None)

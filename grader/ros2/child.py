@@ -1,6 +1,6 @@
 """Run a program for `ros2 run`.
 
-The program uses the terminal of the command, and is terminated if the command exits.
+The program uses the same terminal as `ros2 run`, and is terminated if `ros2 run` exits first.
 """
 
 from __future__ import annotations

@@ -90,9 +90,9 @@ def _check_topics(node: Node) -> Examination:
 
 
 def _pairs(node: Node) -> Iterator[tuple[str, Any, Any, Any, str]]:
-    """Yield each pair of a publisher and a subscription on the same topic, with their QoS compatibility.
+    """Yield each publisher with each subscription of its topic: (topic, publisher, subscription, result, reason).
 
-    The first value is the topic. The last value is the reason if they are not compatible, or might not be compatible.
+    The result is the QoS compatibility of the two. The reason is empty if they are certainly compatible.
     """
     from rclpy.qos import qos_check_compatible
 

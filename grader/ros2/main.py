@@ -123,10 +123,10 @@ def _complete() -> NoReturn:
 
 
 def _end(number: int, _: FrameType | None) -> None:
-    """Exit as after Ctrl-C, so that the node leaves the graph. A second signal terminates the process immediately.
+    """Raise an exception as Ctrl-C does, so that the node leaves the graph. A second signal terminates the process.
 
-    Python discards an exception that a signal handler raises during `__del__`, and the middleware can block while the
-    node is removed. Nobody sends a second signal to a process whose terminal is closed. Therefore, an alarm terminates
+    The exception does not always end the process: Python discards it during `__del__`, and the middleware can block
+    while the node is removed. If the terminal is closed, nobody sends a second signal. Therefore, an alarm terminates
     the process.
     """
     signal.signal(number, signal.SIG_DFL)

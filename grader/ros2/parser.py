@@ -72,7 +72,7 @@ class Parser(argparse.ArgumentParser):
         super().error(did_you_mean(*invalid, message) if invalid else message)
 
     def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
-        """Print an error message, if there is one, and exit with this code."""
+        """Print the message to standard error, if there is one, and exit with the code `status`."""
         if message:
             say(message.rstrip("\n"))
         super().exit(status)
@@ -115,7 +115,7 @@ def _add_words(
     chosen: str | None,
     add: Callable[[Parser, str], None],
 ) -> None:
-    """Add the words that may come next. For the word on the command line, call `add` to add the arguments."""
+    """Add the words in `about`. Only the `chosen` word gets its own parser, to which `add` adds the arguments."""
     width = max(map(len, about))
     words = parser.add_subparsers(
         title="Commands",

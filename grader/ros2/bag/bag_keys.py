@@ -22,10 +22,10 @@ def available() -> bool:
 
 @contextmanager
 def pressed(*, enabled: bool) -> Iterator[Callable[[float], str]]:
-    """Yield a function that waits up to the given number of seconds for a key and returns the name of the key.
+    """Yield a function that takes a timeout (s), waits for a key, and returns the name of the key.
 
-    If no key or another key is pressed, the function returns an empty string. Without a terminal, or if the keys are
-    not `enabled`, the function only waits.
+    The function returns an empty string if no key or a key without a name is pressed. Without a terminal, or if
+    `enabled` is false, the function waits for the whole timeout.
     """
     if not enabled or not available():
 

@@ -121,7 +121,7 @@ class Player:
         return any_of_them
 
     def _wait(self, key: Callable[[float], str], played: int, stamp: int) -> int:
-        """Wait until the time of the recording has advanced from `played` to `stamp` (ns). Return the stamp."""
+        """Wait until playback gets from `played` to `stamp` (ns), or until the user skips the wait. Return `stamp`."""
         if self._burst > 0:
             self._burst -= 1
             return stamp
@@ -138,7 +138,7 @@ class Player:
         return stamp
 
     def _press(self, name: str) -> bool:
-        """Handle a key. Return whether the key requests that the next message is published immediately."""
+        """Handle a key. Return True if the next message must be published immediately."""
         if name == bag_keys.SPACE:
             self._paused = not self._paused
             self._log.info("Pausing play." if self._paused else "Resuming play.")

@@ -112,7 +112,7 @@ def _compression(options: dict[str, Any]) -> str:
 def _chosen(options: dict[str, Any], topic: str) -> bool:
     """Return whether a topic belongs in the new bag according to the options.
 
-    If the options select no topics, all topics belong in the new bag.
+    If the options select no topics, all topics that are not excluded belong in the new bag.
     """
     topics, regex = absolute(options.get("topics") or []), options.get("regex") or ""
     if topic in absolute(options.get("exclude_topics") or []) or contains(topic, options.get("exclude_regex") or ""):

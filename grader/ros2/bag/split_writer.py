@@ -112,7 +112,7 @@ class SplitWriter:
 
 
 def joined(earlier: dict[str, Any], later: dict[str, Any]) -> dict[str, Any]:
-    """Return the metadata of a bag that combines the files of two other bags. `earlier` may be empty."""
+    """Return the metadata of a bag with the files of two bags, from the metadata of both. `earlier` may be empty."""
     if not earlier:
         return later
     both = [one for one in (earlier, later) if one["message_count"]] or [later]

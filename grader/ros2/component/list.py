@@ -23,7 +23,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the containers. Print nothing if a container that exists is named with --containers-only.
+    """Print the containers. With a name and --containers-only, only check that the container exists.
 
     Raises:
         Ros2Error: the container does not exist, or the user requested a list of components, which is not supported.

@@ -65,7 +65,7 @@ def folder() -> Path | None:
 
 @contextmanager
 def address(where: Path, which: str) -> Iterator[str]:
-    """Yield a short path to the socket. An address has at most 108 bytes, but a home folder may have a longer path."""
+    """Yield a short path to the socket. The address of a socket is limited to 108 bytes, and its path may be longer."""
     descriptor = os.open(where, os.O_PATH | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
         yield f"/proc/self/fd/{descriptor}/{which}"

@@ -73,7 +73,7 @@ class Parameters:
         return found[0] if found else None
 
     def all_values(self) -> dict[str, Any]:
-        """Return a dictionary that maps the name of each parameter that has a value to its value."""
+        """Return a dictionary that maps names of parameters to their values. Parameters without a value are omitted."""
         names = self.names()
         found = self._call(GetParameters, "get_parameters", GetParameters.Request(names=names)).values
         if len(found) < len(names):  # if a parameter has no value, the response contains no values

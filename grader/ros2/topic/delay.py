@@ -29,7 +29,7 @@ def summary(delays_ns: Collection[int]) -> str:
 
 
 class Delays:
-    """The delays of the last messages, measured with a clock that may be simulated and may jump back."""
+    """The delays of the latest messages. The clock that measures them may be simulated and may jump back."""
 
     def __init__(self, window: int) -> None:
         self._delays_ns: deque[int] = deque(maxlen=window)
@@ -51,7 +51,7 @@ class Delays:
         self._news = True
 
     def report(self) -> str | None:
-        """Return the text to print every second, or None before the first delay."""
+        """Return the text to print every second, or None if no delay has been measured yet."""
         if not self._delays_ns:
             return None
         news, self._news = self._news, False

@@ -47,7 +47,7 @@ def rate(gaps_ns: Collection[int]) -> Rate:
 
 
 class Arrivals:
-    """The intervals between the last messages, measured with a clock that may be simulated and may jump back."""
+    """The intervals between the latest messages. The clock that measures them may be simulated and may jump back."""
 
     def __init__(self, window: int) -> None:
         self._gaps_ns: deque[int] = deque(maxlen=window)
@@ -70,7 +70,7 @@ class Arrivals:
         self._last_ns = now_ns
 
     def have_news(self) -> bool:
-        """Return whether a report is due: a message has arrived at least one second after the last report."""
+        """Return whether to print the rate: a message has arrived at least one second after it was last printed."""
         if not self._gaps_ns:
             return False
         if self._reported_ns == 0:
@@ -78,7 +78,7 @@ class Arrivals:
         return self._last_ns >= self._reported_ns + PRINTED_EVERY_NS
 
     def news(self) -> Rate:
-        """Return the current rate, and record that a rate was reported. Call this only if `have_news` returns True."""
+        """Return the current rate, and remember the time of this report. Call this only if `have_news` returns True."""
         self._reported_ns = self._last_ns
         return rate(self._gaps_ns)
 
