@@ -1,4 +1,4 @@
-"""KindSpec: the part of a check kind that is needed for reading exercise.toml."""
+"""KindSpec: what the grader must know about a kind of check to read exercise.toml."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 Param = str | float | int | bool | Own | tuple[Any, ...]
-"""The possible types of a check's parameter. A tuple contains strings, or pairs of the name and the value of a
-field."""
+"""The possible types of a check's parameter. A tuple contains strings or pairs. A pair is the name of a message field
+and its value."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Allowed:
 
 
 class KindSpec(Protocol):
-    """A kind of check, as needed for reading exercise.toml. `grader.checks.kind.Kind` implements it."""
+    """What reading exercise.toml needs of a kind of check. `grader.checks.kind.Kind` implements this protocol."""
 
     @property
     def title(self) -> str:
@@ -39,7 +39,7 @@ class KindSpec(Protocol):
         """Whether checks of this kind are worth no points and never fail a submission."""
 
     def parameters(self) -> Mapping[str, Allowed] | None:
-        """Return the names of all parameters, with their allowed values, or None if no parameter is to be read."""
+        """Return the allowed values of each parameter by name, or None in an outline, where no parameter is read."""
 
     def defaults(self) -> Mapping[str, Param]:
-        """Return the names of the optional parameters, with their default values."""
+        """Return the default value of each optional parameter by name."""

@@ -58,8 +58,7 @@ SYNTAX = {
     **dict.fromkeys((".xml", ".md", ".html"), ANGLE),
 }
 MEANT = re.compile(r"(?:begin|end)[ _-]*(?:solution|starter)", re.IGNORECASE)
-"""Matches lines that look like a marker. If this pattern did not match a marker with a typo, students could get the
-solution."""
+"""Matches lines that look like a marker, even with a typo. Otherwise, a typo could release the solution to students."""
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ FILE_NAME = "exercise.toml"
 class CheckSpec:
     """One `[[check]]`. The names of the parameters in `params` include their units, as in `rate_hz` and `radius_m`.
 
-    `trial` is the id of the trial that the check is about.
+    `trial` is the id of the trial that the check judges.
     """
 
     id: str
@@ -73,19 +73,20 @@ class StartLimits:
 
 @dataclass(frozen=True)
 class Scenario:
-    """The events of a trial that lasts `duration_s` (s) on its clock and ends with SIGINT.
+    """The events of a trial. After `duration_s` (s) on the clock of the trial, the node receives SIGINT.
 
     If `anywhere` is set, the start pose is random even without a seed. With `start_limits`, it is random within these
     limits. `rename` contains remapping rules for the simulator, such as "/turtle1/pose:=/where". The pose and the
     colour of a turtle are published every `pose_every` frames. The first pose of turtle1 is published at `pose_from_s`
     (s), as if the simulator had started late. The services of the simulator respond `answers_after_s` (s) after a call.
-    The node starts with `parameters` on its command line and with `params_file` in a parameter file.
+    The node gets the parameters in `parameters` on its command line, and those in `params_file` from a parameter file.
 
     If `targets` is not 0, the simulator adds this number of turtles at random places, and the trial itself runs the
     node that announces these turtles (grader/trial/target_keeper.py). If `withdraws` is set, this node removes another
-    target after the first catch. If `catch_from_s` is 0, its service exists from the beginning. Otherwise, its service
-    exists from this time (s) at the earliest, after turtle1 has been near a target or has stood still for a while. If
-    `alone_s` is set, the trial ends early once the other turtles are gone and turtle1 has been alone for this long (s).
+    target after the first catch. If `catch_from_s` is 0, the service of this node exists from the beginning. Otherwise,
+    the node creates the service after turtle1 has been near a target or has stood still for a while, but not before
+    `catch_from_s` (s). If `alone_s` is set, the trial ends early once the other turtles are gone and turtle1 has been
+    alone for this long (s).
     """
 
     duration_s: float
@@ -157,12 +158,12 @@ class Exercise:
     numbers: NumbersSpec | None = None
     """The values that differ from student to student."""
     show_fix: bool = False
-    """Whether a student's report shows the change that made a failed check pass in a copy of the submission."""
+    """Whether a student's report shows how the grader changed a copy of the submission to make a failed check pass."""
     unsolved: tuple[str, ...] = ()
     """The checks that the starting point must fail (for `grader validate`). Checks that need one of these checks are
     skipped."""
     apart: bool = False
-    """Whether the package has a separate workspace because it is not the package that grows from step to step."""
+    """Whether the package has its own workspace. False for the package that grows from step to step."""
 
     def trial(self, id_: str) -> TrialSpec:
         """Return the trial with this id. Raises KeyError if no trial has this id."""

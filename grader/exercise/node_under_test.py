@@ -71,8 +71,8 @@ class TestsSpec:
     """The table `[trial.tests]`: the student's tests run on the correct node and on every broken node.
 
     The tests import the class `name` from `module`. The tests run `right_runs` times on the correct node. `duration_s`
-    (s) is the maximum duration of one run. `own` contains names of fields of `right`. Each of these fields gets the
-    student's own number of the same name.
+    (s) is the maximum duration of one run. `own` contains names of attributes of `right`. Each of these attributes gets
+    the student's own number of the same name.
     """
 
     __test__ = False  # keeps pytest from collecting this class
@@ -86,7 +86,10 @@ class TestsSpec:
     own: tuple[str, ...] = ()
 
     def with_numbers(self, numbers: Mapping[str, Value]) -> TestsSpec:
-        """Return a copy with the student's own numbers. A broken node keeps the fields in which it is broken."""
+        """Return a copy with the student's own numbers.
+
+        In a broken node, the values that differ from those of the correct node stay unchanged.
+        """
         drawn = {name: float(numbers[name]) for name in self.own}
 
         def with_drawn(behaviour: Behaviour) -> Behaviour:

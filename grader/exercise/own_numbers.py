@@ -35,7 +35,7 @@ without the characters in UNSAFE_CATEGORIES, and the empty Braille pattern."""
 
 
 SAME = "capital letters, extra spaces, invisible characters and the encoding of accents do not count"
-"""What `normal_id` ignores, as a part of a sentence."""
+"""The differences that `normal_id` ignores, as a clause for messages."""
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,8 @@ Such a file modifies the exercise.toml of the course:
 
     schema = 2
     [[check]]       If the id is in the course, these keys override those of the course's check (all of its keys if the
-                    kind differs). A new id adds a check. A check that is new, or that judges something else than the
-                    course's check, is hidden unless it has `hidden = false`.
+                    kind differs). A new id adds a check. A check that is new, or that judges something other than
+                    the course's check, is hidden unless it has `hidden = false`.
     [[trial]]       A trial is changed or added in the same way, by its id.
 """
 
@@ -121,7 +121,7 @@ def merge(public: Mapping[str, Any], private: Mapping[str, Any], name: str) -> d
 
 
 def _is_secret(private: Mapping[str, Any], public: Mapping[str, Any] | None) -> bool:
-    """Return whether a private check is new, or judges something else than the course's check with the same id."""
+    """Return whether a private check is new, or judges something other than the course's check with the same id."""
     if public is None:
         return True
     return any(value != public.get(key) for key, value in private.items() if key not in _SHOWN)

@@ -27,9 +27,10 @@ PARAMETER_TYPES = (
     (float, 3, "double_value"),
     (str, 4, "string_value"),
 )
-"""Tuples (Python type of a parameter, its number in rcl_interfaces/msg/ParameterType, the field for its value)."""
+"""Tuples: the Python type of a parameter, its number in rcl_interfaces/msg/ParameterType, and the message field for its
+value."""
 CALLS = ("function", "points", "bag")
-"""If a `[[trial]]` has one of these keys, it calls a function or a program, without a simulator."""
+"""A `[[trial]]` with one of these keys has no simulator: the grader calls a function or a program."""
 MAX_DURATION_S = 600.0
 MOST_TARGETS = 5
 """The maximum number of targets. For more targets, target_places.py may find no places for which the nearest-first

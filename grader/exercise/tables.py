@@ -125,7 +125,7 @@ class Table:
         return tuple(float(each) for each in self._get(key, allowed, good, default=None) or ())
 
     def options(self, key: str) -> tuple[Any, ...]:
-        """Return a list of at least two values, which all differ, and are either all strings or all numbers."""
+        """Return a list of at least two different values: either only strings or only numbers."""
 
         def good(value: object) -> bool:
             if not isinstance(value, list) or len(value) != len(set(map(repr, value))) or len(value) < 2:
@@ -182,7 +182,7 @@ class Table:
 
 
 def shown(value: object) -> str:
-    """Return a TOML value as it is quoted in messages."""
+    """Return a TOML value in the form in which a message quotes it."""
     if isinstance(value, str):
         return f'"{shorten(value)}"'
     if isinstance(value, bool):

@@ -23,13 +23,14 @@ if TYPE_CHECKING:
 
 CONFIG = "nbgrader_config.py"
 CLASS = "class"
-"""The folder of the class data, which git ignores, such as submitted/, autograded/, feedback/ and gradebook.db."""
+"""The folder with the data of the class, such as submitted/, autograded/, feedback/ and gradebook.db. git ignores
+it."""
 RESULTS = "results"
 """The folder of the grader's results, inside the folder of the class. See grader/classroom/results.py."""
 GRADEBOOK = "gradebook.db"
 """nbgrader's database, inside the folder of the class."""
 ID = "course_id"
-"""The file with the course's name in nbgrader's exchange, inside the folder of the class. Two classes that share an
+"""The file in the folder of the class that contains the course's name in nbgrader's exchange. Two classes that share an
 exchange need different names, or `collect` takes the submissions of both."""
 
 
@@ -71,7 +72,7 @@ class ClassFolders:
                 raise MachineError(message) from error
 
     def submitted(self, student: str, step: str) -> Path:
-        """Return the folder that a student handed in for a step."""
+        """Return the folder of a student's submission for a step."""
         return Path(self.course.format_path(self.course.submitted_directory, student, step))
 
     def autograded(self, student: str, step: str) -> Path:
@@ -88,7 +89,7 @@ class ClassFolders:
         return [(student, step) for step in wanted for student in students if _is_folder(root / student / step)]
 
     def left_out(self, steps: Sequence[str], assignments: Collection[str]) -> tuple[str, ...]:
-        """Return why entries in the folder of the submissions are not graded.
+        """Return the reasons why entries in the folder of the submissions are not graded.
 
         `steps` selects the exercises; if it is empty, all are used. `assignments` are the
         names of the assignments in the gradebook.
@@ -101,7 +102,7 @@ class ClassFolders:
 
 @contextmanager
 def _silent(log: Logger) -> Iterator[None]:
-    """Discard all messages of a log for a while."""
+    """Discard all messages of this logger inside the `with` block."""
     log.disabled = True
     try:
         yield

@@ -40,7 +40,8 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 CHECK_S = 300
-"""The time limit (s) for an instructor's cell, which builds and runs a package, sometimes in wall time."""
+"""The time limit (s) for a notebook cell of the instructor. Such a cell can build and run a package, also in wall
+time."""
 SHOWN = ("stream", "display_data", "execute_result", "error", "update_display_data")
 """The types of messages that add or change outputs of a notebook cell."""
 

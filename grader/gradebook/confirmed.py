@@ -31,7 +31,7 @@ Name = tuple[str, str]
 
 @dataclass(frozen=True)
 class Unconfirmed:
-    """The cells of a submission that are worth 0 points until they are confirmed or graded by hand, with the reason.
+    """The cells of a submission with 0 points until their scores are confirmed or graded by hand, and the reason.
 
     `checks` is empty if the reason is about the whole submission.
     """
@@ -59,7 +59,7 @@ def withhold_unconfirmed(
 ) -> list[Unconfirmed]:
     """Withhold every score that is not confirmed.
 
-    Return the cells that are now worth 0 points, in the form in which `unconfirmed` returns them.
+    Return the cells that are now worth 0 points: the result of `unconfirmed`.
     """
     for _, _, grade, _ in _doubts(gradebook, results, steps, unread):
         if grade.auto_score != 0.0 or grade.manual_score is None:

@@ -1,4 +1,4 @@
-"""Variants of nbgrader's converters and of its collect step that use only files that the reading process accepts."""
+"""Variants of nbgrader's converters and collect step. They use only files that the reading process accepts."""
 
 from __future__ import annotations
 
@@ -53,9 +53,9 @@ class _Copying(BaseConverter):  # type: ignore[misc, unused-ignore]
     notebooks: list[str]
 
     def init_notebooks(self) -> None:
-        """Find the submissions, except those of a folder whose name cannot be printed.
+        """Find the submissions, but skip each student folder whose name cannot be printed.
 
-        nbgrader would stop at a line break in the name.
+        If the name contains a line break, for example, nbgrader would stop.
         """
         super().init_notebooks()
         for each in [each for each in self.assignments if not Path(each).parent.name.isprintable()]:
@@ -76,9 +76,10 @@ class BoundedAutograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore
     def init_destination(self, assignment_id: str, student_id: str) -> bool:
         """Initialize the destination as nbgrader's method does, and return its result.
 
-        If the submission time is invalid, only this submission fails. A submission is skipped if the name of its folder
-        is almost an id in the gradebook, because nbgrader would add a second student. A destination of a run that was
-        killed is removed, because nbgrader would skip this submission.
+        If the submission time is invalid, only this submission fails. A submission is skipped if the name of the
+        student's folder is another spelling of an id in the gradebook, because nbgrader would add a second student. If
+        an earlier run was killed and left an unfinished destination, this destination is removed, because nbgrader
+        would skip the submission.
         """
         with Gradebook(self.coursedir.db_url, self.coursedir.course_id) as gradebook:
             enrolled = {student.id for student in gradebook.students}
@@ -113,7 +114,7 @@ def _in(folder: Path, notebooks: Sequence[str]) -> list[str]:
 
 
 class BoundedFeedback(GenerateFeedback):  # type: ignore[misc, unused-ignore]
-    """nbgrader's GenerateFeedback without the student's files, which it would release if their names end in .html."""
+    """nbgrader's GenerateFeedback, but it does not copy a student's files: nbgrader would release all .html files."""
 
     notebooks: list[str]
 
@@ -184,7 +185,7 @@ class BoundedCollect(ExchangeCollect):  # type: ignore[misc, unused-ignore]
         return record
 
     def copy_files(self) -> None:
-        """Copy the files as the base class does, except folders that nbgrader cannot have created."""
+        """Copy the submissions as the base class does, but skip folders that nbgrader cannot have created."""
         self.src_records: list[dict[str, Any]] = [record for record in self.src_records if record["username"]]
         self.check_owner = False  # nbgrader would stop if a student removed a folder now
         super().copy_files()

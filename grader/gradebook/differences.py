@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 class Difference:
     """A check on which the kernel and the grader disagree, or whose score is not confirmed.
 
-    `kernel` is None if the notebook has no score for the check. `grader` is None if the grader has not confirmed a
-    score. In this case, the check is worth 0 points, and `why` is the reason.
+    `kernel` is None if the notebook has no score for the check. `grader` is None if the grader has not confirmed the
+    score. If `grader` is None, the check is worth 0 points, and `why` is the reason.
     """
 
     student: str

@@ -1,7 +1,7 @@
-"""Variants of nbgrader's steps that release feedback and list submissions, which one submission cannot stop.
+"""Variants of nbgrader's steps for releasing feedback and listing submissions. One submission cannot stop these steps.
 
-nbgrader reads the time of a submission, its notebooks, and its secret, from which nbgrader makes the name of the page
-with the feedback. A student can remove these files, replace them with named pipes, or fill them with any bytes.
+nbgrader reads the time, the notebooks and the secret of a submission. The secret determines the name of the page with
+the feedback. A student can remove these files, replace them with named pipes, or fill them with any bytes.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class BoundedList(ExchangeList):  # type: ignore[misc, unused-ignore]
     assignments: list[str]
 
     def parse_assignments(self) -> list[dict[str, Any]]:
-        """Return what the base class returns. Log a warning about each submission that is left out."""
+        """Return the submissions as the base class does. Log a warning about each submission that is left out."""
         if self.inbound:
             self.assignments = [path for path in self.assignments if self._can_be_listed(path)]
         return super().parse_assignments()  # type: ignore[no-any-return, unused-ignore]

@@ -69,7 +69,7 @@ class GraderReasons(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
     """After a sync, shows the grader's reasons below cells with checks, in place of the kernel's output."""
 
     def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:
-        """Replace the outputs of the cells if the submission was synced."""
+        """Replace the outputs of the cells if `sync` has stored a result for the submission."""
         about = resources["nbgrader"]
         folder = Path(self.parent.parent.coursedir.root) / CLASS / RESULTS
         result = Results(folder).load(about["student"], about["assignment"])

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 WILDCARDS = frozenset("*?[")
-"""The special characters of `glob`. nbgrader looks for notebooks with a pattern that contains the names of folders."""
+"""The special characters of `glob`. The pattern with which nbgrader looks for notebooks contains the names of
+folders."""
 
 
 def why_not(folder: Path, student: str, *, owned: bool) -> str:

@@ -61,7 +61,7 @@ def make_class(folder: Path, roster: Path | None) -> NewClass:
 
 
 def course_id(folder: Path) -> str:
-    """Return a name for the course in nbgrader's exchange, where the name is a folder name and part of commands."""
+    """Return the course's name in nbgrader's exchange. The name is valid as a folder name and in commands."""
     return re.sub(r"[^A-Za-z0-9_.-]+", "-", folder.resolve().name).strip(".-") or COURSE_ID
 
 

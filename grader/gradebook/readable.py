@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 TIMESTAMP = "timestamp.txt"
 """The file in which nbgrader stores the time of a submission."""
 SECRET = "submission_secret.txt"
-"""The file from which nbgrader makes the name of the page with the feedback in the exchange."""
+"""The file with the secret of a submission. The secret determines the name of the page with the feedback."""
 MOST_TIMESTAMP = 100
 """The maximum size of the file with the time or with the secret of a submission (bytes)."""
 YEARS = range(2000, 2100)
@@ -63,7 +63,7 @@ def require_listable(folder: Path) -> None:
     """Check the files that `nbgrader list --inbound` reads: the notebooks and the secret.
 
     Raises:
-        UnreadableError: one of them is not a regular file, is too large, or is a secret that is not a text.
+        UnreadableError: one of these files is not a regular file or is too large, or the secret is not text.
     """
     for path in sorted(folder.glob("*.ipynb")):
         _content(path, MOST_BYTES)

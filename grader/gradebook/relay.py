@@ -3,10 +3,10 @@
     python -m grader.gradebook.relay FOLDER
 
 FOLDER contains `order.json` (the command to start) and nbgrader's connection file. The relay creates its sockets in
-this folder. Only the caller has access to this folder. The cell sees only the copy of the submission in it. Messages
-from the kernel arrive through a pipe (grader.notebook.bridge). If a budget or a limit is exceeded, the relay stops the
-cell, writes the reason to `why`, and exits. The relay also exits when nbgrader exits, because nbgrader's exit closes
-the relay's standard input.
+this folder. Only the caller has access to this folder. The cell sees nothing of this folder except the copy of the
+submission. Messages from the kernel arrive through a pipe (grader.notebook.bridge). If a budget or a limit is exceeded,
+the relay stops the cell, writes the reason to `why`, and exits. The relay also exits when nbgrader exits, because
+nbgrader's exit closes the relay's standard input.
 """
 
 from __future__ import annotations

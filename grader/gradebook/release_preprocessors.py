@@ -21,7 +21,7 @@ Resources = dict[str, Any]
 
 
 class StripSolutions(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
-    """Replaces solutions like nbgrader's ClearSolutions, but with the content of a BEGIN STARTER block."""
+    """Replaces solutions as nbgrader's ClearSolutions does, but with the content of a STARTER block."""
 
     def preprocess_cell(
         self, cell: NotebookNode, resources: Resources, cell_index: int

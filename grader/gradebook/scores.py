@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Synced:
-    """The result of a sync: the numbers of submissions with a result and of changed scores, and what was not judged."""
+    """The result of a sync: how many submissions have a result, how many scores changed, and what was not judged."""
 
     submissions: int
     changed: int
@@ -138,9 +138,9 @@ def _readable(
     submissions: Sequence[tuple[str, str]],
     doubtful: Mapping[str, Refused] = MappingProxyType({}),
 ) -> tuple[tuple[Found, ...], dict[tuple[str, str], str]]:
-    """Return all submissions, and the reasons why some of them are not graded.
+    """Return all submissions, and the reason for each submission that is not graded.
 
-    `doubtful` maps a student to the reason why it is not clear whose submissions these are.
+    `doubtful` maps the name of a folder to the reason why it is not clear which student the folder belongs to.
     """
     found: list[Found] = []
     why: dict[tuple[str, str], str] = {}
@@ -177,7 +177,7 @@ def _require_readable(submitted: Path, exercise: Exercise) -> None:
 
 
 class _LinkError(UnreadableError):
-    """The folder of a student is a symbolic link."""
+    """Raised if the folder of a student or of a submission is a symbolic link."""
 
 
 def _refuse_link(student: str) -> NoReturn:

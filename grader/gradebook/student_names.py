@@ -1,7 +1,7 @@
 """Find folders of students whose names must not become ids in nbgrader's gradebook.
 
-nbgrader compares names byte by byte. With the folder `ada`, it would add a second student next to `Ada`, and the points
-would be in the wrong row. nbgrader also prints ids as they are, including control characters.
+nbgrader compares names byte by byte. For the folder `ada`, nbgrader would add a second student next to `Ada`, and the
+second student would get the points. nbgrader also prints ids as they are, including control characters.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 def unclear(folders: Collection[str], enrolled: Collection[str]) -> dict[str, Refused]:
     """Map each folder name that is not a clear student id to the reason why its submissions are not graded.
 
-    `enrolled` are the ids in the gradebook. A folder is clear if its name can be printed, and no other folder and no
-    other id has the same normal form. A folder whose name is an id in the gradebook is also clear if only other folders
-    have this normal form: anybody can create such a folder in nbgrader's exchange.
+    `enrolled` are the ids in the gradebook. A name is clear if it can be printed, and no other folder and no other id
+    has the same normal form. If the name is an id in the gradebook, other folders with the same normal form do not
+    matter, because anybody can create such a folder in nbgrader's exchange.
     """
     spellings: dict[str, set[str]] = {}
     for name in (*folders, *enrolled):

@@ -1,4 +1,4 @@
-"""A step of `nbgrader autograde` that replaces SaveAutoGrades: no scores from kernels for the checks of the course."""
+"""A step of `nbgrader autograde` that replaces SaveAutoGrades. No check of the course gets points from a kernel."""
 
 from __future__ import annotations
 

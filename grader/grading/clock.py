@@ -102,7 +102,7 @@ def repeats(doubt: WallTimeNeeded) -> bool:
 
 
 def after_doubt(doubt: WallTimeNeeded) -> Clock:
-    """Return the clock for repeating a trial that stopped because the node may be misjudged (rule 3)."""
+    """Return the clock for repeating a trial that was stopped because the node may be misjudged (rule 3)."""
     return Clock("wall", str(doubt))
 
 

@@ -1,8 +1,8 @@
 """Prove causes: in a copy of the submission, fix the place to which a failed check points, and run the copy.
 
 A fix stays in the copy while the next cause is tested, unless it was refuted or its test was inconclusive. In this way,
-mistakes that other mistakes hid are also found. If the submission runs in the sandbox, so does the copy. The copy runs
-only in simulated time.
+mistakes that were hidden by other mistakes are also found. If the submission runs in the sandbox, so does the copy. The
+copy runs only in simulated time.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def explain(
 
 
 def part_of(exercise: Exercise, check: str) -> Exercise:
-    """Return the exercise reduced to the checks of this check's trial, and all checks and trials that these need."""
+    """Return a copy of the exercise with only the checks of this check's trial, and the checks and trials they need."""
     specs = {spec.id: spec for spec in exercise.checks}
     trial = specs[check].trial
     wanted: dict[str, CheckSpec] = {}
@@ -119,7 +119,7 @@ class _Explaining:
         return Tries(tuple(self.made), len(self.behind), stopped)
 
     def _share(self, target: Outcome, found: Mapping[str, Outcome], diff: str) -> set[Key]:
-        """Record the result of a test for the other failed checks that were judged again and have the same cause.
+        """Record the result of a test also for other failed checks that have the same cause and were judged again.
 
         Only a result that confirms the cause is recorded. Return the keys of all these checks.
         """

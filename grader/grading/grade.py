@@ -99,7 +99,9 @@ def explained(
     trial: Callable[..., Trial] = Trial,
     give_up: Callable[[], bool] = lambda: False,
 ) -> Graded:
-    """Test the causes of failed checks, if possible, by fixing them in a copy. Return the graded submission.
+    """Test the causes of failed checks, if possible, by fixing the causes in a copy of the submission.
+
+    Return the submission's report and evidence, with the results of the tests.
 
     `give_up` is called before each change is tested. Once `give_up` returns true, no more changes are tested. `build`
     contains the result of the last build.

@@ -22,7 +22,7 @@ class Options:
     clock: ClockChoice = "auto"
     seed: int | None = None
     explain: bool = False
-    """Whether causes are proved by fixing them in a copy of the submission."""
+    """Whether the grader proves the cause of a failed check by fixing it in a copy of the submission."""
     trials_at_once: int = field(default_factory=lambda: len(os.sched_getaffinity(0)))
 
     @property

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 USUAL_RADIUS_M = 2.0
 """A random start pose leaves room for a circle with this radius (m), unless a check needs a different radius."""
 DEFAULT_SEED = 1
-"""The seed for scenarios with random values if the user does not specify one."""
+"""The seed for scenarios with random values if the user has not specified a seed."""
 
 
 def plan_of(evidence: Evidence, clock: ClockName, *, choice: ClockChoice, seed: int | None) -> Plan:
@@ -58,6 +58,6 @@ def executables_of(evidence: Evidence) -> tuple[str, ...]:
 
 
 def _topics(checks: Sequence[CheckSpec]) -> tuple[str, ...]:
-    """Return the topics that these checks need: all parameters that begin with a slash, since these can be topics."""
+    """Return all parameter values that begin with a slash. The topics that these checks need are among them."""
     names = {value for check in checks for value in check.params.values() if isinstance(value, str)}
     return tuple(sorted(name for name in names if name.startswith("/")))

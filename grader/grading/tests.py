@@ -38,7 +38,7 @@ def tests_of(evidence: Evidence) -> TestsSpec:
 
 
 class Tests:
-    """Runs the student's tests, as a context manager. All test runs are stopped when the context exits."""
+    """A context manager that runs the student's tests. All test runs are stopped when the context exits."""
 
     __test__ = False  # keeps pytest from collecting this class
 

@@ -62,15 +62,16 @@ class Trials:
         self.tree = b""
 
     def start(self, views: Iterable[Evidence]) -> None:
-        """Start the simulator and the launcher of each of these trials that has a simulator, during the build."""
+        """During the build, start the simulators and launchers of these trials, except trials without a simulator."""
         for view in (each for each in views if not each.trial.calls):
             name = self._started[view.trial.id] = self._judging.first_clock(view).name
             self._ahead.start(view.trial.id, self._trial(view, name))
 
     def run_predicted(self, evidence: Evidence) -> None:
-        """Start the nodes of the started trials from the predicted install tree, if the package has the usual form.
+        """Start the nodes of the started trials from the predicted install tree, if this tree can be predicted.
 
-        A node in wall time waits for the build, because it needs the processors to itself.
+        A node in wall time does not start before the build has finished, because the node needs the processors to
+        itself.
         """
         views = [evidence.from_trial(id_) for id_, clock in self._started.items() if clock == "simulated"]
         if not views or not self._options.runs_during_build:
@@ -83,12 +84,12 @@ class Trials:
                 self._ahead.run(view.trial.id, self._predicted.package, view.trial.executable, self._predicted.tree)
 
     def run_ahead(self, views: Sequence[Evidence], tree: bytes) -> None:
-        """Start the nodes of the trials whose simulators have been started and that begin in simulated time.
+        """Start the nodes of trials in simulated time whose simulators are already running.
 
         Then call `run` to wait for the recording of a trial.
 
         `tree` is the install tree of the finished build. If the predicted install tree has the same content, the nodes
-        that were started from it continue to run. Otherwise, their trials start again.
+        that were started from this tree continue to run. Otherwise, their trials start again.
         """
         self.tree = tree
         if self._predicted is not None and not self._is_installed(self._predicted):

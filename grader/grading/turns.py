@@ -35,7 +35,7 @@ class Turns:
         self._folder = folder
         self._tell = tell
         self._locks: tuple[IO[bytes], IO[bytes]] | None = None
-        """The two lock files (turnstile and machine) while this grader shares the machine, or else None."""
+        """While this grader shares the machine, the two lock files (turnstile and machine). At other times, None."""
 
     @contextmanager
     def shared(self) -> Iterator[None]:

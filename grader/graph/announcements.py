@@ -1,10 +1,10 @@
-"""Announce a new participant to the other participants on this machine as soon as it can receive their responses.
+"""Announce a new participant to the others on this machine as soon as the new participant can receive responses.
 
 Fast DDS 2.14 sends the first announcement of a participant before the participant listens for responses. The other
 participants respond immediately, and only to the first announcement. If a response is lost, the new participant does
-not discover the responding participant until the latter announces itself again, after up to 3 s. Therefore, our
-participants announce themselves to a socket of their own process. Once the new participant is listening, `passed_on`
-sends the announcement to the other participants.
+not discover the responding participant until the latter announces itself again, after up to 3 s. Therefore, the
+grader's participants announce themselves to a socket of their own process. Once the new participant is listening,
+`passed_on` sends the announcement to the other participants.
 """
 
 from __future__ import annotations

@@ -33,14 +33,14 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 QUIET_S = 0.1
-"""The graph has settled if nothing new arrives for this long (s). Time during which this process cannot run does not
-count."""
+"""The graph has settled if nothing new arrives for this long (s). If this process could not run for some time, that
+time does not count."""
 DEADLINE_S = 4.0
 """The maximum time (s) to wait for participants that have open ports but send nothing, for example because their
-process is stopped. If the response of a node that does not use our profile is lost, the node announces itself again
-after 3 s (leaseAnnouncement), and then sends its endpoints."""
+process is stopped. If the response of a node that does not use the grader's profile is lost, the node announces itself
+again after 3 s (leaseAnnouncement), and then sends its endpoints."""
 NOTHING_THERE_S = 0.5
-"""The time (s) to listen if the number of participants is unknown, as in the real `ros2`."""
+"""If the number of participants is unknown, listen for this time (s). The real `ros2` also listens for this time."""
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
 """The Fast DDS profile for the nodes that commands create on the loopback interface."""
 PATIENT_PROFILE = LOOPBACK_PROFILE.with_name("loopback_patient.xml")
@@ -115,9 +115,9 @@ def _remove(node: Node) -> None:
 
 
 def _leave_shared_memory_out(profile: Path) -> None:
-    """If Fast DDS uses the grader's usual profile and LOCALHOST, let it use `profile` instead, without shared memory.
+    """If Fast DDS would use the grader's usual profile and LOCALHOST, replace both, so that it uses no shared memory.
 
-    The file loopback.xml explains why the nodes of `ros2` verbs do not use LOCALHOST with its shared memory.
+    `profile` is the new profile. loopback.xml explains why `ros2` verbs use neither LOCALHOST nor shared memory.
     """
     ours = os.environ.get(_RANGE) == "LOCALHOST" and os.environ.get(_PROFILE) == str(FASTDDS_PROFILE)
     if ours and rclpy.get_rmw_implementation_identifier().startswith("rmw_fastrtps"):
@@ -232,7 +232,7 @@ def nap(duration_s: float) -> None:
 
 
 def _graph(node: Node) -> Counter[object]:
-    """Count everything that can appear while the graph is being discovered."""
+    """Return a counter of everything that can appear during the discovery of the graph."""
     graph: Counter[object] = Counter(node.get_node_names_and_namespaces())
     for name, types in node.get_topic_names_and_types():
         graph.update({(name, *types): 1, (name, "publishers"): node.count_publishers(name)})

@@ -50,7 +50,7 @@ class Show:
 
 @dataclass(frozen=True)
 class Node:
-    """A node, given by its full name.
+    """A node with its full name.
 
     `count` is greater than 1 if several nodes have the same name, which is an error.
     """
@@ -61,7 +61,7 @@ class Node:
 
 @dataclass(frozen=True)
 class Topic:
-    """A topic with the full names of the shown nodes that publish or subscribe, sorted and without duplicates."""
+    """A topic, and the nodes shown that publish or subscribe: their full names, sorted and without duplicates."""
 
     name: str
     publishers: tuple[str, ...]

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 def hidden(name: str) -> bool:
-    """Return whether a name is meant only for tools, which is the case if a part of it begins with "_"."""
+    """Return whether a name is hidden (meant only for tools). A part of a hidden name begins with "_"."""
     return any(part.startswith("_") for part in name.split("/"))
 
 

@@ -56,7 +56,7 @@ class ObservingNode(Node):  # type: ignore[misc]
 
 @contextmanager
 def readable_names() -> Iterator[None]:
-    """Report a name in the graph that is not valid UTF-8, because rclpy cannot read a graph with such a name.
+    """Raise a clear error if rclpy cannot read the graph because of a name that is not valid UTF-8.
 
     Raises:
         Ros2Error: a name in the graph is not valid UTF-8.

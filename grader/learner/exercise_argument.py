@@ -46,9 +46,9 @@ def meant(
 def guessed(path: Path | None, exercise: str | None, folder: Path | None = None) -> tuple[Exercise | None, Path]:
     """Return the exercise (None if the arguments do not determine it) and the folder with the learner's work.
 
-    `path` is the path that was typed: a package, a step ("03", "3") or the folder of its lesson, the workspace (for
-    its current step), or None.
-    `exercise` is the value of --exercise. `folder` is the workspace, or None for the learner's default workspace.
+    `path` is the path that was typed: a package, a step ("03", "3") or the folder of its lesson, the workspace (for its
+    current step), or None. `exercise` is the value of --exercise. `folder` is the workspace, or None for the learner's
+    default workspace.
 
         guessed(Path("03"), None)  # step 03 and the package in the workspace
 
@@ -87,7 +87,7 @@ def _check_there(step: Exercise, place: Path) -> None:
 def open_package(place: Path, exercise: Exercise | None, *, typed: bool) -> Submission:
     """Open the package in a folder. `typed` is true if the user typed a path.
 
-    If the exercise is known, the cells of the notebook next to the package complete the package.
+    If the exercise is known, files that are missing from the package come from the notebook next to it.
 
     Raises:
         UsageError: the folder does not contain exactly one package. If no path was typed, the message also contains the

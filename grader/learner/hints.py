@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
-    """Return the next hint of a step (by default, of the current step) or of a part of the step.
+    """Return the next hint of a step or of a part of a step. The default is the current step.
 
     After all hints have been shown, the last hint for a failed check is repeated, or the last hint if no check failed.
     If `step` is a single letter, it is a part of the current step.
@@ -107,7 +107,7 @@ def _next(exercise: Exercise, wanted: list[int], known: StepProgress) -> int | N
 
 
 def _is_done(exercise: Exercise, hint: Hint, known: StepProgress) -> bool:
-    """Return whether the checks of the hint have passed. A check of another part counts only if it failed."""
+    """Return whether the hint's checks have passed. Checks of other parts of the exercise must only not have failed."""
     of_part = {each.id for each in exercise.checks if hint.part and each.title.startswith(f"{hint.part})")}
     needed = set(hint.checks) & of_part or set(hint.checks)
     return bool(needed) and needed <= set(known.done) and not set(hint.checks) & set(known.failed)

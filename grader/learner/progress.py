@@ -30,7 +30,7 @@ DEFAULT_WORKSPACE = Path("~/ros2_ws")
 
 @dataclass(frozen=True)
 class StepProgress:
-    """The progress in one step: the learner's best points, the maximum points, and whether the step has passed."""
+    """The progress in one step: the learner's best points, the maximum points, and whether the step is passed."""
 
     points: float = 0.0
     max: float = 0.0
@@ -56,11 +56,11 @@ class Progress:
         return self.steps.get(name, StepProgress())
 
     def with_step(self, name: str, step: StepProgress) -> Progress:
-        """Return a copy of the progress, with `step` as the progress in the step `name`."""
+        """Return a copy in which the progress in the step `name` is `step`."""
         return replace(self, steps={**self.steps, name: step})
 
     def at(self, name: str) -> Progress:
-        """Return a copy of the progress in which the current step is `name`."""
+        """Return a copy in which the step `name` is the current step."""
         return replace(self, current=name, steps={**self.steps, name: self.step(name)})
 
     def graded(self, name: str, report: Report) -> Progress:

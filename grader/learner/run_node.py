@@ -68,7 +68,7 @@ def program_of(step: str | None, executable: str | None, workspace: Path | None)
 
 
 def _refuse_program_as_step(name: str) -> None:
-    """Raise UsageError if the name is that of a program, and not that of a step."""
+    """Raise UsageError if the name is the name of a program and not of a step."""
     if name.isdigit() or any(each.startswith(name) for each in catalogue()):
         return
     owner = next((each for each, file in catalogue().items() if name in executables(load_exercise(file))), None)

@@ -34,7 +34,7 @@ _ROOM_FOR_TITLES = 60
 
 @dataclass(frozen=True)
 class Begun:
-    """A step that was started, the changes in the workspace, and the path of the workspace."""
+    """A started step: the exercise, the changes in the workspace, and the path of the workspace."""
 
     exercise: Exercise
     started: Started
@@ -42,9 +42,10 @@ class Begun:
 
 
 def start(step: str, folder: Path | None, *, student: str | None = None, fresh: bool = False) -> Begun:
-    """Start a step in the workspace. "next" stands for the first later step that has not passed.
+    """Start a step in the workspace. "next" stands for the first later step that the learner has not passed.
 
-    If all later steps have passed, "next" is the step after the current one. For a new learner, it is the first step.
+    If the learner has passed all later steps, "next" is the step after the current one. For a new learner, "next" is
+    the first step.
 
     Raises:
         UsageError: the step does not exist, `student` is empty, or `step` is "next" and the learner has not passed the
@@ -106,7 +107,7 @@ def _setup_file() -> Path:
 
 
 def current(folder: Path | None, *, outline: bool = False) -> tuple[Exercise, Path] | None:
-    """Return the current step and the folder with the learner's work, or None if there is no such step.
+    """Return the current step and the folder with the learner's work, or None if there is no current step.
 
     For `outline`, see `load_exercise`.
     """
@@ -148,7 +149,7 @@ def note(exercise: Exercise, submission: Path, report: Report, folder: Path | No
 
 
 def _following(known: progress.Progress) -> str:
-    """Return the line about what is left to do: the current step, the next step, or a step that was left out."""
+    """Return the line about what is left to do: the current step, the next step, or steps that were left out."""
     if known.current is not None and not known.step(known.current).passed:
         return f"Your current step, {known.current}, has not passed yet."
     return "The next step: grader start next" if _waiting(known) else _open_steps(known)
@@ -240,14 +241,14 @@ def _after(name: str) -> str:
 
 
 def _waiting(known: progress.Progress) -> list[str]:
-    """Return the later steps that have not passed yet, or all later steps if all of them have passed."""
+    """Return the later steps that the learner has not passed yet, or all later steps if all are passed."""
     names = list(catalogue())
     later = names[names.index(known.current or names[0]) + 1 :]
     return [name for name in later if not known.step(name).passed] or later
 
 
 def _open_steps(known: progress.Progress) -> str:
-    """Return the message for a learner at the last step: the steps that have not passed yet, or that none are left."""
+    """Return the message for a learner at the last step: which steps are not passed yet, or that none is left."""
     missing = [name for name in catalogue() if not known.step(name).passed]
     if not missing:
         return f"{known.current} was the last step. You have finished the course. `grader status` shows all steps."

@@ -37,7 +37,7 @@ DEBOUNCE_MS = 50
 _STEP_MS = 25
 """The polling interval for new events (ms). With an interval of 10 ms, an idle watch would use 0.7 % of a core."""
 SUSPEND_S = 20.0
-"""The time without a save after which the next trial is suspended (s)."""
+"""After this time (s) without a save, the waiting simulator and launcher are suspended."""
 MOST_FOLDERS = 1000
 """The maximum number of folders of a package that are watched."""
 _LOOK_MS = 500
@@ -84,7 +84,7 @@ def _identity(folder: Path) -> tuple[int, int] | None:
 
 
 class Events:
-    """Key presses, and saves in the watched folder, in the order in which they happen."""
+    """The events for the main loop: key presses and saves in the watched folder, in the order in which they happen."""
 
     def __init__(self, read_key: Callable[[], str] | None) -> None:
         self._queue: SimpleQueue[Happened] = SimpleQueue()
@@ -99,7 +99,7 @@ class Events:
     def watch(self, folder: Path) -> None:
         """Watch only this folder from now on.
 
-        As soon as the watcher is ready to notice new saves, it reports a first save.
+        As soon as the watcher can notice saves, it adds a first save to the events.
         """
         self._stop.set()
         self._stop = Event()

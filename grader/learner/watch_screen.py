@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 BELOW = 5
-"""The number of lines reserved below a report for the watched folder, the list of keys, and what a key press prints."""
+"""The number of lines that are reserved below a report: for the watched folder, the keys, and the text after a key
+press."""
 KEYS = "h hint · l list · n next · r rerun · q quit"
 
 

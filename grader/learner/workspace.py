@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 
 APART = "apart"
-"""The folder in the learner's workspace that contains separate workspaces. colcon must not build them together with the
-learner's packages."""
+"""The folder in the learner's workspace that contains separate workspaces. colcon must not build these workspaces
+together with the learner's packages."""
 _PACKAGE_FILES = ("package.xml", "setup.py", "setup.cfg", ANSWERS)
 """Package files to which later steps add lines."""
 _ENTRY_POINT = re.compile(r"[\"'](?P<name>[\w.-]+) = [\w.]+:\w+[\"'],?")
@@ -132,7 +132,7 @@ def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tup
 
 
 def _is_of_earlier_step(exercise: Exercise, source: Path, path: str) -> bool:
-    """Return whether the file is a module with tasks of an earlier step, and this step does not run it.
+    """Return whether the file is a module that contains tasks of an earlier step and that this step does not run.
 
     Raises OSError.
     """
@@ -146,7 +146,7 @@ def _is_of_earlier_step(exercise: Exercise, source: Path, path: str) -> bool:
 
 
 def lacking_lines(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, tuple[str, ...]]:
-    """Return the lines of the step's package files that are missing from the learner's files, by the path of the file.
+    """Return, for each of the learner's package files, the lines of the step's version that are missing from the file.
 
     `files` has the content of the learner's files by path. Files that are not in `files` are left out, as are the entry
     points of other steps. For a step with a package of its own, no lines are returned, because the learner's task is to
@@ -177,7 +177,7 @@ def open_tasks(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, tupl
 
 
 def _package_files(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, Path]:
-    """Return the package files of the starting point that the learner also has, by path."""
+    """Map the path of each package file that the learner also has to the file in the starting point."""
     if not exercise.package or exercise.apart:
         return {}
     source = starting_point(exercise) / exercise.package

@@ -55,15 +55,15 @@ class Cells:
             lesson.show(exercise.folder / "lesson.md")
 
     def node(self, line: str, cell: str) -> None:
-        """`%%node draw_circle.py`: write the cell as a node of the package next to the notebook."""
+        """`%%node draw_circle.py`: write the content of the cell to a node file of the package next to the notebook."""
         self._write("node", line, cell)
 
     def package(self, line: str, cell: str) -> None:
-        """`%%package package.xml`: write the cell as a file of the package next to the notebook."""
+        """`%%package package.xml`: write the content of the cell to a file of the package next to the notebook."""
         self._write("package", line, cell)
 
     def answers(self, line: str, cell: str) -> None:
-        """`%%answers`: write the cell as the answers.toml of the step."""
+        """`%%answers`: write the content of the cell to the step's answers.toml."""
         self._write("answers", line, cell)
 
     def ros2(self, line: str) -> None:

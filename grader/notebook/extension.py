@@ -1,4 +1,4 @@
-"""Load the extension: add magics, `check` and `simulator`, and start a guardian for child processes."""
+"""Load the extension: add the magics, `check` and `simulator`, and start a guardian for child processes."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ _SIZE = 4
 
 
 class FrameError(ValueError):
-    """A kernel sent data that is not a message, or more than a limit allows.
+    """A kernel sent data that is not a message, or it sent more than a limit allows.
 
     The error message completes a sentence that begins with "The kernel sent".
     """

@@ -25,7 +25,7 @@ there."""
 def released_notebook(data: bytes, name: str) -> bytes:
     """Return the released version of a source notebook.
 
-    Raises UsageError, with the number of the cell, for a mistake.
+    Raises UsageError if a cell has a mistake. The message contains the number of the cell.
     """
     try:
         notebook = json.loads(data)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from grader.exercise.model import CheckSpec, Exercise
 
 OF_STEP = {"begin": "%load_ext grader.notebook\n%step {}", "check": 'check("{}")'}
-"""Maps the id of a locked cell to its source, with a place for the id of the step. `begin` loads the extension and sets
+"""The source of each locked cell by its id. `{}` stands for the id of the step. `begin` loads the extension and sets
 the step, and `check` prints the verdict."""
 
 

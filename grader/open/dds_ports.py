@@ -1,7 +1,7 @@
 """The UDP ports of the nodes in a cell, and of the DDS participants on this machine that these nodes may reach.
 
-A participant has two ports that depend on the domain and on its number (DDSI-RTPS, 9.6.1.1). In addition, the reader
-that rmw_fastrtps has for ros_discovery_info gets the first free port from 7000 on, in every domain.
+A participant has two ports that depend on the domain and on its number (DDSI-RTPS, 9.6.1.1). In addition, the DDS
+reader with which rmw_fastrtps receives ros_discovery_info gets the first free port from 7000 on, in every domain.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ class Ports:
     `others` contains the ports of other nodes.
 
     Inside the cell, sockets of the relay occupy the ports in `others`. Therefore, the nodes in the cell get the
-    remaining ports, which have the same numbers as the sockets in `own` outside the cell. `discovery` contains the
-    ports of `own` for discovery data.
+    remaining ports, which have the same numbers as the sockets in `own` outside the cell. `discovery` contains those
+    ports of `own` that receive discovery data.
     """
 
     own: tuple[socket.socket, ...]
@@ -51,7 +51,7 @@ class Ports:
 
 
 def reserve(domain: int) -> Ports:
-    """Bind the ports of as many participants as possible, up to OWN participants. Return the ports.
+    """Bind the ports for as many participants as possible, but at most OWN. Return the ports.
 
     The port numbers are high, because nodes use the lowest free ports.
 
