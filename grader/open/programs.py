@@ -135,7 +135,7 @@ class Programs:
         """Return the address of the view of turtlesim, or None.
 
         This is the view of the turtlesim that the page started. If there is none, it is the view of the turtlesim that
-        was last started in a terminal, which may no longer be running.
+        was last started in a terminal. In both cases, turtlesim may no longer be running.
         """
         return self._address or remembered("turtlesim")
 
