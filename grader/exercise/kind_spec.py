@@ -1,4 +1,4 @@
-"""KindSpec: what the grader must know about a kind of check to read exercise.toml."""
+"""KindSpec: the part of a kind of check that reading exercise.toml uses."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Allowed:
 
 
 class KindSpec(Protocol):
-    """What reading exercise.toml needs of a kind of check. `grader.checks.kind.Kind` implements this protocol."""
+    """The part of a kind of check that reading exercise.toml uses. `grader.checks.kind.Kind` implements it."""
 
     @property
     def title(self) -> str:

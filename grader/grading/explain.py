@@ -119,7 +119,7 @@ class _Explaining:
         return Tries(tuple(self.made), len(self.behind), stopped)
 
     def _share(self, target: Outcome, found: Mapping[str, Outcome], diff: str) -> set[Key]:
-        """Record the result of a test also for other failed checks that have the same cause and were judged again.
+        """Record the result of a test for all other failed checks that have the same cause and were judged again.
 
         Only a result that confirms the cause is recorded. Return the keys of all these checks.
         """

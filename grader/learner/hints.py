@@ -107,7 +107,7 @@ def _next(exercise: Exercise, wanted: list[int], known: StepProgress) -> int | N
 
 
 def _is_done(exercise: Exercise, hint: Hint, known: StepProgress) -> bool:
-    """Return whether the hint's checks have passed. Checks of other parts of the exercise must only not have failed."""
+    """Return whether the hint's checks have passed. A check of another part counts as passed unless it failed."""
     of_part = {each.id for each in exercise.checks if hint.part and each.title.startswith(f"{hint.part})")}
     needed = set(hint.checks) & of_part or set(hint.checks)
     return bool(needed) and needed <= set(known.done) and not set(hint.checks) & set(known.failed)
