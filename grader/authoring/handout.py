@@ -16,10 +16,10 @@ _FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitign
 _PAGES = ("learner.md", "commands.md", "glossary.md", "kinds.md", "ros2-differences.md", "security.md")
 """The pages of docs/ that students need. The others are for instructors, authors and developers."""
 _TARGETS = ("help", "demo", "notebooks", "clean", "python3")
-"""The targets of the Makefile that work without tests, solutions and the other pages."""
+"""The targets of the Makefile that need neither the tests, the solutions nor the other pages."""
 _NOT_FOR_STUDENTS = ("tests", "benchmarks", "__pycache__", "*.pyc", "nbgrader_config.py")
 _IN_A_WHEEL = ("course", "exercises", "solutions", "repository")
-"""Folders that a wheel has inside the package (hatch_build.py). In a checkout, their files are next to the package."""
+"""Folders that a wheel puts into the package (hatch_build.py). In a checkout, their files are next to the package."""
 
 
 def hand_out(to: Path) -> None:
@@ -61,7 +61,7 @@ def _makefile(text: str) -> str:
 
 
 def _without_missing_links(text: str, folder: Path) -> str:
-    """Return a page without the links to files that students do not get. The texts of the links stay."""
+    """Return a page in which each link to a file that students do not get is replaced with the link's text."""
 
     def kept(link: re.Match[str]) -> str:
         there = link[2].startswith(("https://", "#")) or (folder / link[2].partition("#")[0]).exists()

@@ -37,7 +37,7 @@ UNITS = {
     "_m": "m",
     "_s": "s",
 }
-"""Maps the suffix of a parameter's name to the parameter's unit. `_m_s` comes before `_s`, which is its end."""
+"""Maps the suffix of a parameter's name to the parameter's unit. `_m_s` comes first, because it also ends with `_s`."""
 STAGES = {
     "source": (
         "Judged from the files",

@@ -1,7 +1,7 @@
 """Check the commands in the console and shell blocks of a lesson without running them.
 
 Each command line of `grader`, `ros2` or `colcon` is parsed by the parser of this command: the subcommand and the
-options must exist. A step that is named must exist in the course.
+options must exist. If a command of `grader` contains the name of a step, this step must exist in the course.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ if TYPE_CHECKING:
 SHELLS = ("bash", "sh")
 """The languages of blocks in which each line is a command."""
 STEPS = ("step", "steps", "exercise", "exercises")
-"""The names of the parameters of `grader` that are steps."""
+"""The parameters of the commands of `grader` whose values are steps."""
 _BEFORE = ("if", "then", "else", "while", "until", "do", "!", "time", "exec")
-"""Words of the shell that come before a command."""
+"""Shell keywords that can come before a command."""
 _SET = re.compile(r"[A-Za-z_]\w*=.*", re.DOTALL)
 _HELP = ("-h", "--help")
 
 
 def command_problems(markdown: str, course: Path, app: typer.Typer) -> Iterator[str]:
-    """Yield a sentence for each command in the console and shell blocks that is not valid.
+    """Yield a sentence for each invalid command in the console and shell blocks.
 
     `course` is the folder course/, and `app` is the command `grader`.
     """
@@ -75,7 +75,7 @@ def _lines(markdown: str) -> Iterator[str]:
 
 
 def simple_commands(line: str) -> list[list[str]]:
-    """Return the words of each command in a line of a shell, without assignments, redirections and keywords.
+    """Return the words of each command in a shell command line, without assignments, redirections and keywords.
 
     Raises ValueError if a quotation mark is missing.
 

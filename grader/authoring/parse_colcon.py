@@ -2,7 +2,7 @@
 
 `python -m grader.authoring.parse_colcon` reads a JSON list of command lines (lists of words after `colcon`) and prints
 a JSON list with one error message each, or an empty string. A separate process is necessary, because colcon changes
-logging and settings of its process.
+the logging and other settings of the process in which it runs.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 def colcon_faults(commands: Sequence[Sequence[str]]) -> list[str]:
     """Return one error message per command line, or an empty string if colcon accepts the command line.
 
-    Paths need not exist. If colcon cannot be started, all command lines count as accepted: `grader doctor` reports it.
+    Paths need not exist. If colcon cannot start, every command line counts as accepted. `grader doctor` reports it.
     """
     own = {name: value for name, value in os.environ.items() if not name.startswith("COLCON_")}
     start = interpreter("-m", "grader.authoring.parse_colcon", env={**own, "COLCON_HOME": os.devnull})

@@ -125,7 +125,7 @@ def _stale_step(solution: Path, exercise: Path) -> list[str]:
 
 
 def release_file(data: bytes, path: str, name: str) -> bytes | None:
-    """Return the released content of a file, or None if the student creates the file. Error messages contain `name`."""
+    """Return the released content of a file, or None if the student creates the file. `name` is for error messages."""
     if path.endswith(RECORDED):
         return None
     if path.endswith(".ipynb"):

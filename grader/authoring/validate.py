@@ -38,7 +38,7 @@ _CODE = re.compile(r"^```.*?^```|`[^`\n]*`", re.MULTILINE | re.DOTALL)
 def validate(
     names: list[str], app: typer.Typer, tell: Callable[[str], None] = lambda _: None, *, course: Path | None = None
 ) -> list[str]:
-    """Return the problems of the exercises in `names` (or of all exercises if `names` is empty), as one message each.
+    """Return one message for each problem of the exercises in `names` (or of all exercises if `names` is empty).
 
     Files that are out of date in solutions/ or exercises/ are reported for all exercises.
     `app` is the command `grader`, whose parser checks the commands in the lessons. `tell` is called with progress
@@ -173,7 +173,7 @@ def lesson_problems(file: Path, app: typer.Typer) -> Iterator[str]:
 
 
 def _notebook(solution: Path) -> Iterator[str]:
-    """Yield a sentence if the step has no notebook of its own: nbgrader refuses to generate its assignment."""
+    """Yield a sentence if the step has no notebook of its own. Without one, nbgrader cannot generate the assignment."""
     name = f"{solution.name}.ipynb"
     if solution.is_dir() and not (solution / name).is_file():
         yield (

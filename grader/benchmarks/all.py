@@ -4,8 +4,8 @@
 
 F is the cost of a `colcon build` of the package and of a process with one rclpy node, both run without the grader. Wall
 times are divided by the wall time of F, and CPU times by its CPU time. grader.benchmarks.check divides both by the wall
-time of F. F is measured again for each cost in F, so that other programs slow down F and the cost alike. The first line
-shows the load of the machine. Results from a busy machine can be compared only with each other.
+time of F. F is measured again for each cost that is divided by F, so that other programs slow down both alike. The
+first line shows the load of the machine. Results from a busy machine can be compared only with each other.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class InF:
 class Bench:
     """The measurements of one run.
 
-    The measurements write their files to `folder`, and `in_f` repeats a measurement `times` times.
+    The measurements write their files to `folder`. The method `in_f` repeats each measurement `times` times.
     """
 
     def __init__(self, folder: Path, times: int) -> None:

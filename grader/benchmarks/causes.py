@@ -195,7 +195,10 @@ def cost_of_explain(mades: Iterable[Made], folder: Path) -> float:
 
 
 def tell(all_: Iterable[Judged], *, everything: bool = False) -> None:
-    """Print the packages whose report missed the cause or has a false statement (or all), and the statistics."""
+    """Print each wrong package whose report missed the cause or has a false statement, and the statistics.
+
+    With `everything`, print every package that failed a check.
+    """
     every = list(all_)
     wrong = [each for each in every if each.failed]
     for each in wrong:

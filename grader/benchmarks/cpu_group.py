@@ -1,8 +1,8 @@
 """Count the CPU time of a command and of all its descendants in a control group.
 
 The kernel adds the CPU time of a process to the CPU time of its parent when the parent waits for the process. No
-process waits for the processes that are still running when a cell ends. Therefore, without a control group, most of the
-CPU time of a build or trial may not be counted.
+process waits for the processes that are still running when a sandbox cell ends. Therefore, without a control group,
+most of the CPU time of a build or trial may not be counted.
 
 This module needs version 1 of control groups. In version 2, a process can be in only one group, and each sandbox cell
 already has its own group.

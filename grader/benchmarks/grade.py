@@ -103,7 +103,7 @@ def _bare(folder: Path, times: int) -> list[float]:
 
 
 def class_cost(folder: Path, size: int, jobs: int | None, mix: str) -> ClassCost:
-    """Grade a class on this machine, in a folder. `mix` is "right" or "all", like the value of the option --mix."""
+    """Grade a class on this machine, in a folder. `mix` is "right" or "all", as in the option --mix."""
     submitted = _class(folder / f"class-{size}", size, mix)
     options = ["--jobs", str(jobs)] if jobs else []
     return _graded(submitted, size, folder / f"grades-{size}", options)
@@ -161,7 +161,7 @@ def _graded(submitted: Path, size: int, out: Path, options: list[str], also: lis
 
 
 def _alone(command: list[str]) -> Cost:
-    """Return the cost of a command that delegates its work to other processes. Only exited processes are counted."""
+    """Return the cost of a command that delegates its work to other processes. Running processes do not count."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     begun = time.monotonic()
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

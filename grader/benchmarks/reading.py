@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 _GRADER = str(Path(sys.executable).with_name("grader"))
 _MOST_S = 0.04
-"""The limit for the cost (s of CPU time)."""
+"""The maximum cost (CPU time in s)."""
 
 
 def main() -> None:
@@ -70,7 +70,7 @@ def main() -> None:
 
 
 def _read(submission: Path, evidence: Evidence) -> None:
-    """Read the same data of the submission as a check does, in the same steps."""
+    """Read what `grader check` reads from the submission, in the same steps."""
     judging = Judging("auto")
     opened = open_submission(submission)
     files = dataclasses.replace(evidence, submission=opened, build=None, runs={})

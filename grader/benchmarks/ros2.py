@@ -3,7 +3,7 @@
     python -m grader.benchmarks.ros2 [--times N]
 
 Everything is measured in one run. The measurements alternate, so that other programs slow down all of them alike. The
-first `ros2 topic list` starts the ROS 2 daemon, which its later runs use. The benchmark also prints in how many runs
+first `ros2 topic list` starts the ROS 2 daemon, and the later ones use it. The benchmark also prints in how many runs
 `ros2 topic list` and Tab found all topics.
 """
 

@@ -27,7 +27,7 @@ _STEP = "03-circle-publisher"
 _FILE = "my_robot_controller/draw_circle.py"
 _PATIENCE_S = 300
 _REST_S = 2.0
-"""The shortest time between two saves of a learner (s). During this time, the next trial is prepared."""
+"""The pause before the save (s), since a learner also pauses. In this time, `grader watch` prepares the next trial."""
 
 
 def main() -> None:

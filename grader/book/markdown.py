@@ -148,7 +148,7 @@ def _add_anchors(tokens: list[Token]) -> None:
 
 
 def _link(tokens: list[Token]) -> None:
-    """Change links to lessons into links to pages, and turn each paragraph with only a picture into a figure."""
+    """Change links to lessons into links to pages, and each paragraph that is only a picture into a figure."""
     for token in _inner(tokens):
         if token.type == "link_open":
             token.attrSet("href", _LESSON_LINK.sub(rf"\1{PAGE}\2", str(token.attrs["href"])))

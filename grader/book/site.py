@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 VIEW_ASSETS = Path(__file__).parents[1] / "view/assets"
 FOLDER = "assets"
-"""The folder of the style sheets and scripts in the book."""
+"""The folder in the book that contains the style sheets and scripts."""
 
 
 def write_book(out: Path, repository: str = "") -> int:

@@ -75,7 +75,7 @@ def load_exercise(path: Path, *, outline: bool = False) -> Exercise:
     """Return the exercise that the file `path` defines. If `path` is a folder, its file exercise.toml is read.
 
     If `outline` is True, the parameters of the checks are neither read nor examined. The modules of the kinds are
-    then not imported, which takes 2 ms instead of 28 ms for step 03.
+    then not imported. For step 03, loading takes 2 ms instead of 28 ms.
 
     Raises UsageError, which says why the file cannot be read, or lists every problem in it: the key, its value, and the
     allowed values. Raises OSError if the machine is at fault, for example because of a read error.

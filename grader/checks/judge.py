@@ -130,8 +130,8 @@ def judge_early(evidence: Evidence) -> Early:
 def _judges_trial(exercise: Exercise, spec: CheckSpec, trial: str) -> bool:
     """Return whether the check uses the recording of this trial.
 
-    A check uses its own trial, and the trial whose id is the value of `beside` in its own trial. The second trial of
-    the kind `places_differ` does not count, because other checks use it.
+    A check uses the recording of its own trial. If this trial has a value for `beside`, the check also uses the trial
+    with that id. The second trial of the kind `places_differ` does not count, because other checks use it.
     """
     return KINDS[spec.kind].stage == "trial" and trial in (spec.trial, exercise.trial(spec.trial).beside)
 

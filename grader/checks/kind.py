@@ -57,7 +57,7 @@ class Kind(Generic[P]):
     requested: Callable[[Evidence, P], Requested | None] | None = None
     """Return the requirements of the check as shapes and values, or None if they cannot be determined."""
     radius_m: Callable[[P], float] | None = None
-    """Return the radius (m) of a circle that must fit on either side of a randomly drawn start position."""
+    """Return the radius (m) of a circle that must fit on both sides of a randomly drawn start position."""
 
     def parameters(self) -> dict[str, Allowed]:
         """Return the name of every parameter with its allowed values."""
@@ -85,7 +85,7 @@ class Kind(Generic[P]):
         return None if self.requested is None or isinstance(params, Finding) else self.requested(evidence, params)
 
     def radius(self, evidence: Evidence, values: Mapping[str, Param]) -> float | None:
-        """Return the radius (m) of a circle that must fit on either side of a random start position, or None."""
+        """Return the radius (m) of a circle that must fit on both sides of a random start position, or None."""
         params = self._params(evidence, values)
         return None if self.radius_m is None or isinstance(params, Finding) else self.radius_m(params)
 

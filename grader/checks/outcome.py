@@ -46,7 +46,7 @@ class Finding:
     fix: tuple[Edit, ...] = field(default=(), compare=False)
     """The change that would fix the mistake. The grader can test this change in a copy of the submission."""
     tried: str = ""
-    """A text for students that says whether the check passed, or failed later, when the change was tested.
+    """A text for students about a test of this change: the check passed, failed again, or failed at a later point.
 
     If `exercise.toml` sets `show_fix`, the text also contains the change.
     """

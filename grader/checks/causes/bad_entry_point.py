@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from grader.submission.setup_py import EntryPoint
 
 JOINED = re.compile(r"=[^=]*:[^=]*=")
-"""Matches an equals sign, a colon and an equals sign, as in a string with two entry points."""
+"""Matches an equals sign, a colon and another equals sign, in this order, as in a string with two entry points."""
 
 
 def bad_entry_point(point: EntryPoint) -> Finding:

@@ -61,7 +61,7 @@ def _clients(node: ast.ClassDef) -> set[str]:
 
 
 def _registered(node: ast.ClassDef) -> Iterator[str]:
-    """Yield the attributes of self, such as callbacks, that are passed to a method in REGISTERS without a group."""
+    """Yield the attributes of self, such as callbacks, in calls to methods in REGISTERS that set no callback group."""
     for call in _calls(node):
         most = REGISTERS.get(_own(call.func))
         if most is not None and len(call.args) <= most and not _grouped(call):

@@ -41,7 +41,7 @@ def _last(call: ast.Call) -> str:
 
 
 def _has_fixed_seed(call: ast.Call) -> bool:
-    """Return whether the first argument can be a fixed seed: neither missing nor None nor the result of a call."""
+    """Return whether the first argument can be a fixed seed: it is given, is not None and contains no call."""
     arguments = [*call.args, *(keyword.value for keyword in call.keywords)]
     if not arguments or (isinstance(arguments[0], ast.Constant) and arguments[0].value is None):
         return False
@@ -49,7 +49,7 @@ def _has_fixed_seed(call: ast.Call) -> bool:
 
 
 def _modules_of(code: TestCode, names: Collection[str]) -> set[str]:
-    """Return the modules in MODULES whose own functions with these names are used, rather than those of a generator."""
+    """Return the modules in MODULES whose functions with these names are used. Methods of a generator do not count."""
     return {found for module in code.modules for found in _modules_in(module, names)}
 
 

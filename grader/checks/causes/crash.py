@@ -26,8 +26,8 @@ PACKAGES = ("site-packages", "dist-packages")
 FRAME = re.compile(r'\s*File "(?P<file>[^"]*)", line (?P<line>\d{1,7})(?:, in (?P<function>.*))?')
 ERROR = re.compile(r"(?P<type>[A-Za-z_][\w.]*)(?:: (?P<message>.*))?")
 GUESS = re.compile(r" \(/[^)]*\)$|\.? Did you mean: .*| The following argument types are supported:.*")
-"""Matches a path, a suggestion or a list of types at the end of a message. These parts are removed, because they may
-differ between machines."""
+"""Matches a path, a suggestion or a list of types at the end of an exception message. These parts are removed, because
+they may differ between machines."""
 STOPS = frozenset({"KeyboardInterrupt", "ExternalShutdownException"})
 """The exceptions that Ctrl-C raises in a node that is written as in the tutorial."""
 
@@ -62,8 +62,8 @@ class Crash:
     """An exception in the student's node.
 
     `error` is the exception's class or, without an exception, the signal, the exit code or the exceeded limit. `where`
-    is the last line of the traceback, or else of another traceback in its chain, that is in the student's own code.
-    `callers` are the other lines of the traceback in this code, the nearest caller first.
+    is the last line of the student's own code in the traceback (or in another traceback of the chain, if this one has
+    no such line). `callers` are the other lines of this code in the traceback, the nearest caller first.
     """
 
     error: str
@@ -127,8 +127,8 @@ def end_observed(evidence: Evidence) -> str:
 def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:
     """Return the last exception in stderr, or None.
 
-    In a chain of exceptions, those that Ctrl-C caused do not count. Of the others, return the first one in
-    RCLPY_ERRORS, or else the first one.
+    In a chain of exceptions, those that Ctrl-C caused do not count. Of the others, return the first that
+    is in RCLPY_ERRORS, or the first of all if none is.
     """
     last: list[Crash] = []
     for chained, crash in read_tracebacks(text, files):

@@ -23,7 +23,7 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 @dataclass(frozen=True)
 class CrashScene:
-    """An exception and the module that raised it. If the line is unknown, the other attributes are empty."""
+    """An exception in the student's code. If its line is unknown, the properties are None, 0 or empty."""
 
     evidence: Evidence
     crash: Crash
@@ -101,7 +101,7 @@ class CrashScene:
         return [node for node in self.nodes if isinstance(node, Function) and node.name == name]
 
     def at(self, node: ast.AST | int | None) -> Where | None:
-        """Return the place of a syntax node or a line, or the place of the exception if no node or module is known."""
+        """Return the place of a syntax node or line number, or of the exception if no node or module is known."""
         if node is None or self.module is None:
             return self.crash.where
         return Where(self.module.file, node if isinstance(node, int) else getattr(node, "lineno", None))
@@ -132,7 +132,7 @@ def _end(node: ast.AST) -> int:
 
 
 def _small(node: ast.AST) -> bool:
-    """Return whether the syntax node is no class, no function, and no if, for, while, try or with statement."""
+    """Return whether the syntax node is neither a class or function nor an if, for, while, try or with statement."""
     return not isinstance(
         node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef | ast.If | ast.For | ast.While | ast.Try | ast.With
     )

@@ -30,7 +30,7 @@ def line_of_value(evidence: Evidence, field: str, value: float) -> Where | None:
     """Return the line from which a field such as "linear.x" gets this value, or None.
 
     The value must reach the field through a named constant, or through an argument of a function that sets the field.
-    If the field is assigned the number itself, or if there are several such lines, return None.
+    If the number itself is assigned to the field, or if several lines fit, return None.
     """
     assigned = list(_assigned(evidence, field))
     other = OTHER_FIELD[field.partition(".")[0]]

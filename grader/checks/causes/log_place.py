@@ -13,13 +13,16 @@ if TYPE_CHECKING:
     from grader.submission.where import Where
 
 LEVELS = ("info", "warning", "warn", "error", "fatal")
-"""The methods of a logger that write a line which is also visible without --log-level debug."""
+"""The methods of a logger whose lines are shown even without --log-level debug."""
 PLACEHOLDER = re.compile(r"%(?:\([^)]*\))?[-+# .\d]*[a-zA-Z%]|\{[^{}]*\}")
 """Matches a place in a string where the operator % or the method format puts a value."""
 
 
 def log_place(evidence: Evidence, line: str) -> Where | None:
-    """Return the place of a call that can have written this line, or else of a call that logs, or None."""
+    """Return the place of a call that can have written this line.
+
+    If there is none, return the place of any call to a logger, or else the node's file, or None.
+    """
     calls = (call for level in LEVELS for call in evidence.code.calls(level))
     for call in calls:
         message = call.argument(0, "message")
@@ -29,7 +32,7 @@ def log_place(evidence: Evidence, line: str) -> Where | None:
 
 
 def _can_be(message: ast.expr, line: str) -> bool:
-    """Return whether the strings in the expression, with any values between them, can result in this line."""
+    """Return whether the strings in the expression, with any values between them, can form this line."""
     pieces = [piece for piece in _pieces(message) if piece != ""]
     at = 0
     for number, piece in enumerate(pieces):

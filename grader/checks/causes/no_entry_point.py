@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 FORM = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION in the list console_scripts of setup.py"
 
 MISSPELT = 0.84
-"""From this difflib ratio on, one name is the other with a spelling mistake. draw_star and draw_square have 0.8."""
+"""Names with at least this difflib ratio count as misspellings of each other. draw_star and draw_square have 0.8."""
 
 
 def line(evidence: Evidence) -> Where:
@@ -85,11 +85,13 @@ def no_entry_point(evidence: Evidence) -> Finding:
 
 
 def _is_another(evidence: Evidence, name: str) -> bool:
-    """Return whether an executable is not the executable of the exercise under another name.
+    """Return whether this executable cannot be the executable of the exercise with a wrong name.
 
-    An executable whose name differs from the name of its file may be that executable. If the names are equal, as with
-    draw_circle, it may be that executable only if no file has the name of the exercise's executable, and if the names
-    of the executables are alike (or one contains the other), or its file contains the name of the exercise's node.
+    If its name differs from the name of its file, it can be. If the two names are equal, as with draw_circle, it can be
+    only if both of these are true:
+    - No file has the name of the exercise's executable.
+    - The names of the two executables are similar, or one contains the other, or the file of this executable contains
+      the name of the exercise's node.
     """
     executable, node = evidence.trial.executable, evidence.trial.node
     has_file = any(path.rpartition("/")[2] == f"{executable}.py" for path in evidence.submission.files)

@@ -77,9 +77,9 @@ def _resolved(value: ast.expr, names: Mapping[str, ast.expr]) -> str:
 
 
 def _just_assigned(test: ast.AST, line: int) -> dict[str, ast.expr]:
-    """Return the variables that were assigned before a line, without a call between the assignment and the line.
+    """Return the variables that are assigned before a line, with their values, if no call follows before that line.
 
-    A call could change the value of the same expression. Calls in an assert do not count.
+    After a call, the assigned expression may have another value. Calls in an assert do not count.
     """
     asserts = [node for node in ast.walk(test) if isinstance(node, ast.Assert)]
     harmless = {id(each) for node in asserts for each in ast.walk(node)}

@@ -22,7 +22,7 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 RESPONSES = ("call", "send_goal", "cancel_goal", "get_result")
 """Methods of service clients, action clients and goal handles that wait for the response.
 
-Each of them also exists with the suffix _async."""
+For each of them, there is a method with the suffix _async, which does not wait."""
 CREATE = ("create_client", "ActionClient")
 """Functions that return a client of a service or of an action."""
 SPINS = ("spin", "spin_once", "spin_until_future_complete")
@@ -36,8 +36,8 @@ THREADS = frozenset({"MultiThreadedExecutor", "Thread", "ThreadPoolExecutor", "T
 STARTS = frozenset({"Thread", "Timer", "start_new_thread", "submit", "to_thread", "run_in_executor"})
 """Functions that call one of their arguments in another thread."""
 STRAIGHT = frozenset({"__init__", "main"})
-"""Functions that the executor does not call. They are not counted as callbacks, even if their names are used without
-a call."""
+"""Functions that the executor does not call. They do not count as callbacks, even where their names are used
+without calling them."""
 OTHER_CALLS = frozenset({"subprocess", "self", "super", "cls"})
 """Objects whose method `call` does not belong to a service client."""
 
@@ -227,7 +227,7 @@ def _in_callbacks(modules: Iterable[Module]) -> Iterator[tuple[Module, Function]
 
 
 def _in_threads(module: Module) -> Iterator[ast.expr]:
-    """Yield the arguments of calls that start a thread. A wait in a function among them does not delay any callback."""
+    """Yield the arguments of calls that start a thread. If one is a function, a wait in it delays no callback."""
     for node in module.nodes:
         if isinstance(node, ast.Call) and _last(node) in STARTS:
             yield from (*node.args, *(keyword.value for keyword in node.keywords))

@@ -133,7 +133,7 @@ def _may_be_empty(listed: ast.expr, module: Module) -> bool:
 
 
 def timed_loop(code: TestCode) -> Cause | None:
-    """Return the cause if a loop always takes the same wall time, like a call to sleep, else None.
+    """Return the cause if a loop runs for a fixed wall time, as a call to sleep does, else None.
 
     A loop that waits for something until a deadline is correct.
     """

@@ -53,7 +53,7 @@ PLAIN = {
 }
 """Maps a built-in type to a phrase for a value of this type."""
 MOST_LETTERS = 2
-"""The maximum difference in length (letters) between a name and the name that is suggested in its place."""
+"""The maximum difference in length, in letters, between a name and the name suggested in its place."""
 MODULES_READ = {"math": math, "time": time, "random": random}
 
 
@@ -133,7 +133,7 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
 
 
 def _of_class_elsewhere(scene: CrashScene, owner: str, name: str) -> Cause:
-    """Return the reason why a class of another file lacks the attribute: perhaps only its objects have fields."""
+    """Return the reason why a class from another file lacks the attribute, perhaps because only its objects have it."""
     if owner in ros_names.FIELDS:
         return class_for_object(scene, owner, name)
     text = f"The class {shorten(owner)} has no constant or method with that name."

@@ -48,7 +48,7 @@ TAKES = {
     "spin": "the node",
     "info": "one string",
 }
-"""Maps a function to the arguments that beginners pass to it."""
+"""Maps a function to a phrase for the arguments that it needs in a beginner's program."""
 
 
 def callback_called(scene: CrashScene) -> Cause | None:
@@ -200,7 +200,7 @@ def _more(names: str) -> str:
 
 
 def _init_of(scene: CrashScene, missing: re.Match[str]) -> Cause | None:
-    """Return the cause if __init__ of a class that is not in this file and is not a node lacks arguments, else None."""
+    """Return the cause if arguments are missing for __init__ of a class from another file, except Node, else None."""
     of = missing["of"]
     if missing["function"] != "__init__" or of in (None, "Node") or scene.class_named(of) is not None:
         return None

@@ -58,7 +58,7 @@ def _why_no_topic(scene: CrashScene) -> Cause:
 
 
 def _topic_given(scene: CrashScene) -> tuple[str, int] | None:
-    """Return the topic, service or action name that the line of the crash contains, with its line, or None."""
+    """Return the name of a topic, service or action in a call on the line of the crash, with its line, or None."""
     for maker in ("create_publisher", "create_subscription", "create_client", "create_service", "ActionClient"):
         for call in scene.calls_on_line(maker):
             for given in (*call.args, *(keyword.value for keyword in call.keywords)):

@@ -104,7 +104,7 @@ def why_no_node(evidence: Evidence) -> Cause:
 
 
 def _stored_class(evidence: Evidence) -> Cause | None:
-    """Return the cause if a node's class, not an object, is assigned to a variable that nothing reads, else None."""
+    """Return the cause if a node class, not an instance, is assigned to a variable that nothing reads, else None."""
     nodes = [(module, node) for module in evidence.code.modules for node in module.nodes]
     classes = {node.name for _, node in nodes if isinstance(node, ast.ClassDef) and _is_node(node)}
     read = {node.id for _, node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}

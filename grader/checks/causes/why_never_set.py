@@ -103,9 +103,9 @@ def _parts(test: ast.expr, operator: type[ast.boolop]) -> list[ast.expr]:
 
 
 def _tested(test: ast.expr, *, missing: bool) -> str | None:
-    """Return the attribute of self that is not None if the test is true, or None if there is no such attribute.
+    """Return the name of the attribute of self if the test checks that this attribute is not None, else None.
 
-    With `missing`, return the attribute that is None if the test is true.
+    With `missing`, the test must check that the attribute is None.
     """
     if isinstance(test, ast.Compare) and len(test.ops) == 1 and _is_none(test.comparators[0]):
         wanted = (ast.Is, ast.Eq) if missing else (ast.IsNot, ast.NotEq)

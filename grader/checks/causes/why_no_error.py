@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def why_no_error(evidence: Evidence) -> Cause:
-    """Return the cause: the exception is created but not raised, its line is not reached, or there is no check."""
+    """Return the cause: the exception is created but not raised, its line is not reached, or none is created."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.Return) and _is_error(node.value):

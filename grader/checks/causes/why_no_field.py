@@ -1,4 +1,4 @@
-"""Explain an AttributeError of a part of a service or an action, or of an action client."""
+"""Explain why a part of a service or an action, such as its Request, or an action client lacks an attribute."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ OF_HANDLES = ("cancel_goal", "get_result")
 
 
 def why_no_field(owner: str, name: str) -> Cause | None:
-    """Return the cause if such an object of the class `owner` lacks the attribute, else None."""
+    """Return the cause if `owner` is such a part, or an ActionClient that lacks a method of goal handles, else None."""
     if owner == "ActionClient" and name.startswith(OF_HANDLES):
         return Cause("attribute-missing", f"{name} is a method of the goal handle, not of the client.")
     part = PART.fullmatch(owner)

@@ -18,7 +18,7 @@ OF_A_TYPE = "_FeedbackMessage"
 SENDS = ("send_goal_async", "send_goal")
 ONE_FRAME_S = 0.04
 """An event may have aborted a goal if it was recorded between this time (s) before the goal was sent and this time
-after the goal ended: one frame, and another frame to be safe."""
+after the goal ended. Two frames of turtlesim take less time."""
 
 
 def why_no_goal(evidence: Evidence, action: str, type_name: str) -> Cause:

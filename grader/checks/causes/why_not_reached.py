@@ -29,7 +29,7 @@ ASIDE_RAD = 0.3
 """A target within this angle (rad) is considered straight ahead or straight behind, so a turn in either direction is
 right."""
 MOST = 0.8
-"""The cause is reported only if the turtle turned or faced away in at least this fraction of the commands to turn."""
+"""The cause is reported only if in at least this fraction of its commands to turn, the turtle turned or faced away."""
 FEWEST, FEWEST_AWAY = 10, 3
 """The minimum number of turns, and of turns away from the target, that are needed for a conclusion."""
 
@@ -113,7 +113,7 @@ def wrong_turn(evidence: Evidence) -> Cause | None:
 
 
 def _turns_away(evidence: Evidence) -> Cause | None:
-    """Return the cause if turtle1 usually turned away, or faced away, from the nearest target, else None."""
+    """Return the cause if turtle1 usually turned away from the nearest target or faced away from it, else None."""
     turns = list(_turns(evidence))
     away, faced = turns.count("away"), turns.count("behind")
     if away < FEWEST_AWAY or len(turns) < FEWEST or away + faced < MOST * len(turns):

@@ -31,7 +31,7 @@ class Call:
     """A call to the function that raised the exception.
 
     `parameters` are the names of the function's parameters, except self. `arguments` maps these names to the arguments
-    of the call. The call is in `module`.
+    of the call. `module` contains the call.
     """
 
     function: Function

@@ -93,8 +93,8 @@ def all_zero(evidence: Evidence) -> str:
 def line_of_values(evidence: Evidence) -> Where | None:
     """Return the line that sets an angular field (or linear.x, if only linear fields change).
 
-    If there is no such line, return a line that sets linear.x, creates a Twist or publishes, or the node's file, or
-    None.
+    If there is no such line, return the first of these that exists: a line that sets linear.x, a line that creates a
+    Twist, a line that publishes, the node's file. If none exists, return None.
     """
     code = evidence.code
     if len({command.angular for command in evidence.commands}) == 1 < len({each.linear for each in evidence.commands}):

@@ -29,7 +29,7 @@ OUTSIDE = re.compile(
 OF_THE_NODE = re.compile(r"cannot import name '(?P<name>[A-Z][A-Z0-9_]*)' from '[\w.]*\bwall_guard'")
 """Matches pytest's message about a constant that cannot be imported from the module of the node."""
 STYLE = re.compile(r"No module named '(?P<name>ament_(?:copyright|flake8|pep257|mypy|xmllint))")
-"""Matches the message about a package that checks the style of the code. A test file of `ros2 pkg create` needs it."""
+"""Matches the message about a missing package that checks code style. Test files of `ros2 pkg create` import it."""
 ERROR = re.compile(r"^E\s+(?P<text>\w*(?:Error|Exception|Interrupt)\b.*)$", re.MULTILINE)
 
 

@@ -161,9 +161,9 @@ def _ends(loop: ast.While) -> bool:
 
 
 def _only_waits(loop: ast.While) -> bool:
-    """Return whether a loop does nothing but wait for something other than a server.
+    """Return whether a loop does nothing but wait, and waits for something other than a server.
 
-    The condition of the loop can also be in an if statement with a break.
+    The condition for which it waits can also be in an if statement with a break.
     """
     breaks = [each for each in loop.body if isinstance(each, ast.If) and isinstance(each.body[0], ast.Break)]
     tests = [loop.test, *(each.test for each in breaks)]

@@ -22,7 +22,7 @@ def cancelled(evidence: Evidence) -> Where | None:
 
 
 def why_stopped(evidence: Evidence, call: str) -> tuple[str, Where | None]:
-    """Return the reason why `call` is no longer called, or an empty string, and a place in the code, or None."""
+    """Return the reason why `call` is no longer called (or an empty string), and a place in the code (or None)."""
     stop = cancelled(evidence)
     early = ended_early(evidence)
     if early or stop is not None:

@@ -47,7 +47,7 @@ def _class_for_object(message: str, code: TestCode) -> Cause | None:
 
 
 def _without_self(message: str, code: TestCode) -> Cause | None:
-    """Return the cause if a method of the test class has another first parameter than self, else None."""
+    """Return the cause if the first parameter of a method of the test class is not self, else None."""
     owner = NO_ATTRIBUTE.search(message)
     if owner is None:
         return None

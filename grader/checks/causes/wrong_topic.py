@@ -48,13 +48,13 @@ def _why(wanted: str, topic: str, evidence: Evidence, maker: str) -> Cause:
 
 
 def _has_turtle(evidence: Evidence, topic: str) -> bool:
-    """Return whether the simulator uses the topic, which means that there is a turtle with that name."""
+    """Return whether the simulator uses the topic. If it does, the turtle in the topic's name exists."""
     ends = (end for graph in evidence.recording.graphs for end in graph.endpoints)
     return any(end.topic == topic and end.node == "/turtlesim" for end in ends)
 
 
 def _is_absolute(evidence: Evidence, maker: str, topic: str) -> bool:
-    """Return whether the source contains the whole name, which means that ROS 2 did not add a namespace to it."""
+    """Return whether the source contains the whole topic name. If it does, ROS 2 did not add a namespace to it."""
     names = (evaluate(call.argument(1, "topic"), call.module.names) for call in evidence.code.calls(maker))
     return any(name in (topic, topic.removeprefix("/")) for name in names)
 

@@ -33,7 +33,7 @@ KEEP_LOOKING = "Run the `ros2` command again and compare letter by letter."
 
 
 def answers(evidence: Evidence, _: NoParams) -> Finding:
-    """answers.toml can be read, has an answer, and has a line for each question if it has answers with other names."""
+    """answers.toml can be read and has an answer. If it has other names too, it has a line for each question."""
     found = evidence.answers
     expected = f"{FILE} is a TOML file with a table [answers] and one line per question."
     if found is None:
@@ -255,7 +255,7 @@ def _plain(answer: str) -> str:
 
 
 def shown_answer(answer: Answer) -> str:
-    """Return an answer in the form in which a message shows it."""
+    """Return an answer as text for a finding."""
     if isinstance(answer, tuple):
         return f"[{', '.join(shorten(each, 30) for each in answer[:8])}]"
     return f'"{shorten(answer)}"' if isinstance(answer, str) else f"{answer:g}"

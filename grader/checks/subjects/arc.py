@@ -33,9 +33,9 @@ SHORT_M = 0.05
 """A piece of the trajectory that is shorter than this (m) is not an arc."""
 FEW = 5
 SAME_ARC = 0.02
-"""Two frames are on the same arc if their turns per metre differ by at most this fraction."""
+"""Two frames belong to the same arc if the turtle's turns per metre differ by at most this fraction."""
 MOST_ROOM_M = 2.5
-"""A random start can always be found that has room for a circle of this radius (m) on either side."""
+"""There is always a random start position with room for a circle of this radius (m) on both sides."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,7 +203,7 @@ def _pieces(evidence: Evidence, chosen: Steps) -> int:
 
 
 def _goes_on(evidence: Evidence, chosen: Steps) -> bool:
-    """Return whether the turtle also drove this arc in the frame before or after this piece.
+    """Return whether the arc continues in the frame before or after the chosen steps.
 
     The frame belongs to the same arc if the turtle turned by the same angle per metre.
     """

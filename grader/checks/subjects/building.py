@@ -32,7 +32,7 @@ SETUP_PY_FRAME = re.compile(r"(?P<before>, in run_setup\n.*\n(?:[ ^~]+\n)?\s+Fil
 UNREAD_SETUP = "return ast.literal_eval(output)"
 """The line in colcon's source that reads the arguments of setup()."""
 UNNAMED = re.compile(r"And (?P<files>\d+) more\.")
-"""Matches the last entry of `rejected` if there are more files than it names."""
+"""Matches the last entry of `rejected` if this entry counts the files that are not listed by name."""
 NO_FILE = re.compile(r"can't copy '?(?P<file>[^':]*)'?: doesn't exist")
 IGNORE_MARKERS = (IGNORE_MARKER, "AMENT_IGNORE", "CATKIN_IGNORE")
 """Files with these names make colcon ignore a ROS 2 package."""

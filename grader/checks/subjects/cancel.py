@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grader.trial.observed import Call, Goal
 
 SAME_TIME_S = 0.1
-"""If a goal begins or succeeds within this time (s) of a call, it can be active or inactive when the call arrives."""
+"""If a goal begins or succeeds within this time (s) of a call, the goal may be active or not when the call arrives."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +44,7 @@ class SaysWhetherActive:
 
 @dataclass(frozen=True, kw_only=True)
 class NoGoalAfter:
-    """The service that the trial calls. After a call during a goal, the node must not send any more goals."""
+    """The service that the trial calls. After a call while a goal is active, the node must send no more goals."""
 
     service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
 

@@ -115,7 +115,7 @@ def eight(evidence: Evidence, params: Eight) -> Finding:
 
 
 def _why_wall(evidence: Evidence, params: Eight) -> str:
-    """Return a sentence about the part of the trajectory that led to the wall, or an empty string."""
+    """Return a sentence that explains why the turtle drove into the wall, or an empty string."""
     at = int(evidence.trajectory.wall.argmax())
     linear, angular = (
         float(speed[at]) for speed in (evidence.recording.frames.linear, evidence.recording.frames.angular)
@@ -127,7 +127,7 @@ def _why_wall(evidence: Evidence, params: Eight) -> str:
 
 
 def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: bool) -> tuple[Finding | None, bool]:
-    """Return a failed finding or None for a lobe, and whether a value is near an edge of its tolerance."""
+    """Return a failed finding for a wrong lobe (else None), and whether a value is near an edge of its tolerance."""
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
     recording = evidence.recording
     subject = f"The {name} lobe, to the {lobe.side},"

@@ -34,7 +34,7 @@ class Forgets:
 def forgets(evidence: Evidence, params: Forgets) -> Finding:
     """The node soon stops calling the service for a withdrawn target.
 
-    It may still call the service until REACTS_S after the first message on the topic without the name of the target.
+    It may still call the service until REACTS_S after the first message that lacks the name of the target.
     """
     recording = evidence.recording
     expected = f"The node forgets a target that {params.topic} no longer contains, and does not drive to it."

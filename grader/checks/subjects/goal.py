@@ -39,7 +39,7 @@ class Goal:
 
 SWAYS, SWAYS_LEAST = 0.4, 5
 """A turtle sways if at least this fraction of its turning commands, and at least this number of them, turn it in the
-other direction than the command before."""
+opposite direction to the previous command."""
 LATE_S = 1.0
 """A turtle that came nearer to the goal in this last part of the trial (s) might have reached the goal later."""
 NEARLY_M = 1.0
