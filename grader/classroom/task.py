@@ -14,9 +14,10 @@ from grader.classroom.key import grader_key
 from grader.classroom.refused import Refused
 from grader.colcon.shared_builds import SharedBuilds
 from grader.errors import MachineError
+from grader.evidence.for_students import evidence_for_students
 from grader.grading.grade import Graded, grade
 from grader.grading.options import Options
-from grader.report.hidden import evidence_for_students, for_students
+from grader.report.hidden import for_students
 from grader.report.report import report_of
 from grader.submission.package import Submission
 from grader.trial.trial import Trial

@@ -1,7 +1,6 @@
 """A report as students may see it: for a hidden check, the report shows only the result and the points.
 
-Ids, titles and findings of hidden checks are left out, and so are trials (except the first) that only hidden checks
-use.
+Ids, titles and findings of hidden checks are left out.
 """
 
 from __future__ import annotations
@@ -13,7 +12,6 @@ from grader.checks.outcome import Finding, Status
 
 if TYPE_CHECKING:
     from grader.checks.outcome import Outcome
-    from grader.evidence.evidence import Evidence
     from grader.report.report import Report
 
 
@@ -43,12 +41,3 @@ def _covered(outcome: Outcome, number: int) -> Outcome:
         title="Hidden check",
         finding=Finding(status, f"Hidden check: {verdict}."),
     )
-
-
-def evidence_for_students(evidence: Evidence) -> Evidence:
-    """Return the evidence without hidden checks, and without trials (except the first) that only hidden checks use."""
-    exercise = evidence.exercise
-    shown = tuple(spec for spec in exercise.checks if not spec.hidden)
-    trials = {exercise.trials[0].id, *(spec.trial for spec in shown)}
-    runs = {trial: run for trial, run in evidence.runs.items() if trial in trials}
-    return replace(evidence, exercise=replace(exercise, checks=shown), runs=runs)

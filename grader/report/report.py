@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import grader
 from grader.checks.outcome import Finding, Outcome, Status
 from grader.common.words import a_list, count, shorten
-from grader.report.hidden import evidence_for_students
+from grader.evidence.for_students import evidence_for_students
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence

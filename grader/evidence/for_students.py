@@ -1,0 +1,18 @@
+"""The evidence that students may see: without hidden checks, and without trials that only hidden checks use."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+
+
+def evidence_for_students(evidence: Evidence) -> Evidence:
+    """Return the evidence without hidden checks, and without trials (except the first) that only hidden checks use."""
+    exercise = evidence.exercise
+    shown = tuple(spec for spec in exercise.checks if not spec.hidden)
+    trials = {exercise.trials[0].id, *(spec.trial for spec in shown)}
+    runs = {trial: run for trial, run in evidence.runs.items() if trial in trials}
+    return replace(evidence, exercise=replace(exercise, checks=shown), runs=runs)
