@@ -69,7 +69,7 @@ def _diagnosis(error: UsageError, exercise: Exercise) -> Diagnosis:
 def fingerprint(found: Found, exercise: Exercise, task: Task | None = None) -> str:
     """Return the sha256 of all relevant files of a submission, or of the reason why they cannot be read.
 
-    An archive is hashed without unpacking it. Of a folder, the files of its `task` are hashed, if there is one: the
+    An archive is hashed without unpacking it. For a folder with a `task`, the files in the task are hashed, because the
     student may have changed the folder before or after the task was made.
 
     Raises:
@@ -89,7 +89,7 @@ def fingerprint(found: Found, exercise: Exercise, task: Task | None = None) -> s
 
 
 def _parts_of_task(task: Task) -> tuple[str, ...]:
-    """Return the strings that `fingerprint` hashes."""
+    """Return the strings that `fingerprint` hashes for a task."""
     if isinstance(task.content, Refused):
         return (f"refused {task.content.reason}",)
     return (task.digest, task.package, task.remark, *task.rejected, *sorted(task.executable))

@@ -1,4 +1,4 @@
-"""Submissions whose student is not clear: a student has several, or the names of students are too similar.
+"""Submissions whose student is not clear: a student has several submissions, or names of students are too similar.
 
 Two names are one student id if they have the same normal form, as for the students' own numbers. Both submissions are
 graded, with the same numbers, because a student who chooses the name of an archive could otherwise take the points of
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 def without_duplicates(found: Iterable[Found]) -> Iterator[Found]:
     """Yield one submission per name and exercise.
 
-    If a name has several submissions, the yielded one has the reason why none of them is graded. If another name is the
-    same student id, the submission has a remark.
+    If a name has several submissions, one of them is yielded, with the reason why none of them is graded. If several
+    names are the same student id, each of their submissions gets a remark (`Found.alike`).
     """
     alike: dict[tuple[str, str], dict[str, list[Found]]] = {}
     for each in found:
@@ -39,7 +39,7 @@ def without_duplicates(found: Iterable[Found]) -> Iterator[Found]:
 
 
 def similar(names: Sequence[str], todo: str) -> Refused:
-    """Return the statement that these different names are one student id. `todo` is the last sentence."""
+    """Return a message which says that these names are one student id. `todo` is its last sentence."""
     return Refused(f"{a_list([shown(name) for name in names])} are one student id: {SAME}. {todo}", "similar-names")
 
 

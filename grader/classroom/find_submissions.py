@@ -3,8 +3,8 @@
 Three layouts are supported and can be mixed: one folder or archive per student; nbgrader's submitted/STUDENT/EXERCISE;
 and a folder with students' clones of the course, each of which contains exercises/EXERCISE.
 
-No student is omitted. Each folder and archive becomes a submission, except what programs create (such as .git). So does
-each symbolic link, because a student may have replaced a folder with a link. If a submission cannot be graded,
+No student is omitted. Each folder, archive and symbolic link becomes a submission, except what programs create (such as
+.git). Links are included because a student may have replaced a folder with a link. If a submission cannot be graded,
 `Found.refused` contains the reason. This module uses os.path, because the functions of os.path return False for a path
 that cannot be accessed, while the methods of pathlib raise an exception.
 """
@@ -86,7 +86,7 @@ def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
 
 
 def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:
-    """Return the names of the entries in the folders that are not submissions, except hidden files and `leave_out`."""
+    """Return the names of entries in `given` that are not submissions, except hidden files and `leave_out`."""
     folders = [path for path in given if os.path.isdir(path) and not _is_one_alone(path)]
     return tuple(
         shown(entry.name)
@@ -232,8 +232,8 @@ def _assignments(path: Path) -> list[str]:
 def misnamed(student: str, path: Path) -> Iterator[Found]:
     """Yield the entries of a student's folder whose names are almost, but not exactly, the name of an exercise.
 
-    These entries are not graded. Examples are a name with capital letters, and an archive. If the folder of the
-    exercise also exists, the entry is not needed.
+    These entries are not graded. Examples are a folder with capital letters in its name, and an archive. An entry is
+    not yielded if the folder of its exercise also exists.
     """
     present = _assignments(path)
     try:
@@ -252,7 +252,8 @@ def misnamed(student: str, path: Path) -> Iterator[Found]:
 def left_out(folder: Path, other_assignments: Collection[str]) -> tuple[Found, ...]:
     """Return what nbgrader does not see in submitted/: entries that are not in a folder STUDENT/EXERCISE.
 
-    Each has the reason why it is not graded. A student with one of the other assignments need not have an exercise.
+    Each entry has the reason why it is not graded. A student's folder without an exercise is not returned if it
+    contains one of the other assignments.
     """
     found: list[Found] = []
     for each in _in(folder, None, folder) if os.path.isdir(folder) and not _is_one_alone(folder) else ():

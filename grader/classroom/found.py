@@ -26,7 +26,7 @@ class Found:
     refused: Refused | None = None
     """The reason why the submission cannot be graded, if the reason is already known."""
     alike: str = ""
-    """The statement that the names of other submissions are the same student id, or an empty string."""
+    """A message that lists the names with the same student id, or an empty string if there is only one name."""
 
     @property
     def name(self) -> str:

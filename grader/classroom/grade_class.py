@@ -56,7 +56,7 @@ def grade_class(request: Request, say: Callable[[str], None], tell: Callable[[st
     """Grade each submission that has no valid result yet, and write all files. Return all results, sorted by student.
 
     Raises:
-        UsageError: the command is wrong.
+        UsageError: an argument of the command is wrong.
         MachineError: the machine can no longer grade submissions or write results. The results so far are kept, and the
             next run continues from there.
     """

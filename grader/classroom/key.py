@@ -29,7 +29,7 @@ class Key:
     """The version of the grader and the first 16 digits of the sha256 of its sources."""
     ros: str
     options: str
-    """The clock, the seed, whether the submission ran in a sandbox, and whether causes were tested."""
+    """The clock, the seed, whether the submission ran in a sandbox, and whether likely causes were tested."""
 
     def to_data(self) -> dict[str, str]:
         """Return the key as a dictionary for the JSON of a result."""

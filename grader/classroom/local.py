@@ -25,7 +25,7 @@ MEMORY_A_TASK = 1536 * 1024 * 1024
 """The memory that each task is expected to need (bytes). A cell may use more memory than this (sandbox.Limits), but few
 cells do."""
 WAITING_A_JOB = 2
-"""The number of additional tasks per job that may run while other tasks are in a trial in wall time."""
+"""For each job, this many additional tasks may run while other tasks are in a trial in wall time."""
 
 
 def default_jobs() -> int:

@@ -39,8 +39,8 @@ class Order:
     explain: bool = True
     """Whether the grader tests likely causes by fixing them in a copy of the submission."""
     in_cell: bool = True
-    """Whether submissions always run in a sandbox. This is False only for trusted submissions, on a machine without a
-    sandbox or with Dask."""
+    """Whether submissions always run in a sandbox. This is False only for trusted submissions, if the machine has no
+    sandbox or if Dask is used."""
     trusted: bool = False
 
     @cached_property

@@ -55,8 +55,8 @@ class Result:
 def file_name(student: str, exercise: str, *, ignores_case: bool = False) -> str:
     """Return the file name of a result without its extension.
 
-    The name is different for every student and valid on every file system. With `ignores_case`, names of students that
-    differ only in capitals get file names that differ in more.
+    The name is different for every student and valid on every file system. With `ignores_case`, two file names never
+    differ only in capital letters.
     """
     # Characters are replaced with numbers, so that different names stay different. A dot would look like an extension.
     safe = _SAFE.sub(lambda match: "".join(f"%{byte:02X}" for byte in os.fsencode(match.group())), student)

@@ -50,7 +50,7 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
         raise UsageError(message)
     rows: dict[int, dict[str, str]] = {}
     lines_of: dict[str, int] = {}
-    """The number of the line of each name, in its normal form."""
+    """The line number of each name. The names are in their normal form."""
     for line, values in lines:
         given = dict(zip(columns, values, strict=False))
         rows[line] = {name: given.get(name, "") for name in (*needed, *also)}

@@ -61,7 +61,7 @@ class Task:
     trusted: bool = False
     grader: str = ""
     alike: str = ""
-    """The statement that the names of other submissions are the same student id, or an empty string."""
+    """A message that lists the names with the same student id, or an empty string if there is only one name."""
 
     @property
     def name(self) -> tuple[str, str]:

@@ -38,7 +38,7 @@ CHUNK = 256 * 1024
 class NotUnpackedError(UnreadableError):
     """The student's archive cannot be unpacked.
 
-    The message completes a sentence that begins with the name of the archive. The class has the diagnosis.
+    The message completes a sentence that begins with the name of the archive. Each subclass has its own `diagnosis`.
     """
 
     diagnosis: ClassVar[Diagnosis] = "unreadable"
@@ -72,7 +72,7 @@ class Member:
 
 
 class Capped(io.RawIOBase):
-    """A stream that raises LargeArchiveError after `most` bytes."""
+    """A stream that raises LargeArchiveError if more than `most` bytes are read from it."""
 
     def __init__(self, stream: IO[bytes], most: int) -> None:
         self._stream, self._left = stream, most

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 READY = b"colcon-is-ready\n"
-"""This line is printed before the submission is read. The machine is not blamed for an error after this line."""
+"""This line is printed before the submission is read. A later error does not count as a fault of the machine."""
 _MOST_OPEN = 4096
 _MOST_REQUEST = 1024 * 1024
 _IGNORE = re.compile(r"ignore:([^:]*)")
@@ -136,7 +136,7 @@ class Forks:
 
 
 def _import_commands() -> None:
-    """Import the setup.py commands, which `setup.py --help-commands` imports too."""
+    """Import the commands of setup.py, as `setup.py --help-commands` does."""
     for command in metadata.entry_points(group="distutils.commands"):
         with suppress(Exception):
             command.load()
@@ -146,9 +146,9 @@ def _import_commands() -> None:
 
 
 def _next_run(requests: socket.socket) -> Run:
-    """Serve requests.
+    """Fork this process for each request.
 
-    In the parent process, this function never returns. In a fork, this function returns the run to execute.
+    In the parent process, this function never returns. In a fork, it returns the run to execute.
     """
     while True:
         request, received, _, _ = socket.recv_fds(requests, _MOST_REQUEST, 8)
@@ -241,7 +241,7 @@ def _starting_with(forks: Forks) -> type[subprocess.Popen[Any]]:
 
 
 def _evaluate_condition(condition: str | None, context: Mapping[str, str]) -> Any:  # noqa: ANN401 - catkin_pkg's
-    """Evaluate a condition as catkin_pkg does, but import its slow parser only if there is a condition."""
+    """Evaluate a condition as catkin_pkg does, but import the slow parser only if there is a condition."""
     if condition is None:
         return True
     sys.modules.pop(_CONDITION)

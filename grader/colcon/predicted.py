@@ -33,7 +33,7 @@ PYTHON = f"{sys.version_info.major}.{sys.version_info.minor}"
 SITE = f"lib/python{PYTHON}/site-packages"
 """The folder of the modules in install/<package>."""
 _OTHER_BUILDS = frozenset({"pyproject.toml", "CMakeLists.txt", "COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE"})
-"""Files that make colcon or setuptools install other files, or no files."""
+"""Files that change what colcon or setuptools installs."""
 _TEMPLATE = re.compile(r'r"""\n([ \t]*# EASY-INSTALL-ENTRY-SCRIPT: %\(spec\)r.*?)"""', re.DOTALL)
 _SHEBANG = re.compile(r"/[\w./-]{1,100}")
 """Matches the interpreter paths that setuptools writes without quotes into the first line of a script."""

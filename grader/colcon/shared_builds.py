@@ -93,7 +93,7 @@ class SharedBuilds:
     def _reference(
         self, usual: Usual, ros: Ros, build: Callable[[Submission], runner.Built], *, in_cell: bool
     ) -> tuple[runner.Built | None, bool]:
-        """Return the build with empty modules, and whether it is an earlier one.
+        """Return the build with empty modules, and whether it is an earlier build that is used again.
 
         The build is None if it failed, if colcon does not install the predicted files, or if the install tree is too
         large to keep. In this case, nothing can be shared.

@@ -91,9 +91,9 @@ def _format_help(
 
 @contextmanager
 def _without(module: str, name: str) -> Iterator[None]:
-    """Put a stand-in with the attribute `name` in place of a module, unless the module is already imported.
+    """Replace a module with a stand-in that has only the attribute `name`, unless the module is already imported.
 
-    typer imports these names, but does not need them to print a help text. Importing their modules takes longer than
+    typer imports this name, but does not need it to print a help text. Importing the real module takes longer than
     printing the text.
     """
     if module in sys.modules:

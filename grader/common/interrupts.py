@@ -19,7 +19,7 @@ _SOON_S = 0.01
 def stops_deferred() -> Iterator[None]:
     """Until the end of the context, defer SIGINT, SIGTERM and SIGHUP if a Python function handles them.
 
-    Some objects of rclpy cannot be destroyed without a traceback if an exception interrupts their `__init__`.
+    If an exception interrupts the `__init__` of some rclpy objects, destroying these objects prints a traceback.
     """
     arrived: list[int] = []
 
@@ -39,7 +39,7 @@ def stops_deferred() -> Iterator[None]:
 
 
 def raise_lost_stops() -> None:
-    """From now on, if Python discards a KeyboardInterrupt, raise it again instead of only printing it.
+    """From now on, raise a KeyboardInterrupt again if Python would otherwise only print it and discard it.
 
     Python discards an exception that is raised in a callback of `os.fork` or in `__del__`, and the command would
     continue as if nobody had pressed Ctrl-C.

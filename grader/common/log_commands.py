@@ -19,7 +19,9 @@ LONGEST = len("##teamcity[")
 
 
 def without_commands(text: str, before: str = "") -> str:
-    """Return the text with a space in the marker of each command. `before` is the end of the same line so far.
+    """Return the text with a space in the marker of each command.
+
+    `before` is the end of the text that is already on the same line.
 
     Example:
         >>> without_commands("::error::x ##vso[task.x]")

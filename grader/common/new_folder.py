@@ -42,7 +42,7 @@ def new_folder(folder: Path, mode: int = 0o777) -> Iterator[None]:
 
 
 def _removed(folder: Path, *, was_there: bool) -> bool:
-    """Remove the content of the folder, and the folder unless it `was_there`. Return whether nothing is left."""
+    """Remove the content of the folder, and the folder itself unless it `was_there`. Return whether nothing is left."""
     try:
         for entry in folder.iterdir():
             shutil.rmtree(entry, ignore_errors=True) if entry.is_dir() else entry.unlink()

@@ -13,7 +13,7 @@ import warnings
 from grader.common import terminal_text, xdg
 
 LEAST_COLUMNS = 20
-"""The smallest width for which rich can lay out a table of the grader. The terminal breaks longer lines."""
+"""The smallest width for which rich can lay out a table of the grader. A narrower terminal breaks the lines."""
 
 
 def prepare() -> None:

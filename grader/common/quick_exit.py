@@ -15,8 +15,8 @@ _MOST_BITS = 31
 class QuickExit:
     """Ends this process quickly if its exit code is set.
 
-    All functions that are registered with atexit still run. If `kept` is set, the objects of all other modules are
-    finalized, so that the files that a submission left open are written completely.
+    All functions that are registered with atexit still run. If `kept` is set, the objects of the modules that are
+    not kept are finalized, so that the files that a submission left open are written completely.
     """
 
     code: object = None

@@ -68,7 +68,7 @@ def wrapped(text: str, width: Optional[int]) -> str:
 
 
 def hanging(line: str, width: Optional[int], first: str = "", rest: str = "") -> str:
-    """Return one line as `wrapped` does, with `first` before its first part and `rest` before all others."""
+    """Wrap a single line as `wrapped` does. The first part begins with `first`, and each other part with `rest`."""
     if width is None:
         return first + line
     together = _COMMAND.sub(lambda found: found[0].replace(" ", _SPACE), line)

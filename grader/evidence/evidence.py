@@ -44,7 +44,7 @@ class Fault:
 
 @dataclass(frozen=True)
 class Run:
-    """The result of one trial, which is empty if the trial was not run."""
+    """The result of one trial. All fields are None if the trial was not run."""
 
     recording: Recording | None = None
     overwhelmed: str | None = None
@@ -75,7 +75,7 @@ class Evidence:
     """The results of the trials that were run, by their ids."""
     fault: Fault | None = None
     tries: Tries = field(default_factory=Tries)
-    """The results of testing changes that would fix the causes."""
+    """The changes that were tested because each may fix the cause of a failed check, and their results."""
     trial_id: str = ""
     """The id of the trial that this evidence is about; empty for the first trial of the exercise."""
 
@@ -103,7 +103,7 @@ class Evidence:
         return tuple(self.from_trial(id_) for id_ in ids if id_ in self.runs or id_ == ids[0])
 
     def with_run(self, run: Run) -> Evidence:
-        """Return the evidence with the result of this trial, both for the trial's own node and for additional nodes."""
+        """Return the evidence with the result of this trial, for its own node and for the other nodes that it runs."""
         specs = (self.trial, *self.exercise.beside(self.trial.id))
         return replace(self, runs={**self.runs, **{spec.id: _seen_by(spec, run, specs) for spec in specs}})
 
@@ -221,9 +221,9 @@ class Evidence:
         return self.build
 
     def place(self, *calls: str) -> Where | None:
-        """Return the place of a call: the first call to the first of these functions that the code calls.
+        """Return the place of the first call to one of these functions, which are tried in the given order.
 
-        If none is called, return the node's file, or None.
+        If the code calls none of them, return the node's file, or None.
         """
         for name in calls:
             found = self.code.calls(name)

@@ -77,8 +77,8 @@ def _jumped(recording: Recording, first: int) -> bool:
 class _Path:
     """A part of a trajectory: some successive frames.
 
-    The first values of `x`, `y` (m) and `theta` (rad) are those before the first of these frames. `turned_otherwise` is
-    true for the frames in which the turtle did not turn at its turning speed.
+    `x`, `y` (m) and `theta` (rad) begin with the values before the first of these frames. `turned_otherwise` is true
+    for the frames in which the turtle did not turn by the angle that follows from its angular velocity.
     """
 
     frames: slice

@@ -21,14 +21,14 @@ HEADER = 8
 
 @dataclass(frozen=True)
 class Announcement:
-    """A String on a topic, with its arrival time (s)."""
+    """The text of a String message on a topic, and the arrival time of the message (s)."""
 
     t_s: float
     text: str
 
     @property
     def names(self) -> list[str]:
-        """The announced names: the words of the text."""
+        """The announced names, which are separated by spaces in the text."""
         return self.text.split()
 
 

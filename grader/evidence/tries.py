@@ -1,4 +1,4 @@
-"""Try: a change in a copy of a submission, at the place to which a failed check points, and its result."""
+"""Try: a change in a copy of a submission, at the place that a failed check names, and the result of the change."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ class Arc:
 
 @dataclass(frozen=True)
 class PointsInput:
-    """One call to a function with the coordinates x and y of points (m): the points of an arc, or given numbers.
+    """One call to a function with the coordinates x and y (m) of points, which are on an arc or are listed one by one.
 
     If `lists` is set, the function gets lists instead of arrays.
     """

@@ -54,11 +54,11 @@ OLDER = {
 """Instructions for updating a file in an older version of the format."""
 PART = re.compile(r"[a-z]")
 OF_NUMBERS = "own_"
-"""The names of all kinds that need the table [numbers] begin with this string."""
+"""The beginning of the names of all kinds of checks that need the table [numbers]."""
 FIELD = Allowed(
     "a number, a string, true or false", lambda value: value if isinstance(value, str | int | float) else None, ""
 )
-"""A description of the allowed values of a field, for a parameter that is a table."""
+"""The values that are allowed in a table that is a parameter of a check."""
 
 
 def parse_exercise(data: bytes, name: str, folder: Path, kinds: Mapping[str, KindSpec]) -> Exercise:

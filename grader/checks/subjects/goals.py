@@ -175,7 +175,7 @@ def _degrees(angle: float) -> str:
 
 
 def _again(before: Goal, goal: Goal) -> str:
-    """Return a sentence about a goal with the heading of the previous goal or with the opposite sign, or ""."""
+    """Return a sentence if the heading is that of the previous goal, or has the opposite sign, else ""."""
     theta, earlier = float(goal.request["theta"]), float(before.request["theta"])
     if abs(normalize(theta - earlier)) <= SAME_RAD:
         return "This heading is the same as in the previous goal. The heading must change before the next goal is sent."

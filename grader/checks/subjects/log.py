@@ -69,7 +69,7 @@ def lines_in(evidence: Evidence, params: LogFormat, when: str = "") -> Finding:
 
 
 def _printed(evidence: Evidence, params: LogFormat, expected: str, when: str) -> Finding | None:
-    """Return a failed finding if the node prints the lines, or prints something and never logs, else None."""
+    """Return a failed finding if the node prints the required lines, or if its code calls print but never logs."""
     printed = evidence.recording.stdout.text.splitlines()
     pattern = student_log.Format(params.format).pattern()
     right = any(pattern.search(line) for line in printed)
@@ -138,7 +138,10 @@ def _other_numbers(format_: str) -> Cause:
 
 
 def unless_other_numbers(finding: Finding, evidence: Evidence, format_: str) -> Finding:
-    """Return the finding or, if it failed and some log lines have the right words but other numbers, one about them."""
+    """Return the finding, or a new one if there are log lines with the right words but numbers in another format.
+
+    A finding that did not fail is always returned unchanged.
+    """
     right = student_log.in_format(evidence.recording, format_)
     pattern = student_log.Format(format_).pattern()
     logged = (line.text for line in student_log.students(evidence.recording))
@@ -226,7 +229,7 @@ def _thrown_away(evidence: Evidence) -> Cause | None:
 
 
 def _set_again(evidence: Evidence) -> Cause | None:
-    """Return the cause if the method that logs sets a name to a constant and also increases it, else None."""
+    """Return the cause if a method that logs assigns a constant to a variable that it also increases, else None."""
     for module in evidence.code.modules:
         for method in (node for node in module.nodes if isinstance(node, ast.FunctionDef) and node.name != "__init__"):
             inside = list(ast.walk(method))
@@ -241,7 +244,7 @@ def _set_again(evidence: Evidence) -> Cause | None:
 
 
 def _starts(evidence: Evidence) -> Iterator[tuple[float, Where]]:
-    """Yield each number that is assigned to a name that is also increased, with the place of the assignment."""
+    """Yield each number that the code assigns to a variable that it also increases, and the place of the assignment."""
     for module in evidence.code.modules:
         increased = {ast.unparse(node.target) for node in module.nodes if isinstance(node, ast.AugAssign)}
         for node in module.nodes:

@@ -27,13 +27,13 @@ if TYPE_CHECKING:
     from grader.trial.recording import Floats, Recording
 
 EARLY_S = 0.02
-"""A log line can describe a frame that is up to this much (s) later, because the times of log lines are not exact.
+"""The frame that a log line describes may be up to this much (s) later: the times of log lines are not exact.
 
 This time is slightly longer than one frame.
 """
 FEWEST = 3
 LENGTHS = ("hypot", "sqrt", "dist")
-"""Functions that compute the length of a step."""
+"""Functions that can compute the distance between two positions."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -165,9 +165,9 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
 
 
 def _assigned_again(evidence: Evidence) -> Where | None:
-    """Return the line outside __init__ that assigns a new value to the attribute which the node logs as its distance.
+    """Return the first line outside __init__ that overwrites the attribute with the logged distance, or None.
 
-    The line must not use the old value. Return None if there is no such line.
+    A line that uses the old value, such as a sum, does not count.
     """
     shown = " ".join(ast.unparse(each.node) for each in evidence.code.calls("info"))
     for module in evidence.code.modules:
@@ -180,7 +180,7 @@ def _assigned_again(evidence: Evidence) -> Where | None:
 
 
 def _added(evidence: Evidence) -> Where | None:
-    """Return the line that increases an attribute which the node logs, or None."""
+    """Return the first line that increases a logged attribute with +=, or None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.AugAssign) and isinstance(node.op, ast.Add):
@@ -214,7 +214,10 @@ def _overwritten(evidence: Evidence) -> Cause | None:
 
 
 def _reads(step: ast.BinOp, begin: str) -> bool:
-    """Return whether a subtraction uses the attribute `begin`, or one of its attributes if `begin` ends with a dot."""
+    """Return whether the subtraction uses the attribute `begin`, such as "self.x".
+
+    If `begin` ends with a dot, as in "self.pose.", each attribute of that object counts.
+    """
     names = [dotted(node) or "" for node in ast.walk(step) if isinstance(node, ast.Attribute)]
     return any(name.startswith(begin) if begin.endswith(".") else name == begin for name in names)
 
@@ -249,7 +252,7 @@ def _at(recording: Recording, t_s: float, values: Floats) -> float:
 
 
 def _is_chords(logged: list[Line], numbers: list[float]) -> bool:
-    """Return whether the lines show positions, and the distance grows by the straight line from each to the next."""
+    """Return whether the lines show positions, and the logged distance is the sum of the steps between them."""
     if not logged[0].numbers.keys() >= {"x", "y"}:
         return False
     steps = np.hypot(np.diff([line.numbers["x"] for line in logged]), np.diff([line.numbers["y"] for line in logged]))

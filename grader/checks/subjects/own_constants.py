@@ -30,7 +30,7 @@ NOT_USED = "Use the constant where the node needs this number. Otherwise, the co
 
 @dataclass(frozen=True, kw_only=True)
 class OwnConstants:
-    """A module, and the names of its constants with the student's own numbers as values."""
+    """A module, and the names and required values of its constants."""
 
     module: str = string("the name of a module", about="The module, such as `my_robot_controller.wall_guard`.")
     constants: tuple[tuple[str, float], ...] = table(
@@ -75,7 +75,7 @@ def own_constants(evidence: Evidence, params: OwnConstants) -> Finding:
 
 
 def _last_assignment(modules: tuple[Module, ...], name: str) -> tuple[Module, ast.expr] | None:
-    """Return the first module that has a constant with this name, and the last value of the constant, or None."""
+    """Return the first module that assigns to this name, and the last value that it assigns, or None."""
     for module in modules:
         given = [value for target, value in _assignments(module) if (dotted(target) or "").split(".")[-1] == name]
         if given:

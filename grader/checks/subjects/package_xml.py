@@ -68,7 +68,7 @@ def valid(evidence: Evidence, _: NoParams) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class Dependencies:
-    """The names of packages that must be declared as dependencies of the running node."""
+    """The packages that package.xml must declare as dependencies at run time."""
 
     packages: tuple[str, ...] = strings(about="The packages that must be declared.")
     imports: str = choice(
@@ -81,7 +81,7 @@ class Dependencies:
 def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
     """package.xml declares these packages (and imported ROS 2 packages, if required) as <depend> or <exec_depend>.
 
-    It declares no class, such as Twist.
+    It does not declare a class, such as Twist, as if the class were a package.
     """
     manifest = evidence.manifest
     imported = _imported(evidence) if params.imports == "declared" else {}
@@ -122,8 +122,8 @@ def _class_declared(evidence: Evidence, declared: Iterable[str], expected: str) 
 def _imported(evidence: Evidence) -> dict[str, Where]:
     """Return the ROS 2 packages that the nodes of the exercise import, with the line of the first import.
 
-    A name that is slightly different from the name of a known package is left out, because it is a typo. A
-    package that has none of the imported names is left out too: the mistake is in the import, not in package.xml.
+    A misspelt package, whose name is slightly different from a known one, is left out. A package that is known not to
+    have any of the names that are imported from it is left out too: the mistake is in the import, not in package.xml.
     """
     found: dict[str, Where] = {}
     for trial in evidence.exercise.trials:
@@ -136,7 +136,7 @@ def _imported(evidence: Evidence) -> dict[str, Where]:
 
 
 def _has_none_of_these(code: Code, package: str) -> bool:
-    """Return whether all names that the nodes import from this package belong to other packages."""
+    """Return whether every name that the nodes import from this package is known to belong to another package."""
     names = [
         alias.name
         for module in code.modules

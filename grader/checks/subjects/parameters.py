@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
 CLOSE = 1e-6
 SET = ("/set_parameters", "/set_parameters_atomically")
-"""The services that set the parameters of a node one after the other, or all at once."""
+"""The ends of the names of the services that set parameters: one after the other, or all at once."""
 INTEGER, DOUBLE = 2, 3
-"""The numbers of the types integer and double in rcl_interfaces/msg/ParameterType."""
+"""The values of PARAMETER_INTEGER and PARAMETER_DOUBLE in rcl_interfaces/msg/ParameterType."""
 
 
 UNDECLARED = "undeclared parameter"
@@ -36,7 +36,7 @@ READ_ONLY = "Trying to set a read-only parameter"
 OUT_OF_RANGE = re.compile(r"Parameter .* out of range|The parameter value for .* valid step")
 """Matches the reason that rclpy gives for a value outside the range.
 
-A reason that fits none of these five constants comes from the student's callback.
+A reason that fits neither this pattern nor the constants above comes from the student's callback.
 """
 
 

@@ -41,13 +41,13 @@ MOVED_M = 0.05
 """A turtle with a shorter trajectory than this (m) did not move."""
 TURNED_RAD = 0.1
 STRAIGHT_RADIUS_M = 50.0
-"""A circle with a larger radius than this (m) looks straight on a field that is 11 m wide."""
+"""An arc with a larger radius than this (m) looks straight in turtlesim's window, which is 11 m wide."""
 LIVES_S = 1.0
-"""The time for which one command moves a turtle (s)."""
+"""The time (s) for which a turtle moves after a single command."""
 LATE_S = 3.0
 """If the first command arrives later than this (s), the delay may be the reason why the turtle drives too little."""
 POLYGON_SHARE = 0.6
-"""If more than this fraction of the trajectory is straight, the message describes a line, or sides and corners."""
+"""If more than this fraction of the trajectory is straight, the message describes a straight line or a polygon."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,7 +116,8 @@ def moved_otherwise(evidence: Evidence, expected: str, *, from_start: bool = Fal
 def not_driven(evidence: Evidence, expected: str, where: Where | None) -> Finding | None:
     """Return a failed finding if velocity commands did not drive the turtle, else None.
 
-    This is the case if something else moved the turtle, if its position became NaN, or if it did not drive.
+    The finding says that something else moved the turtle, that the turtle's position became NaN, or that the turtle did
+    not drive.
     """
     moved = moved_otherwise(evidence, expected, from_start=True) or not_finite(evidence, expected)
     if moved is not None or evidence.trajectory.length_m > MOVED_M:

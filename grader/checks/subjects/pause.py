@@ -101,7 +101,10 @@ def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *,
 
 
 def _drives_again_s(evidence: Evidence, params: Pause) -> float | None:
-    """Return the time (s) of a second, equal call if this call made the paused node drive again, else None."""
+    """Return the time (s) of a call by the trial that repeats the previous call, or None.
+
+    Such a call counts only if the node had stopped the turtle before it, and drove the turtle again after it.
+    """
     calls = [call for call in evidence.recording.calls if call.by_trial and call.t_s >= params.from_s - EARLY_S]
     for first, second in pairwise(calls):
         if (first.service, first.request) == (second.service, second.request):

@@ -42,7 +42,7 @@ POSES_HZ = 1.0 / FRAME_S
 FASTEST_HZ = 40.0
 """The highest rate (Hz) that can be measured in simulated time, which advances in steps of 16 ms.
 
-A node that sends one message per pose is an exception.
+A higher rate can be measured if the node sends one message per pose.
 """
 
 
@@ -65,14 +65,14 @@ class Rate:
 
 @dataclass(frozen=True)
 class Subject:
-    """The messages or lines that are counted: their name, and the method that the student's code calls to send them."""
+    """Messages or log lines that arrive: the noun for them, and the method that sends them."""
 
     noun: str
     call: str
 
     @property
     def plural(self) -> str:
-        """The plural of the name, for the beginning of a sentence."""
+        """The noun in the plural and with a capital letter, for the beginning of a sentence."""
         return f"{self.noun.capitalize()}s"
 
 

@@ -85,7 +85,7 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def _other_module(evidence: Evidence) -> Cause | None:
-    """Return the cause if the entry point leads to another module than the one named like the executable, else None."""
+    """Return the cause if the entry point leads to a module, but a different one has the name of the executable."""
     executable = evidence.trial.executable
     module = (evidence.entry_point() or "").partition(":")[0]
     folder, _, last = module.rpartition(".")

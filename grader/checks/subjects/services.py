@@ -35,7 +35,10 @@ CLOSE = 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class CallsService:
-    """A call to a simulator service with these fields. `after` is the name of a service that must be called first."""
+    """A call to a simulator service, with these fields in the request.
+
+    `after` is the name of a service that the node must call first.
+    """
 
     service: str = string("the full name of a service", start="/", about="The name of the service.")
     fields: tuple[tuple[str, Any], ...] = table(
@@ -50,7 +53,7 @@ class CallsService:
 
 
 def calls_service(evidence: Evidence, params: CallsService) -> Finding:
-    """The node called the simulator service with these fields and, if required, after the response from `after`."""
+    """The node called the service with these fields and, if `after` is set, after the response from that service."""
     request = ", ".join(f"{name}={_value(value)}" for name, value in params.fields)
     after = params.after.strip()
     expected = f"The node calls {params.service} with {request}."
@@ -87,7 +90,7 @@ def calls_service(evidence: Evidence, params: CallsService) -> Finding:
 
 
 def _before_the_answer(call: Call, asked: Call) -> bool:
-    """Return whether the call arrived before the response to the call `asked`.
+    """Return whether `call` arrived before the response to the other call, `asked`.
 
     Without a response, return False. If there was no delay, the call and the response have the same time.
     """
@@ -197,12 +200,12 @@ def calls_of(evidence: Evidence) -> list[Call]:
 
 
 def wrong_fields(given: Any, fields: Iterable[tuple[str, Any]]) -> list[str]:  # noqa: ANN401 - a request or response
-    """Return the names of the fields whose values differ."""
+    """Return the names of the fields that do not have the required values."""
     return [name for name, value in fields if not _same(given.get(name), value)]
 
 
 def _difference(given: Any, fields: Iterable[tuple[str, Any]]) -> tuple[int, float]:  # noqa: ANN401 - a request
-    """Return the number of fields whose values differ, and the sum of the differences between numbers."""
+    """Return the number of fields with wrong values, and the sum of the errors of the numbers."""
     pairs = [(given.get(name), value) for name, value in fields]
     numbers = [(has, value) for has, value in pairs if isinstance(has, int | float) and isinstance(value, int | float)]
     return len(wrong_fields(given, fields)), sum(abs(has - value) for has, value in numbers)

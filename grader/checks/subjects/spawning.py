@@ -147,7 +147,7 @@ def _at(place: tuple[float, float]) -> str:
 
 
 def removes(evidence: Evidence, params: Removes) -> Finding:
-    """Exactly the turtles that the trial caught were removed. Calls with unknown names changed nothing."""
+    """The node removed the turtles that the trial caught, and no others. Calls with unknown names changed nothing."""
     expected = (
         f"When {params.service} is called, the node calls /kill to remove the turtle whose name is in the request, and "
         "no other turtle."

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 SIDES = 4
 ORDINALS = ("first", "second", "third", "fourth")
 STRAIGHT_RAD_M = 0.2
-"""A part that bends by at most this many radians per metre (a radius of at least 5 m) counts as straight."""
+"""A part of the trajectory that turns by at most this angle per metre (a radius of at least 5 m) is straight."""
 CURVED_SHARE = 0.1
 """If more than this fraction of the trajectory is curved, the trajectory is not a square."""
 SHORT_M = 0.05
@@ -38,7 +38,7 @@ SHORT_M = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class Square:
-    """Requires sides of this length, corners of 90 degrees, and a standstill at the start after the fourth side."""
+    """Requires sides of this length and corners of 90 degrees, and that the turtle stops where it started."""
 
     side_m: float = number(above=0, at_most=5, about="The length of a side.")
     side_tolerance_m: float = number(0.15, above=0, about="The maximum error in the length of a side.")

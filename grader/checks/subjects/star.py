@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 BY_GOALS = "rotate_absolute"
 TOGETHER_S = 0.03
-"""Two commands that arrive within this time (s) were sent in the same call of a method."""
+"""Two commands that arrive within this time (s) were sent during a single call to a method."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,7 +118,7 @@ def _measured(evidence: Evidence, params: Star, sides: Sides, expected: str) -> 
 
 
 def _is_cut(evidence: Evidence) -> bool:
-    """Return whether each command with zeros arrives together with the last command of its side."""
+    """Return whether each command that ends a side arrives together with the last command that drives along it."""
     pairs = list(pairwise(evidence.commands))
     ends = [later for before, later in pairs if before.linear[0] and not later.linear[0]]
     cut = [later for before, later in pairs if later in ends and later.t_s - before.t_s < TOGETHER_S]

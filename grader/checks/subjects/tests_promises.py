@@ -32,7 +32,7 @@ NUMBERS = (
 
 
 def promises(evidence: Evidence, _: NoParams) -> Finding:
-    """The tests use neither the methods and attributes of the node's class, nor the constants of its module."""
+    """The tests use neither the methods and attributes of the node's class, nor the constants of the node's module."""
     expected = "The tests use only the topics and the clock of the node, as another node would."
     spec = next((trial.tests for trial in evidence.exercise.trials if trial.tests is not None), None)
     if spec is None:
@@ -88,8 +88,8 @@ def _sets_own(node: ast.Attribute) -> bool:
 def _names_of_nodes(module: Module, name: str) -> Iterator[str]:
     """Yield the names that refer to an object of this class.
 
-    They are the last parts of names to which such an object is assigned, and the names of functions that return or
-    yield one.
+    These are the names to which such an object is assigned (only the last part of a dotted name), and the names of
+    functions that return or yield such an object.
     """
     known: set[str] = set()
     for node in module.nodes:

@@ -101,7 +101,7 @@ def _one_line(text: str) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class Catches:
-    """The broken node that the tests must reject, its description, and a text for tests that accept this node."""
+    """The broken node that the tests must reject, its description, and the text for students whose tests accept it."""
 
     broken: str = string("the id of a broken node", about="The `id` of the `[[trial.tests.broken]]`.")
     does: str = string("a description", about="A description of the broken node, such as: a node that turns right.")

@@ -28,7 +28,7 @@ TEST_DEPEND = "python3-pytest"
 READERS = frozenset(
     {"open", "read_text", "read_bytes", "getsource", "getsourcelines", "getsourcefile", "find_spec", "get_data"}
 )
-"""Functions that can read the file of a module."""
+"""Functions and methods with which a test could read the source of a module."""
 SOURCE_MODULES = frozenset({"ast", "inspect", "dis", "linecache", "tokenize", "marshal", "py_compile", "pkgutil"})
 """Modules whose purpose is to look at source or compiled code."""
 CODE_ATTRIBUTES = frozenset({"__code__", "co_code", "co_consts", "co_names"})
@@ -42,7 +42,7 @@ def code_of(evidence: Evidence) -> TestCode:
 
 
 def declared(evidence: Evidence, _: NoParams) -> Finding:
-    """setup.py (or another file that colcon reads) lists pytest for the tests, and package.xml declares pytest."""
+    """setup.py (or another file that colcon reads) lists pytest as a test dependency, and so does package.xml."""
     expected = (
         f'setup.py lists "{PYTEST}" under "test" in extras_require, '
         f"and package.xml declares {TEST_DEPEND} as a <test_depend>."
@@ -65,7 +65,7 @@ def declared(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def _tested_with(setup: SetupPy, evidence: Evidence) -> tuple[str, ...]:
-    """Return the test dependencies that colcon finds. An argument that setup.py computes counts as correct."""
+    """Return the test dependencies that colcon finds. If setup.py computes them, assume that they are right."""
     if setup.tested_with is None:
         return (PYTEST,)
     return setup.tested_with if setup.has_extras else extras_of_files(evidence.submission.files)
@@ -103,7 +103,7 @@ LOOKS = "The same node can be written in many ways. A test of the source rejects
 
 
 def _imported(node: ast.AST, modules: frozenset[str]) -> str:
-    """Return the imported name if the statement imports one of these modules, or an empty string."""
+    """Return the name of the imported module if it is one of these modules, or an empty string."""
     if isinstance(node, ast.Import):
         return next((alias.name for alias in node.names if alias.name.partition(".")[0] in modules), "")
     if isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] in modules and not node.level:

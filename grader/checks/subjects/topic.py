@@ -120,7 +120,7 @@ def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
 
 
 def _silent(evidence: Evidence, params: Topic) -> Finding:
-    """Return the finding about a publisher with the right topic and type that sent nothing."""
+    """Return the finding about a publisher that sent nothing, although its topic and type are right."""
     observed = f"There is a publisher on {params.topic}, but no message arrived after the start."
     crash = crash_of(evidence)
     if crash is not None:

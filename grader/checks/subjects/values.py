@@ -136,7 +136,7 @@ def _line(evidence: Evidence, field: str) -> Where | None:
 
 
 def _published_empty(evidence: Evidence) -> Where | None:
-    """Return the place that publishes a new message without setting a field, or None."""
+    """Return the place where a new message is published without setting any of its fields, or None."""
     for call in evidence.code.calls("publish"):
         message = call.argument(0, "msg")
         if isinstance(message, ast.Call) and not message.args and not message.keywords:

@@ -27,7 +27,10 @@ SAME_GROUP = (
 
 
 def never_waits(evidence: Evidence, _: NoParams) -> Finding:
-    """No callback waits for a server or for time to pass, or for a response that no other thread receives."""
+    """No callback waits for a server or for a period of time.
+
+    A callback may wait for a response only if another thread can receive the response.
+    """
     waits = waits_in_callbacks(evidence)
     finding = _certain(evidence, waits)
     if finding is not None:
