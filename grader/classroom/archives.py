@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 ENDINGS = (".zip", ".tar.gz", ".tgz", ".tar")
 OTHER_ENDINGS = (".7z", ".rar", ".tar.xz", ".tar.bz2", ".tar.zst", ".gz", ".xz", ".bz2")
-"""Archive formats that students hand in, but that are not supported."""
+"""Formats of archives that students sometimes hand in, although these formats are not supported."""
 EVERY_ENDING = (*ENDINGS, *OTHER_ENDINGS)
 OF_THE_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS)
 

@@ -44,7 +44,7 @@ _MOST_OPEN = 4096
 _MOST_REQUEST = 1024 * 1024
 _IGNORE = re.compile(r"ignore:([^:]*)")
 _AT_START = re.compile(r"PYTHON(?!PATH$)|LD_|SETUPTOOLS_|DISTUTILS_")
-"""Matches variables that have an effect only while an interpreter starts or imports setuptools."""
+"""Matches environment variables that have an effect only while Python starts or imports setuptools."""
 _WITH_PREFIX = ("sysconfig", "distutils.sysconfig")
 """Modules that copy sys.prefix when they are imported."""
 _CONDITION = "catkin_pkg.condition"

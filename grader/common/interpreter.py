@@ -18,10 +18,10 @@ SEARCHED = (
     *("PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH"),
     *("CMAKE_MODULE_PATH", "PKG_CONFIG_PATH", "PYTHONHOME", "PYTHONUSERBASE", "PYTHONPYCACHEPREFIX", "PYTHONSTARTUP"),
 )
-"""Variables that contain a path or a list of paths from which programs, libraries or modules are loaded."""
+"""Environment variables with a path or a list of paths from which programs, libraries or modules are loaded."""
 OF_ANOTHER_PYTHON = ("_PYTHON_SYSCONFIGDATA_NAME", "_PYTHON_HOST_PLATFORM", "_PYTHON_PROJECT_BASE")
-"""Variables that make sysconfig use the build data of another Python, which most Python installations do not have.
-conda's compilers and tools for cross-compilation set these variables."""
+"""Environment variables that make sysconfig use the build data of another Python. Most Python installations do not have
+this data. conda's compilers and tools for cross-compilation set the variables."""
 _CODE = "import sys; sys.path[:] = filter(None, sys.path)\n"
 """Code that removes the current folder from sys.path. The option -P of Python 3.11 does the same, but with -P, IPython
 does not let the cells of a notebook import modules from the notebook's folder."""

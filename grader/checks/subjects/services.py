@@ -146,7 +146,7 @@ def answers_call(evidence: Evidence, params: AnswersCall) -> Finding:
 
 
 def no_response(evidence: Evidence, service: str, type_: str, call: Call | None, expected: str) -> Finding:
-    """Return the failed finding about a call by the trial that got no response."""
+    """Return the failed finding about a call by the trial, to which the node did not respond."""
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_observed(evidence), expected)
