@@ -24,7 +24,7 @@ _MOST = 2000
 def find(package: str, unknown: str) -> None:
     """Raise Ros2Error if the package, or one with a similar name, is in a workspace, but not sourced in this terminal.
 
-    The error begins with the text `unknown`, and says what to type.
+    The error message is `unknown` and, on the next line, a hint that says what to type.
     """
     installed = index.packages()
     hint = "" if package in installed else where_it_is(package) or meant(package, installed)

@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 Line = tuple[int, int, int, int]
-"""A struct sock_filter: an operation, how many instructions to skip if it is true, how many if it is false, and a
-value."""
+"""A struct sock_filter: an operation, the number of instructions to skip if its result is true, the number of
+instructions to skip if its result is false, and a value."""
 
 LOAD, AND, EQUAL, AT_LEAST, ANY_BIT, RETURN = 0x20, 0x54, 0x15, 0x35, 0x45, 0x06
 ALLOW, ERRNO = 0x7FFF0000, 0x00050000
@@ -39,9 +39,9 @@ def refusing(numbers: Iterable[int], error: int) -> list[Line]:
 def refusing_options(
     number: int, index: int, options: Sequence[int], error: int, *, level: int | None = None
 ) -> list[Line]:
-    """Return the instructions that make this system call fail if the argument with this index is one of the options.
+    """Return the instructions that make a system call fail if its argument at this index is one of these options.
 
-    With `level`, the call fails only if the argument before the option has this value.
+    With `level`, the call fails only if the argument at `index - 1` has this value.
     """
     lines = [] if level is None else [(LOAD, 0, 0, argument(index - 1)), (EQUAL, 1, 0, level), (RETURN, 0, 0, ALLOW)]
     refused = [(EQUAL, len(options) - at, 0, option) for at, option in enumerate(options)]

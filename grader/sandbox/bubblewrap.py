@@ -173,8 +173,8 @@ def usable() -> bool:
 def require(*, trusted: bool = False, anyway: str = _ANYWAY) -> bool:
     """Return whether student code will run in a sandbox. Call this function before running code of untrusted students.
 
-    With `trusted`, a missing sandbox is not an error. `anyway` is the beginning of the error message's last sentence:
-    how the code can run without a sandbox.
+    With `trusted`, a missing sandbox is not an error. `anyway` is the beginning of the last sentence of the error
+    message. This sentence says how to run the code without a sandbox.
 
     Raises:
         MachineError: no sandbox is available, and the code is not trusted.

@@ -1,9 +1,9 @@
 """Control groups: the kernel limits the total resource use of a cell, if the grader is allowed to create groups.
 
 Root can create control groups nearly everywhere. An ordinary user can create control groups if systemd has delegated a
-part of the tree and the grader runs in that part. The memory limit of the group is higher by `ABOVE` than the limit
-that usage.py checks, so that usage.py stops a cell first and records the reason. The group stops processes that grow
-too fast for usage.py, and limits socket and pipe memory.
+part of the tree and the grader runs in that part. The memory limit of the group is the limit that usage.py checks plus
+`ABOVE`, so that usage.py stops a cell first and records the reason. The group stops processes that grow too fast for
+usage.py, and limits socket and pipe memory.
 
 Versions 1 and 2 of control groups are supported. In version 2, a group is a folder in one tree. In version 1, a group
 is a folder in each controller's tree (https://docs.kernel.org/admin-guide/cgroup-v2.html and cgroup-v1/).
@@ -46,7 +46,7 @@ class ControlGroup:
     folders: tuple[Path, ...] = ()
 
     def __bool__(self) -> bool:
-        """Whether the group exists, which is not the case if groups cannot be created."""
+        """Whether the group exists: False if groups cannot be created."""
         return bool(self.folders)
 
     def joined(self, argv: Sequence[str]) -> list[str]:

@@ -15,7 +15,8 @@ from pathlib import Path
 from grader.sandbox.usage import family
 
 _MOST_S = 5.0
-"""The time after which a process that the kernel does not end, such as one that waits for a disk, is left (s)."""
+"""The maximum time to wait for the processes to exit (s). The kernel cannot end some processes, such as one that waits
+for a disk."""
 _AGAIN_S = 0.01
 
 

@@ -68,7 +68,8 @@ def enter(holder: int, *, cell: bool) -> None:
     """Move this process into all namespaces of the process that this descriptor (pidfd_open(2)) refers to.
 
     The pid namespace only applies to processes that are forked afterwards. The process must have only one thread. A
-    process of root also leaves all supplementary groups. Afterwards, other processes of the user cannot inspect it.
+    process of root also leaves all supplementary groups. Afterwards, other processes of the user cannot inspect this
+    process.
 
     In a trial, the descriptor of a cell comes from a conductor (trial/conductor.py), which may be under the control of
     a node. Therefore, if `cell` is true, the process with this descriptor must have namespaces that no process of a

@@ -25,7 +25,7 @@ _ENDS_S = 5.0
 
 
 class HolderError(Exception):
-    """bubblewrap could not create the room or cell. The message is its output, or else the system error."""
+    """bubblewrap could not create the room or cell. The message is the output of bubblewrap, or a system error."""
 
 
 class Holder:

@@ -25,7 +25,7 @@ _FILE_RIGHTS = {1: 13, 2: 14, 3: 15, 5: 16}
 """Maps a version of Landlock to the number of file rights that it supports, such as opening, executing, writing and
 ioctl."""
 _NET_RIGHTS = {4: 2}
-"""Maps a version of Landlock to the number of network rights that it supports: to bind and to connect TCP sockets."""
+"""Maps a version of Landlock to the number of network rights that it supports: binding and connecting TCP sockets."""
 _SCOPES = {6: 2}
 """Maps a version of Landlock to the number of scopes that it supports: connections to abstract Unix sockets of other
 processes, and signals to other processes."""

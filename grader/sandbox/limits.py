@@ -22,8 +22,8 @@ NO_CORE_DUMP = 1
 """The limit on core dumps (bytes). With the limit 0, the kernel would still pass core dumps to another program; see
 core(5)."""
 LEAST_MEMORY = 2048 * MIB
-"""If each program may use less address space than this (bytes), the machine can be the reason why a node or a test
-fails."""
+"""The address space that the machine must allow each program to use (bytes). With less, a node or a test may fail
+because of the machine."""
 RAISE_MEMORY = "ulimit -v unlimited"
 MOST_OTHERS = 4096
 """Without cells, this number is added to the limit on processes, because the user's other processes also count."""
@@ -40,8 +40,8 @@ class Limits:
     total_memory: int = 2048 * MIB
     """The maximum memory of all processes, disks and sockets of a cell together (bytes), which usage.py watches."""
     processes: int = 600
-    """The maximum number of processes and threads together. Timers do not count, because a node needs no threads for
-    them."""
+    """The maximum number of processes and threads together. ROS timers do not count, because they run without threads
+    of their own."""
     open_files: int = 1024
     file_size: int = 256 * MIB
     disk: int = 256 * MIB

@@ -95,8 +95,8 @@ class _Pump:
     def serve(self, left: Callable[[], float], stopped: Callable[[], bool]) -> bool:
         """Serve the pipes until the child closes them or writes too much.
 
-        Return False if the time runs out or `stopped` returns True before that. `left` returns the remaining time (s).
-        `left` and `stopped` are called several times per second.
+        Return False if the time runs out first, or if `stopped` returns True first. `left` returns the remaining time
+        (s). `left` and `stopped` are called several times per second.
         """
         with self._selector:
             while self._selector.get_map() and not self.too_much:
@@ -141,7 +141,7 @@ def run(
 
     The beginning and the end of standard error are kept.
 
-    With `watch`, the child is killed when its processes together exceed these limits. The time for which these
+    With `watch`, the child is killed when it and its descendants together exceed these limits. The time for which these
     processes wait for a processor does not count. On a crowded machine, the child may take up to MOST_TIME times
     `timeout_s`. The total CPU time of its processes is also limited to `timeout_s`, so that they gain no time by
     keeping the processors busy.

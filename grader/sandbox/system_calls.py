@@ -151,7 +151,7 @@ def _usual_socket() -> list[bpf.Line]:
 def _one_of(index: int, values: Sequence[int], error: int, *, bits: int = 0) -> list[bpf.Line]:
     """Return the instructions that make a call fail unless this argument has one of the values.
 
-    Only the given bits of the argument are compared, or its low 32 bits if `bits` is 0.
+    The comparison uses only the bits of the argument that are set in `bits`, or its low 32 bits if `bits` is 0.
     """
     load = [(bpf.LOAD, 0, 0, bpf.argument(index)), *([(bpf.AND, 0, 0, bits)] if bits else [])]
     lines = [(bpf.EQUAL, len(values) - number, 0, value) for number, value in enumerate(values)]

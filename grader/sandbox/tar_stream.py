@@ -1,9 +1,9 @@
 """Read a tar stream that an untrusted process may have written.
 
 Python's tarfile is not safe for hostile archives. Some versions of tarfile followed nested headers until the stack
-overflowed, looped over negative sizes, or spent hours in a regular expression. This reader advances by at least one
-block per step and stops at the first block that it cannot parse. The reader supports only the output of GNU tar with
---format=gnu.
+overflowed, looped forever because of negative sizes, or spent hours in a regular expression. This reader advances by at
+least one block per step and stops at the first block that it cannot parse. The reader supports only the output of GNU
+tar with --format=gnu.
 """
 
 from __future__ import annotations

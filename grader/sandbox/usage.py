@@ -24,19 +24,19 @@ EVERY_S = 0.1
 LAUNCHERS = 16
 """The number of processes that may exist in addition to the student's processes, such as those of bubblewrap.
 
-In a cell, the kernel also counts processes, and refuses new processes before the limit plus this number is reached.
+In a cell, the kernel also limits the number of processes, and its limit is lower.
 """
 _DISKS = ("ws", "tmp", "dev/shm")
 _SOCKETS = {"udp": "", "udp6": "", "tcp": "sockstat", "tcp6": "sockstat6"}
-"""Maps a list of sockets in /proc/PID/net to the file that counts these sockets. For a list of TCP sockets, the kernel
-looks through the TCP sockets of all networks, which takes 4 ms. Therefore, such a list is read only if this network has
-TCP sockets."""
+"""Maps each list of sockets in /proc/PID/net to the file there that counts these sockets, or to "" if no count is
+needed. For a list of TCP sockets, the kernel looks through the TCP sockets of all networks, which takes 4 ms.
+Therefore, such a list is read only if this network has TCP sockets."""
 _IN_USE = re.compile(rb"^TCP6?: inuse (\d+)", re.MULTILINE)
 _MOST_LISTED = 4 * 1024 * 1024
 """A list of sockets that is longer than this (bytes) has more than 25,000 lines, which happens only in an attack."""
 _MEMORY = re.compile(r"^(?:RssAnon|RssShmem|VmSwap|VmPTE):\s*(\d+) kB", re.MULTILINE)
-"""The lines of /proc/PID/status about the memory of a process, except mapped files: its own pages, shared pages and
-page tables."""
+"""The lines of /proc/PID/status about the memory of a process: its own pages, shared pages, swapped pages and page
+tables, but not mapped files."""
 _THREADS = re.compile(r"^Threads:\s*(\d+)", re.MULTILINE)
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
@@ -67,7 +67,7 @@ def exceeded(pids: Sequence[int], limits: Limits, *, in_room: bool = False) -> s
 
 
 class Guard:
-    """A thread that watches a cell until `close` is called, or until a limit is exceeded: then it calls `over` once.
+    """A thread that watches a cell until `close` is called. If a limit is exceeded, the thread calls `over` and ends.
 
     `in_room` has the same meaning as in `exceeded`.
     """

@@ -29,8 +29,8 @@ FIRST_USER = 2_000_000_000
 """The first of a range of ids that are not assigned to users or services (systemd.io/UIDS-GIDS and Debian's policy)."""
 USERS = 65_536
 FEW_USERS = range(65_520, 65_534)
-"""The ids that are used in a container in which the ids from FIRST_USER on are not available. systemd and Debian's
-policy do not assign these ids to users or services either."""
+"""The ids that are used instead in a container without the ids from FIRST_USER on. systemd and Debian's policy do not
+assign these ids to users or services either."""
 MAP = Path("/proc/self/uid_map")
 PLACES = ("/run", "/var/run")
 """The possible folders of the lock file. The first folder that is writable is used, or else the folder for temporary

@@ -91,7 +91,10 @@ def digest() -> str:
 
 
 def outdated(error: BaseException) -> Optional[str]:
-    """Return a sentence for users if `error` is a failed import and the course has changed since its set-up."""
+    """Return a sentence that says that the course has changed since its set-up, if `error` is a failed import.
+
+    If it is another error, or if nothing has changed, return None.
+    """
     stamp = read_stamp()
     if not isinstance(error, ImportError) or stamp is None or stamp.digest == digest():
         return None
@@ -111,7 +114,7 @@ def stands(stamp: Stamp, ros: Optional[machine.SourcedRos], wanted: Optional[mac
 
 
 def finds_course() -> bool:
-    """Return whether the interpreter of .venv can find the course: the file with its path exists and is not empty."""
+    """Return whether .venv can import the course: the .pth file with the course's path exists and is not empty."""
     files = STAMP.parent.glob("lib/python*/site-packages/_editable_impl_*.pth")
     return any(file.stat().st_size for file in files)
 
@@ -124,7 +127,10 @@ def say(text: str) -> None:
 def look(
     ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python], parts: Sequence[str], *, made: bool
 ) -> Tuple[Optional[machine.Python], List[Need]]:
-    """Return the Python for .venv (None if .venv is `made`, or if none is suitable), and the missing programs."""
+    """Return the Python for a new .venv, and the missing programs.
+
+    The Python is None if .venv already exists (`made`), or if no Python is suitable.
+    """
     path = os.environ.get("PATH", "")
     tools = machine.missing_tools(path, ros)
     if "tests" in parts:

@@ -1,7 +1,6 @@
 """Compiled modules (.pyc) that are incomplete because the disk was full when Python stored them.
 
-Python does not detect that the end of a compiled module is missing. Each later import of the module fails with an
-EOFError.
+Python does not compile such a module again. Instead, each later import of the module fails with an EOFError.
 """
 
 import marshal

@@ -65,7 +65,7 @@ class Line:
 
 
 def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] = lambda _: None) -> list[Line]:
-    """Return the lines, each after the lines that it depends on. `tell` is called before slow tests.
+    """Run the tests, and return their lines. `tell` is called before slow tests.
 
     The tests of turtlesim and of a node are left out if a test that they depend on fails.
     """

@@ -32,7 +32,8 @@ _MOST_LINES = 40
 _RETRIES = 2
 """The number of retries without a network after which the installer is stopped. pip would try for ten more seconds."""
 _FIRST = frozenset({"uv", "setuptools"})
-"""The packages that pip installs, although pip is slower than uv: uv, and setuptools, which uv needs to build empy."""
+"""The packages that pip installs before uv installs the others: uv itself, and setuptools, which uv needs to build
+empy."""
 _OLDEST_NUMPY = (1, 25)
 """The oldest version of numpy that matplotlib supports. matplotlib draws the images."""
 _NUMPY = Path(__file__).with_name("numpy.txt")
@@ -115,7 +116,7 @@ def start_fast(folder: Path) -> None:
 
 
 def _replace(path: Path, text: str) -> None:
-    """Replace a file in one step, so that no interpreter reads half of it, and a set-up that is killed leaves no half.
+    """Replace a file in one step, so that it is never half-written, even if the set-up is killed.
 
     The file must not be changed in place: the installer may have linked it to its cache.
     """

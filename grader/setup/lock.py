@@ -66,7 +66,7 @@ class Entry:
 def parse(text: str) -> dict[str, list[Entry]]:
     """Return the entries of each part in the order of the file.
 
-    An entry that several parts need is returned for each of them.
+    If several parts need an entry, the list of each of these parts contains the entry.
 
     Raises:
         UsageError: a line does not belong to a part or an entry.

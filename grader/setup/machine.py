@@ -36,7 +36,7 @@ CONTAINER = """\
 LEFT_TO_ROS = {"numpy": "python3-numpy", "em": "python3-empy", "lark": "python3-lark"}
 """The modules that the set-up does not install if a ROS 2 is sourced, and the Debian package of each module.
 
-In this case, the set-up leaves out lock.SOURCED_BRINGS and the part `ros` of the lock file.
+With a sourced ROS 2, the set-up leaves out lock.SOURCED_BRINGS and the part `ros` of the lock file.
 """
 _IMPORTS = """
 import importlib, json, sys
@@ -88,7 +88,10 @@ class SourcedRos(NamedTuple):
 
 
 def sourced_ros(env: Mapping[str, str], ours: Path) -> Optional[SourcedRos]:
-    """Return the sourced ROS 2 Jazzy, or None. `ours`, the prefix of the wheels, and other clones are ignored."""
+    """Return the sourced ROS 2 Jazzy, or None.
+
+    The wheels of this course (in the folder `ours`) and those of other clones of the course are ignored.
+    """
     if env.get("ROS_DISTRO") != "jazzy":
         return None
     for prefix in map(Path, clean(env).get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
@@ -165,7 +168,7 @@ def probe(executable: str) -> Optional[Python]:
 
 
 def for_ros(python: Python, ros: SourcedRos) -> Python:
-    """Return the interpreter, with a list of the missing modules if its version is right for this ROS 2."""
+    """Return the interpreter. If its version is right for this ROS 2, add the list of the modules that it lacks."""
     if python.version[:2] != ros.python or not python.cpython:
         return python
     # Like .venv, use the system's packages, but not those in the user's home.

@@ -43,7 +43,7 @@ DOMAIN = 101
 
 
 def why_not_heard(ros: Ros, *, confined: bool) -> str | None:
-    """Publish for up to 20 s. Return None if another node received a message, or else why not.
+    """Publish for up to 20 s. Return None if another node received a message, and otherwise the reason for the failure.
 
     The reason is the last line of the error output if there is one.
 

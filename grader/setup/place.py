@@ -1,4 +1,4 @@
-"""Check that all programs of the set-up work in the course's folder: its path, and whether programs run there.
+"""Check the course's folder: its path must suit all programs of the set-up, and its file system must run programs.
 
 Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
 of Python 3.6.

@@ -29,7 +29,7 @@ NO_NETWORK = (
     "from pip's own configuration; " + AGAIN + "."
 )
 _FULL_MB = 50
-"""The free space below which the disk is considered to be the reason for any failure."""
+"""If less disk space than this is free (MB), the disk is considered the reason for any failure."""
 _NUMBER = re.compile(r"\[Errno (\d+)\]|\(os error (\d+)\)")
 _OFFLINE = re.compile(
     "(?:Temporary failure in )?name resolution|Name or service not known|No address associated with hostname|"

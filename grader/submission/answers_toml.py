@@ -27,8 +27,8 @@ Answer = str | float | tuple[str, ...]
 class Answers:
     """The answers in the table [answers], by their ids: strings, numbers and lists of strings.
 
-    Answers of other types, empty answers, 0, and numbers that are nan or too large are left out. `unusable` contains
-    the ids of those that are neither empty nor 0.
+    `given` leaves out answers of other types, empty answers, 0, nan, and numbers that are too large. `unusable`
+    contains the ids of the answers that are left out but are neither empty nor 0.
 
     `lines` are the line numbers of the answers, counted from 1. `problem` is the reason why the file cannot be read.
     `line` is the line of this problem, if known.
@@ -77,7 +77,7 @@ def _answer(value: object) -> Answer | None:
 
 
 def _open_list(text: str) -> int | None:
-    """Return the first line with a list that is not closed before the next answer or the end of the file, or None."""
+    """Return the line of the first list without a "]" before the next answer or the end of the file, or None."""
     opened = None
     for number, line in enumerate(text.splitlines(), 1):
         begins = re.match(r"\s*\w+\s*=", line) is not None
@@ -91,6 +91,6 @@ def _open_list(text: str) -> int | None:
 
 
 def _is_empty(value: object) -> bool:
-    """Return whether a value stands for an answer that is still missing, as in the starting point."""
+    """Return whether the student has not given this answer yet: the starting point contains such values."""
     blank = isinstance(value, str) and not value.strip()
     return (value in ("", 0, []) and not isinstance(value, bool)) or blank

@@ -25,8 +25,8 @@ MOST_CHUNK_BYTES = 16 * 1024 * 1024
 """The maximum size of one record of a bag, and of a chunk after decompression (bytes). rosbag2 writes chunks of 0.8
 MB."""
 _POSE = {0: struct.Struct(">4x2f"), 1: struct.Struct("<4x2f")}
-"""The struct format of x and y in a serialized pose. The key is the second byte of the header, which states the byte
-order."""
+"""Maps the second byte of the header, which states the byte order, to the struct format of x and y in a serialized
+pose."""
 _COMPRESSED = re.compile(rb"^ *compression_mode: *[\"']?message\b", re.IGNORECASE | re.MULTILINE)
 """Matches the line of metadata.yaml that states that each message is compressed."""
 

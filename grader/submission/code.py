@@ -64,7 +64,7 @@ class Module:
 
 
 ALIKE = {"create_lifecycle_publisher": "create_publisher"}
-"""Maps a method of lifecycle nodes to a method of all nodes. The two methods have the same arguments."""
+"""Maps a method of lifecycle nodes to the method of all nodes that has the same arguments."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class Call:
 
 @dataclass(frozen=True)
 class Code:
-    """The node's file and the submission files that it imports, or all Python files if this file is unknown.
+    """The node's file and the submission files that it imports, or all Python files if the node's file is unknown.
 
     Tests, launch files and setup.py are left out.
     """

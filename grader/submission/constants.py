@@ -31,8 +31,8 @@ class Names(dict[str, "ast.expr | None"]):
 
 MAX_DEPTH = 20
 MAX_NODES = 100_000
-"""The maximum number of syntax nodes that are evaluated in one module, which takes about 0.1 s. The values of all
-further nodes are unknown."""
+"""The maximum number of syntax nodes that are evaluated in one module. Their evaluation takes about 0.1 s. The values
+of all further nodes are unknown."""
 MAX_TEXT = 2000
 MATH = {"math.pi": math.pi, "pi": math.pi, "np.pi": math.pi, "numpy.pi": math.pi, "math.tau": math.tau}
 
@@ -49,9 +49,10 @@ def dotted(node: ast.expr) -> str | None:
 
 
 def single_names(tree: ast.AST) -> Names:
-    """Return each assigned name or attribute with its expression, or with None if it has not exactly one expression.
+    """Map each assigned name or attribute to the expression that is assigned to it.
 
-    A loop or an assignment such as `+=` gives it no expression. Names that are assigned as a tuple are left out.
+    The value is None if the name is assigned several times, or by a loop or an operator such as `+=`. Names that are
+    assigned as a tuple are left out.
     """
     names = Names()
     for node in ast.walk(tree):
@@ -148,7 +149,7 @@ def _together(between: str, pieces: Iterable[ast.expr], names: Names, depth: int
 
 
 def _call(node: ast.expr, names: Names, depth: int) -> str | None:
-    """Return the result of os.path.join with strings, which is common in setup.py, or None for any other expression."""
+    """Evaluate a call to os.path.join, which is common in setup.py. Return None for any other expression."""
     if not isinstance(node, ast.Call) or dotted(node.func) not in ("os.path.join", "path.join", "join"):
         return None
     return _together("/", node.args, names, depth)

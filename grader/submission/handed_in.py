@@ -103,7 +103,7 @@ def _only_folder(folder: Path) -> Path:
 
 
 def _started(exercise: Exercise, folder: Path) -> dict[str, bytes]:
-    """Return the files of the step's starting point, replaced by the files that the student handed in, if any."""
+    """Return the starting point's files and the student's files, which replace starting files with the same path."""
     name = exercise.package or "."
     files: dict[str, bytes] = {}
     for source in (starting_point(exercise), folder):
@@ -118,9 +118,10 @@ def _started(exercise: Exercise, folder: Path) -> dict[str, bytes]:
 def _chosen(exercise: Exercise, folder: Path) -> tuple[list[Part], str]:
     """Return the files from the cells that count, and a remark about the notebooks whose cells do not count.
 
-    The notebook with the name of the exercise comes first, then those whose names begin with it, because a browser adds
-    "(1)" to the name of a second download, then all others. Several notebooks that rank equally are used only if they
-    write the same files. A notebook whose name begins with that of another exercise is ignored.
+    The notebook with the name of the exercise comes first. Then come notebooks whose names begin with the name of the
+    exercise: a browser adds "(1)" to the name of a second download. All others come last. Several notebooks that rank
+    equally are used only if they write the same files. A notebook whose name begins with the name of another exercise
+    is ignored.
     """
     groups: dict[int, dict[str, list[Part]]] = {}
     broken: list[str] = []
@@ -185,7 +186,7 @@ def _start(exercise: Exercise, path: str) -> str | None:
 
 
 def _with(exercise: Exercise, found: Submission, parts: list[Part]) -> Submission:
-    """Return the submission together with the parts of the notebook that count."""
+    """Return the submission, with the files from the cells that count."""
     prefix = f"{exercise.package}/" if exercise.package else ""
     added: dict[str, bytes] = {}
     for part in parts:
@@ -203,7 +204,7 @@ def _with(exercise: Exercise, found: Submission, parts: list[Part]) -> Submissio
 
 
 def _require_possible(path: str, others: set[str]) -> None:
-    """Raise UnreadableError if no file with this path can be written beside the other files."""
+    """Raise UnreadableError if the package cannot contain a file with this path in addition to the other files."""
     names = path.split("/")
     above = {"/".join(names[:number]) for number in range(1, len(names))}
     below = any(other.startswith(f"{path}/") for other in others)

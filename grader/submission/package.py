@@ -43,7 +43,7 @@ class Submission:
     name: str
     """The path as the user specified it. Messages and reports contain this path."""
     package_dir: Path
-    """An absolute path, used for messages and for the name of the folder. Only `files` are graded."""
+    """The absolute path of the package, for error messages and the name of the folder. Only `files` are graded."""
     files: Mapping[str, bytes]
     rejected: tuple[str, ...]
     digest: str
@@ -134,7 +134,7 @@ def _answers(name: str, path: Path, exactly: bool) -> Submission:
 def digest(files: Mapping[str, bytes]) -> str:
     """Return the SHA-256 hash of paths and contents.
 
-    Each part is preceded by its length, so that different files never look equal.
+    The length of each path and content is hashed, too. Without it, different files could have the same hash.
     """
     whole = hashlib.sha256()
     for path in sorted(files, key=tree.sort_key):

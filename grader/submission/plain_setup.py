@@ -55,7 +55,7 @@ class PlainSetup:
 
 
 def read_plain_setup(setup_py: bytes, setup_cfg: bytes, paths: Collection[str]) -> PlainSetup | None:
-    """Read setup.py and setup.cfg of a package with files at these paths. Return None if a file is unusual."""
+    """Read the setup.py and setup.cfg of a package with files at these paths. Return None if their form is unusual."""
     module = read_module("setup.py", setup_py)
     given = _arguments(module)
     if given is None or not given.keys() >= _INSTALLED:
@@ -74,7 +74,7 @@ def read_plain_setup(setup_py: bytes, setup_cfg: bytes, paths: Collection[str]) 
 
 
 def only_calls_setup(setup_py: bytes, setup_cfg: bytes) -> bool:
-    """Return whether setup.py only calls setup() with the usual arguments, and setup.cfg is usual.
+    """Return whether setup.py only calls setup() with the usual arguments, and setup.cfg has the usual form.
 
     The values of the arguments may be wrong.
     """
@@ -145,7 +145,7 @@ def _packages(node: ast.expr, module: Module, paths: Collection[str]) -> tuple[s
 
 
 def _around(name: str) -> list[str]:
-    """Return the names of the packages that contain the package `name`."""
+    """Return the names of the parent packages of the Python package `name`."""
     parts = name.split(".")
     return [".".join(parts[:depth]) for depth in range(1, len(parts))]
 

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 _SYSTEM = ("/usr", "/lib", "/lib64", "/opt/ros", "/etc/ld.so.cache", "/etc/localtime", "/dev/null", "/dev/urandom")
 _MODULES = ("site-packages", "dist-packages")
-"""The folders of a search path that contain only modules. The other entries can be any folders, such as the current
-folder or the home folder."""
+"""Folders with these names, and the folders in them, contain only modules. Other entries of sys.path can be any
+folders, such as the current folder or the home folder."""
 
 
 @cache

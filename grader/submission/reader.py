@@ -57,7 +57,8 @@ _STANDARD = {
     "markupsafe": ("Markup",),
     "numpy": ("_frombuffer", "_reconstruct", "dtype", "ndarray", "scalar"),
 }
-"""The types and functions that a result may refer to besides our dataclasses, enumerations and errors, by package."""
+"""Maps a top-level module to its types and functions that a result may refer to. A result may also refer to our
+dataclasses, enumerations and errors."""
 
 
 class _Child:
@@ -174,7 +175,7 @@ def _refuse_pipes(event: str, arguments: tuple[Any, ...]) -> None:
 
 
 def _close_all_but(sends: int) -> None:
-    """Close the parent's files: the child needs none of them, and an open copy would keep a pipe open.
+    """Close the child's copies of the parent's descriptors: a copy would keep a pipe open that the parent has closed.
 
     The terminal is closed as well (except stderr with GRADER_DEBUG). If the child had access to the terminal, it could
     type commands in place of the user.

@@ -22,7 +22,7 @@ IGNORE_MARKER = "COLCON_IGNORE"
 GIVE = "Give the folder of your package: the one that contains package.xml."
 MAX_FOLDERS = 5000
 MAX_NAMED = 10
-"""The maximum number of names in a message."""
+"""The maximum number of files, folders or packages that an error message names."""
 
 
 class NoPackageError(UsageError):
@@ -39,7 +39,7 @@ class _Search:
 
     packages: list[str] = field(default_factory=list)
     nearly: list[str] = field(default_factory=list)
-    """Files whose names are almost right: package.xml or setup.py in capital letters or with a longer ending."""
+    """Files whose names are almost right, such as Package.xml or setup.py.txt."""
     linked: list[str] = field(default_factory=list)
     """Links to folders. Such links are not followed."""
     ignored: list[str] = field(default_factory=list)

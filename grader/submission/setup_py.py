@@ -41,9 +41,9 @@ class SetupPy:
     entry_points: tuple[EntryPoint, ...] | None = None
     data_files: tuple[tuple[str, tuple[str, ...]], ...] | None = None
     finds_packages: bool = False
-    """Whether the argument is packages=find_packages(...)."""
+    """Whether setup() has the argument packages=find_packages(...)."""
     packages_line: int | None = None
-    """The line of the packages argument."""
+    """The line of the argument `packages`."""
     setup_line: int | None = None
     groups: tuple[str, ...] = ()
     """The names of the groups in entry_points."""
@@ -124,7 +124,7 @@ def _last(node: ast.expr) -> str:
 
 
 def _value_line(node: ast.expr | None, module: Module) -> int | None:
-    """Return the line of the value itself (or None), even if the argument is only a name for this value."""
+    """Return the line of a value, or None. For a name, this is the line of the value that is assigned to the name."""
     for _ in range(MAX_DEPTH):  # `a = b; b = a` would loop forever
         if not isinstance(node, ast.Name) or module.names.get(node.id) is None:
             break

@@ -38,7 +38,7 @@ class Use:
 
 @dataclass
 class _File:
-    """One file of the submission, and the meanings of its names."""
+    """One file of the submission, and what the names in the file refer to."""
 
     module: Module
     functions: dict[str, str] = field(default_factory=dict)
@@ -46,7 +46,7 @@ class _File:
     modules: set[str] = field(default_factory=set)
     """Names that may refer to modules."""
     others: dict[str, Top] = field(default_factory=dict)
-    """Maps a local name or MODULE.NAME to the top-level name in another file that it refers to."""
+    """Maps a local name or MODULE.NAME that refers to a top-level name in another file to this file and name."""
     stored: set[str] = field(default_factory=set)
     """Attributes that the file itself assigns. For example, after `self.sleep = 0` the attribute is not a function."""
 
@@ -96,7 +96,7 @@ def _reached(files: Sequence[_File], names: Collection[str]) -> dict[Top, str]:
 
 
 def _below_top(module: Module) -> Iterator[tuple[set[Top], ast.AST]]:
-    """Yield the syntax nodes of each top-level statement that defines names, except imports, with these names."""
+    """For each top-level statement that defines names, yield the names with each syntax node. Skip imports."""
     for statement in module.body:
         bound = {(module.file, name) for name in _bound([statement])}
         if bound and not isinstance(statement, ast.Import | ast.ImportFrom):
@@ -121,7 +121,7 @@ def _bound(statements: Iterable[ast.stmt]) -> set[str]:
 
 
 def _read(module: Module, modules: Sequence[Module], names: Collection[str]) -> _File:
-    """Read a file, and determine the meanings of its names from its imports at any level."""
+    """Read a file, and determine from its imports (at any level) what the names in the file refer to."""
     found = _File(module)
     tops = {
         each.file.rpartition("/")[2].removesuffix(".py"): {name: (each.file, name) for name in _bound(each.body)}
@@ -191,7 +191,7 @@ def _is_of_a_module(node: ast.expr) -> bool:
 
 
 def _by_string(call: ast.Call, file: _File, names: Collection[str]) -> str | None:
-    """Return the function that is named in a string argument, or used by source code in a string, or None."""
+    """Return the function whose name is a word in a string argument (a name or source code), or None."""
     for argument in (*call.args, *(keyword.value for keyword in call.keywords)):
         text = evaluate(argument, file.module.names)
         if isinstance(text, str):

@@ -1,4 +1,4 @@
-"""Where: a place in a submission, for messages."""
+"""Where: a place in a submission, for error messages and reports."""
 
 from __future__ import annotations
 

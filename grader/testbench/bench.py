@@ -44,9 +44,9 @@ _MORE_PARTICIPANTS = re.compile(
     rb"Context\b|\b(?:concurrent|exec[lv]\w*|fork\w*|launch\w*|multiprocessing|popen|posix_spawnp?|pty)\b"
     rb"|\b(?:spawn[lv]\w*|subprocess|system)\b"
 )
-"""Names that code needs to create a second ROS 2 context or a second process."""
+"""Matches names that code must contain to create a second ROS 2 context or a second process."""
 DOUBT_S = 1.0
-"""The time limit for each test on a broken node (s) until a run on the correct node has ended."""
+"""The time limit for each test on a broken node (s), as long as no run on the correct node has ended."""
 
 
 class Bench:
@@ -119,7 +119,7 @@ class Bench:
 
 @dataclass(frozen=True)
 class _Next:
-    """A run: the id of a broken node (or ""), how the node behaves, and the time limit for each test (s)."""
+    """A run: the id of a broken node (or "" for the correct node), its behaviour, and the time limit per test (s)."""
 
     node: str
     behaviour: Behaviour
@@ -150,8 +150,8 @@ class _Queue:
 
         If the tests have rejected the correct node, they earn no points for rejecting broken nodes. Therefore, only the
         remaining runs on the correct node are started after that. If the tests may hang on the correct node, and no run
-        on the correct node has ended, the next run is an additional run on this node. If a pending run were used
-        instead, tests could choose when this run takes place.
+        on the correct node has ended, the next run is an additional run on this node. This run is not one of the
+        pending runs: otherwise, tests could choose when one of these takes place.
         """
         with self._lock:
             rights = [each for each in self.ended if not each.node]
@@ -188,7 +188,7 @@ class _Queue:
 
 
 def uses_one_participant(files: Mapping[str, bytes]) -> bool:
-    """Return whether all nodes of a run are in one process and in one ROS 2 context, and therefore discover each other.
+    """Return whether all nodes of a run are in one process and one ROS 2 context, so that they need no discovery.
 
     If the code might create more contexts or processes, the result is False.
     """

@@ -44,7 +44,7 @@ class _State:
 
 
 class Brain:
-    """Controls the first MOST_NODES nodes that are created in one run of the tests. `node` is their name."""
+    """Controls the first MOST_NODES nodes that are created in one run of the tests. `node` is the name of each."""
 
     def __init__(self, behaviour: Behaviour, node: str) -> None:
         self._behaviour = behaviour

@@ -119,7 +119,7 @@ class Patience:
 def _has_log(pid: int) -> bool:
     """Return whether rclpy is initialized.
 
-    If so, one of its threads runs regularly to write the log, but this thread wakes no other thread.
+    If so, one of the threads of rclpy runs regularly to write the log, but this thread wakes no other thread.
     """
     threads = Threads(pid, of_dds)
     try:

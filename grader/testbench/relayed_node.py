@@ -1,4 +1,4 @@
-"""The node that the student's tests run on.
+"""The node that the student's tests check.
 
 This node makes no decisions: it asks the grader how to react to each event.
 

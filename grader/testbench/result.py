@@ -12,7 +12,8 @@ from grader.common.json_types import number, text, whole_or_none
 MOST_MESSAGE = 1500
 """The maximum length of a pytest message (characters)."""
 LATEST_S = 1e9
-"""The latest time (s) of a clock that a test advances. A clock with a later time follows the system time."""
+"""The maximum time (s) that is stored for a node's clock. A clock that a test advances does not get this far, so a
+clock at the maximum follows the system time."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,8 @@ class NodeRun:
     file: str = ""
     line: int = 0
     events: NodeEvents | None = None
-    """What happened to the last node. The value is None if the run created no node, and in old recordings."""
+    """What happened to the node that was created last. The value is None if the run created no node, and in old
+    recordings."""
 
     @property
     def accepted(self) -> bool:
@@ -108,7 +110,7 @@ class Ended:
 
 
 def run_of(ended: Ended) -> NodeRun:
-    """Convert the data about an ended run, including its report.
+    """Parse the report of an ended run, and return all data about the run as a NodeRun.
 
     Parts of the report that have an unexpected form are ignored.
     """

@@ -114,7 +114,7 @@ def main() -> None:
 
 
 def _serve(requests: socket.socket, order: dict[str, Any], source: bytes) -> bool:
-    """Wait for a request and for the end of its run. Return False if there are no more requests."""
+    """Wait for one request, and then for the end of its run. Return False if there are no more requests."""
     request, passed, *_ = socket.recv_fds(requests, 1, 3)
     if request and os.fork() == 0:
         try:

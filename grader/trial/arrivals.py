@@ -1,4 +1,4 @@
-"""Take the messages that have arrived from a subscription, or the requests from a service, without an executor.
+"""Take the messages that a subscription has received, or the requests to a service, without an executor.
 
 An executor checks every entity and every event each time it runs, which takes longer than any other part of a frame.
 """
@@ -27,7 +27,7 @@ def take_messages(subscription: Subscription) -> None:
 
 
 def take_requests(service: Service) -> int:
-    """Handle the requests that have arrived, at most MOST_AT_ONCE, with the callback. Return their number."""
+    """Call the service's callback for the requests that have arrived, at most MOST_AT_ONCE. Return their number."""
     with service.handle:
         for count in range(MOST_AT_ONCE):
             request, header = service.handle.service_take_request(service.srv_type.Request)

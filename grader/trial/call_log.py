@@ -1,4 +1,4 @@
-"""The service calls that nodes make: to the nodes of the grader, and to each other."""
+"""The service calls that nodes make to the nodes of the grader or to each other."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 MOST_CALLS, MOST_ALIKE = 1000, 200
 """The log keeps the first MOST_CALLS calls. After that, a call is kept only if the log contains fewer than MOST_ALIKE
-similar calls. Similar calls are calls to services whose names end in the same word, such as the set_pen of every
-turtle."""
+similar calls. Similar calls are calls to services whose names end in the same word, such as /turtle1/set_pen and
+/turtle2/set_pen."""
 
 
 class CallLog:
@@ -28,7 +28,7 @@ class CallLog:
 
     @property
     def calls(self) -> tuple[Call, ...]:
-        """The recorded calls. A call is added when the grader responds to it, or when a silent server receives it."""
+        """The recorded calls. A call is added when the grader responds to it, or when SilentServers receives it."""
         return tuple(self._calls)
 
     def answered(self, service: str, type_name: str, request: Any, response: Any, waited_s: float) -> None:  # noqa: ANN401

@@ -23,7 +23,7 @@ FOUND_S = 0.5
 
 
 class Caller:
-    """Makes each service call at the time that the exercise sets, or up to LATE_S later if the service is missing.
+    """Makes each service call at the time that the exercise sets, or up to LATE_S later if the service is not ready.
 
     The clients are created at the start, so that discovery is usually complete before the first call.
     """

@@ -66,7 +66,10 @@ class Clue:
 
 
 def wall_clues(files: Mapping[str, bytes], module: str | None) -> list[Clue]:
-    """Return the clues in `module` ("package.module") and its imports. Without a module, search the whole package."""
+    """Return the clues in `module` ("package.module") and in the modules that it imports.
+
+    Without a module, search the whole package.
+    """
     first = None if module is None else module_file(module, files)
     read = read_code(files, first).modules
     return [clue for each in read if each.tree is not None for clue in _clues(each.file, each.tree)]
@@ -97,7 +100,8 @@ def _clues(path: str, tree: ast.Module) -> Iterator[Clue]:
 def _short(node: ast.Attribute) -> str:
     """Return the source of the expression, or only the name of its attribute if the source is long.
 
-    Otherwise, the clue for each part of a long chain of attributes would repeat the chain.
+    Each attribute in a long chain can be a clue. Without this limit, each of these clues would repeat the chain before
+    it.
     """
     return ast.unparse(node) if len(list(islice(ast.walk(node), MOST_NODES + 1))) <= MOST_NODES else node.attr
 

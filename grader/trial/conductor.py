@@ -12,7 +12,7 @@ to start, and the install tree follows this line. The last line of output is one
 - {"refused": "..."}: the machine refused something while the node was running;
 - {"fault": "..."}: the simulator or a launcher failed for another reason.
 
-A conductor of a simulator without a node reads only the first line, and writes only the last line.
+If the trial has no node, the conductor reads only the first line, and writes only the last line.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ total time for which these processes were ready to run reaches two limits: the f
 processors, and STARTED_LEAST times the length of the trial. A single process cannot reach both limits.
 """
 SIMULATORS = ("/pose", "/color_sensor")
-"""The simulator publishes on topics whose names end with these strings, for each turtle."""
+"""For each turtle, the simulator publishes on topics whose names end with these strings."""
 
 
 class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grader
@@ -218,7 +218,7 @@ def _own_doing(stall: tuple[float, float], node: NodeGroup, trial: SimulatedTria
 
 
 def _arrived(trial: SimulatedTrial | WallTrial) -> int:
-    """Return the number of messages on topics other than SIMULATORS, and of all messages that were not kept."""
+    """Return the number of recorded messages on topics other than SIMULATORS, plus all that were not recorded."""
     recorder = trial.recorder
     return recorder.dropped + sum(not message.topic.endswith(SIMULATORS) for message in recorder.messages)
 

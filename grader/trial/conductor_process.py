@@ -47,7 +47,7 @@ class ConductorProcess(ABC):
         self._may_be_suspended = True
 
     def suspend(self) -> None:
-        """Suspend the conductor until `resume` or `kill` is called. After such a call, this method does nothing."""
+        """Suspend the conductor until `resume` or `kill` is called. After that, this method does nothing."""
         with self._changing:
             if self._may_be_suspended:
                 self._signal(signal.SIGSTOP)
@@ -74,7 +74,7 @@ class ConductorProcess(ABC):
 
     @abstractmethod
     def pids(self) -> tuple[int, ...]:
-        """Return the ids of the processes that, together with their descendants, are all processes of the trial."""
+        """Return process ids: these processes and their descendants are all processes of the trial."""
 
     @abstractmethod
     def wait(self, timeout: float) -> int:
