@@ -128,7 +128,7 @@ def test_a_report_with_impossible_points_does_not_prevent_the_page(folder: Path,
 
 def test_a_report_with_thousands_of_outcomes_is_listed_and_not_read(folder: Path) -> None:
     data = to_data(report("failed"))
-    data["outcomes"] *= MOST_OUTCOMES + 1
+    data["outcomes"] = data["outcomes"][:1] * (MOST_OUTCOMES + 1)
     (folder / "long.json").write_text(json.dumps(data))
     assert [name for name, _ in read_class(folder).unreadable] == ["long.json"]
 
