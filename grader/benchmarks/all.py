@@ -3,9 +3,9 @@
     python -m grader.benchmarks.all [--times N] [--class N] [--sync N]
 
 F is the cost of a `colcon build` of the package and of a process with one rclpy node, both run without the grader. Wall
-times are divided by the wall time of F, and CPU times by its CPU time. grader.benchmarks.check divides both by the wall
-time of F. F is measured again for each cost that is divided by F, so that other programs slow down both alike. The
-first line shows the load of the machine. Results from a busy machine can be compared only with each other.
+times are divided by the wall time of F, CPU times by the CPU time of F. grader.benchmarks.check divides both by the
+wall time of F. F is measured again for each cost that is divided by F, so that other programs slow down both alike.
+The first line shows the load of the machine. Results from a busy machine can be compared only with each other.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
     python -m grader.benchmarks.open_page [--times 5] [--idle 30]
 
-`grader open` and `grader watch` grade the same saves, in pairs. The benchmark waits until everything is idle before
+`grader open` and `grader watch` grade the same changes in turn. The benchmark waits until everything is idle before
 each save. The page runs in a real browser, whose CPU time is not counted.
 """
 
@@ -98,7 +98,7 @@ def _differences(pairs: list[tuple[float, float]]) -> str:
 def _pair(
     paged: Course, page: Page, watched: Course, screen: pexpect.spawn[str], save: tuple[str, str, str]
 ) -> tuple[float, float]:
-    """For the same save, return the times until the page and `grader watch` show the verdict (s)."""
+    """Save the same change for the page and for `grader watch`. Return the time until each shows the verdict (s)."""
     old, new, line = save
     _rest()
     page.evaluate(_OBSERVE, line)

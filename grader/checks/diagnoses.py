@@ -1,6 +1,6 @@
 """The stable id of each known mistake, with a one-line explanation.
 
-Each failed check has one of the ids in this table. Class pages and instructors' scripts count these ids, so
+Each failed check has one of the ids in this table. The page of a class and instructors' scripts count these ids, so
 the meaning of an id never changes, although the wording of its message may change. `python -m grader.tests.catalogue`
 writes the table of all ids to grader/checks/README.md.
 """

@@ -35,7 +35,7 @@ def attribute_of_none(scene: CrashScene, name: str) -> Cause | None:
 
 
 def _before_message(scene: CrashScene, objects: list[ast.expr]) -> Cause | None:
-    """Return the cause if the module sets one of these names or attributes to None, else None."""
+    """Return the cause if the module assigns None to one of `objects` (names or attributes), else None."""
     for holder in filter(None, map(dotted, objects)):
         values = [node for node in scene.nodes if isinstance(node, ast.Assign) and holder in map(dotted, node.targets)]
         if any(isinstance(each.value, ast.Constant) and each.value.value is None for each in values):

@@ -19,7 +19,7 @@ SELF = "self."
 
 
 def in_default_group(evidence: Evidence, wait: Wait) -> bool:
-    """Return whether the callback that waits and the client it waits for are in the node's default callback group.
+    """Return whether the waiting callback and the client that it uses are both in the node's default callback group.
 
     The executor never calls two callbacks of this group at the same time. The result is True only if the same class
     defines the callback as a method, registers it, and creates the client.

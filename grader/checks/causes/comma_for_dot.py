@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 def comma_for_dot(scene: CrashScene, undefined: str = "") -> Cause | None:
     """Return the cause if the line of the crash has a comma in place of a dot, else None.
 
-    `undefined` is the name that a NameError reports. Without it, the value after the comma may begin with any name.
+    `undefined` is the name that a NameError reports. If it is empty, the value after the comma may begin with any name.
     """
     for left, right in _neighbours(scene):
         owner, name = ast.unparse(left), _first_name(right)

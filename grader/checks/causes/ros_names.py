@@ -158,7 +158,7 @@ CONSTANTS = {
         "PARAMETER_STRING",
     ),
 }
-"""Maps a class to constants that are read from the class itself, without creating an object."""
+"""Maps a class to its constants, which are attributes of the class itself, so no object is needed."""
 
 SERVICES = (
     "/spawn",

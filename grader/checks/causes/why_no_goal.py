@@ -67,7 +67,7 @@ def _other_client(evidence: Evidence, action: str, type_name: str) -> Cause | No
 
 
 def why_aborted(evidence: Evidence, goals: list[Goal], goal: Goal) -> tuple[str, Cause]:
-    """Return a sentence about the event that aborted this goal, and the cause of the failure."""
+    """Return two values: a sentence about the event that aborted this goal, and the cause."""
     until_s = (goal.t_s if goal.ended_s is None else goal.ended_s) + ONE_FRAME_S
     later = [each for each in goals[goals.index(goal) + 1 :] if each.t_s <= until_s]
     if later:

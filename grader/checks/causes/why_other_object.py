@@ -61,9 +61,9 @@ def without_return(scene: CrashScene, call: ast.expr) -> Cause | None:
 
 
 def no_object(scene: CrashScene) -> Cause:
-    """Return the cause if spin or a similar function was called with None instead of a node.
+    """Return the cause of a crash in spin or a similar function that was called with None instead of a node.
 
-    A function without a return statement may have returned this None.
+    The None may be the result of a function without a return statement.
     """
     calls = [call for name in NEED_THE_NODE for call in scene.calls_on_line(name) if call.args]
     function = (dotted(calls[0].func) if calls else None) or "rclpy.spin"

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 CHANGE = "The commands change. A circle needs the same command all the time."
 AT_ONCE_S = 0.05
-"""If a second command follows within this time (s), the first command has no effect."""
+"""A command has no effect if another command follows within this time (s)."""
 
 
 def all_commands(evidence: Evidence) -> tuple[Command, ...]:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from grader.submission.code import Call
 
 SAME = 0.1
-"""A number in the source code explains a measured interval if they differ by at most this fraction of the interval."""
+"""A number in the source explains a measured interval if the two differ by at most this fraction of the interval."""
 
 FEWEST_CALLS, MOST_CALLS = 2, 20
 """The range of n for a callback that counts its calls and sends a message only on every n-th call.

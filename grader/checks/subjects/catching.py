@@ -118,7 +118,7 @@ def _uncaught(recording: Recording, gone: list[Track], service: str) -> Track | 
 
 
 def _without_driving(evidence: Evidence) -> tuple[str, str] | None:
-    """Return how the node removed or moved targets by itself, and an explanation, or None.
+    """Return a sentence about how the node removed or moved targets by itself, with an explanation, else None.
 
     If the submission itself spawns the targets, it may move and remove them, so the result is None.
     """

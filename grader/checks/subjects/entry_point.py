@@ -185,7 +185,7 @@ def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
 
 
 def _is_top_level(module: Module, call: ast.Call) -> bool:
-    """Return whether this is a call to rclpy.init or rclpy.spin in a statement at the top level of the file.
+    """Return whether the call is to rclpy.init or rclpy.spin, and is in a top-level statement of the file.
 
     Calls inside statements with a block, such as if and try, do not count.
     """

@@ -90,7 +90,7 @@ def tolerances(arc: Arc, rounding_m: float) -> tuple[float, float, float]:
 
 
 def stopped(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
-    """Return a finding about a call that did not end in time, raised an exception or ended the program, or None."""
+    """Return a finding if the call did not end in time, raised an exception or ended the program, else None."""
     if called.ended == "exit 0":
         return None
     where = evidence.code.start
@@ -116,7 +116,7 @@ def _raiser(evidence: Evidence, called: Called, name: str) -> str:
 
 
 def _missing(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
-    """Return a finding if the module or the function is missing, or None."""
+    """Return a finding if the module or the function is missing, else None."""
     module = evidence.trial.calls.function.partition(":")[0]
     file = module_file(module, evidence.submission.files)
     if file is None:
@@ -133,7 +133,7 @@ def _missing(evidence: Evidence, called: Called, expected: str, name: str) -> Fi
 
 
 def _late(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
-    """Return a finding if a call did not return, or was not made because an earlier call did not return, or None."""
+    """Return a finding if the call did not return, or was not made because an earlier call did not, else None."""
     late = any(each.ended == TOO_LATE for each in evidence.run.called or ())
     if not late or called.ended not in (TOO_LATE, ""):
         return None
