@@ -101,7 +101,7 @@ def _opened(paths: Iterable[Path]) -> Iterator[tuple[Path, int]]:
 
 
 def _links(paths: Iterable[Path]) -> Iterator[tuple[Path, Path]]:
-    """Yield the links in these paths, with their targets. The folder that contains a link is given by its real path."""
+    """Yield the links in these paths, with their targets. The path of a link contains no other link."""
     for path in paths:
         place, rest = Path("/"), list(path.parts[1:])
         for _ in range(_MOST_NAMES):

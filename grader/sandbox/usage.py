@@ -91,7 +91,7 @@ class Guard:
     def worked_s(self, begin: float, end: float) -> float:
         """Return approximately the CPU time (s) that the cell used between two times of CLOCK_MONOTONIC.
 
-        The CPU time is read every EVERY_S, so time shortly before and after may count too.
+        The CPU time is read every EVERY_S, so CPU time shortly before `begin` or after `end` may count, too.
         """
         first = self._worked[0][1]
         before = max((cpu for at, cpu in self._worked if at <= begin), default=first)

@@ -1,4 +1,4 @@
-"""Check the course's folder: its path must suit all programs of the set-up, and its file system must run programs.
+"""Check the course's folder: the programs of the set-up must support its path, and must be able to run there.
 
 Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
 of Python 3.6.

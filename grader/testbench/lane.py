@@ -137,9 +137,9 @@ class Lane:
             self._process.stdin.flush()
 
     def run(self, node: str, behaviour: Behaviour, test_s: float) -> Ended:
-        """Run the tests on a node (the id of a broken node, or "" for the correct node), and return the result.
+        """Run the tests on a node, and return the result.
 
-        Each test may take `test_s` seconds.
+        `node` is the id of a broken node, or "" for the correct node. Each test may take `test_s` seconds.
 
         Raises:
             MachineError: the sandbox, pytest or rclpy does not work on this machine.
@@ -171,7 +171,7 @@ class Lane:
             raise MachineError(message)
 
     def kill(self) -> None:
-        """Kill all processes of the room and of its cells, or the session and all its descendants."""
+        """Kill all processes of the room and its cells. Without a sandbox, kill the session and all its descendants."""
         self._killed = True
         if not self._in_cell and self._process.poll() is None:
             kill_descendants(self._process.pid)

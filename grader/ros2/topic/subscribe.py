@@ -46,7 +46,7 @@ def subscribe(
     profile: Any,  # noqa: ANN401
     args: argparse.Namespace,
 ) -> None:
-    """Subscribe to a topic, and call `show` with each message and its information.
+    """Subscribe to a topic, and call `show` with each message and information about it.
 
     Report lost messages unless the options disable such reports.
     """
