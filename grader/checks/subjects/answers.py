@@ -61,11 +61,11 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class OneOf:
-    """The correct strings. Upper and lower case and additional spaces do not matter."""
+    """The correct strings. Upper and lower case do not matter, and several spaces count as one."""
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
     accepts: tuple[str, ...] = strings(
-        about="The accepted answers. Upper and lower case and additional spaces do not matter."
+        about="The accepted answers. Upper and lower case do not matter, and several spaces count as one."
     )
     cause: str = string("a reason", default=" ", about="The reason that the student reads if the answer is wrong.")
 
