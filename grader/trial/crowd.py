@@ -94,7 +94,7 @@ class Stalls:
         return (begun_s, now_s) if max(owed) > STALL_S else None
 
     def worked_for_node_s(self, begin_s: float, end_s: float) -> float:
-        """Return the CPU time (s) that the simulator used between two times because of the node."""
+        """Return the CPU time (s) that the simulator spent on the node between two times."""
         return sum(spent_s for at_s, spent_s in self._for_node if begin_s < at_s <= end_s)
 
 

@@ -21,18 +21,18 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 CONDUCTORS = {"ROS_PYTHON_CHECK_FIELDS": "0"}
-"""Additional environment variables of conductors: they disable the check of the values in messages. This check helps
+"""Environment variables only for conductors. They disable the check of the values in messages. This check helps
 beginners, but it would slow down the simulator in every frame."""
 
 
 NOBODYS_HOME = Path("/nonexistent")
-"""The HOME of a server, which only root can create. rclpy loads LTTng, which follows the instructions of any program
-that listens on a socket in HOME. Therefore, a folder in /tmp would not be safe: another user could create it. Each fork
-gets a HOME of its own."""
+"""The HOME of a server: a folder that only root can create. rclpy loads LTTng, which follows the instructions of any
+program that listens on a socket in HOME. Therefore, a folder in /tmp would not be safe: another user could create it.
+Each fork gets a HOME of its own."""
 
 
 class ForkServer:
-    """A process of grader.trial.fork_server. It exits when this process exits."""
+    """A process that runs grader.trial.fork_server. It exits when this process exits."""
 
     def __init__(self, kind: Literal["conductor", "node"], ros: installation.Ros) -> None:
         self._kind, self._ros = kind, ros
@@ -42,7 +42,7 @@ class ForkServer:
         atexit.register(self.close)
 
     def request(self, order: Mapping[str, Any], descriptors: Sequence[int]) -> Fork:
-        """Send a request with these descriptors. Any thread may call this method."""
+        """Send a request with these file descriptors. Any thread may call this method."""
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
             passed = [*descriptors, theirs.fileno()]

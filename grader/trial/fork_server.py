@@ -5,19 +5,20 @@ A grader has two fork servers: one forks the conductors of its trials, and the o
 must not be able to find out the memory layout of the conductor. A server has no data about the trials. Its forks enter
 the sandbox before they read anything but the request, and student code never runs outside the sandbox.
 
-The server runs outside the sandbox. It reads requests from the grader on a socket, each with descriptors:
+The server runs outside the sandbox. It reads requests from the grader on a socket, each with file descriptors:
 
-- **conductor**: JSON with the control groups, the user, the limits and HOME. The descriptors are a process in the room
-  (pidfd_open(2)), standard input, output and error, the socket on which the conductor requests nodes, and the socket
-  for the result;
+- **conductor**: JSON with the control groups, the user, the limits and HOME. The file descriptors are a process in the
+  room (pidfd_open(2)), standard input, output and error, the socket on which the conductor requests nodes, and the
+  socket for the result;
 - **node**: JSON with the control groups, the limits, the system call filter, the workspace and the number of nodes. The
-  descriptors are the socket on which the conductor requests nodes, and the socket for the result. For each node, the
-  conductor sends only descriptors: a process in the node's cell, standard input, output and error, and the socket for
-  the result. The conductor sends these descriptors before it starts any node.
+  file descriptors are the socket on which the conductor requests nodes, and the socket for the result. For each node,
+  the conductor sends only file descriptors: a process in the node's cell, standard input, output and error, and the
+  socket for the result. The conductor sends them before it starts any node.
 
-On the socket for the result of a conductor or a node, the server sends STARTED with a descriptor of the new process,
-and at the end STATUS. If the other end of this socket is closed, the process is killed. On the socket for the result of
-a **node** request, the process that forks the nodes sends only STARTED.
+Each conductor and each node has its own socket for the result. On this socket, the server sends STARTED with a file
+descriptor of the new process, and STATUS when the process has ended. If the other end of the socket is closed, the
+process is killed. Each **node** request also has such a socket. On this socket, the process that forks the nodes sends
+only STARTED.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ NODES_SOCKET = 3
 MOST_REQUEST = 64 * 1024
 """The maximum size of a request (bytes)."""
 CONDUCTORS, NODES = 6, 5
-"""The numbers of descriptors that are sent to request a conductor, and to request a node."""
+"""The number of file descriptors that are sent to request a conductor, and to request each node."""
 CELLS_USER = 1000
 """The user id of the processes in a cell (bubblewrap.cell)."""
 _AHEAD = ("grader.trial.conductor", "grader.trial.simulated", "grader.trial.wall", "grader.trial.without_node")
@@ -87,8 +88,8 @@ def main() -> None:
 def _exit_on_errors() -> Iterator[None]:
     """If an error occurs, print one line and end this process.
 
-    No traceback is printed, because Python would read source files, and perhaps import modules, from the disk that this
-    process sees. Student code may have created this disk (entering.enter), and the process may run as root.
+    No traceback is printed, because Python would read source files, and perhaps import modules, from the file system
+    that this process sees. Student code may have mounted it (entering.enter), and the process may run as root.
     """
     try:
         yield
@@ -181,7 +182,7 @@ def _report_to(stderr: int, problem: str) -> None:
 
 
 def _next_node(conductor: socket.socket, nodes: int) -> list[int]:
-    """Wait for the cells of the nodes. For each cell, fork, and return its descriptors in the child process."""
+    """Wait for the cells of the nodes. For each cell, fork, and return the cell's descriptors in the child process."""
     for _ in range(nodes):
         data, descriptors, *_ = socket.recv_fds(conductor, 1, NODES)
         if not data:  # the conductor has exited

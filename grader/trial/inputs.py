@@ -38,8 +38,8 @@ class Inputs:
 
     Each row of `drives` contains a start time (s) and the speeds from that time on (m/s, rad/s). `arguments` are
     additional ROS arguments of the node, `params_file` is the text of a file with parameters, and `targets` are the
-    targets with their places. After the first catch, the trial withdraws the first target in `withdrawn` that is left.
-    All other fields have the same meaning as in Scenario.
+    targets with their places. After the first catch, the trial withdraws the first target in `withdrawn` that has not
+    been caught. All other fields have the same meaning as in Scenario.
     """
 
     drives: tuple[tuple[float, float, float], ...] = ()
@@ -109,7 +109,7 @@ def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
 
 
 def _settings(parameters: Mapping[str, Setting]) -> list[str]:
-    """Return rules such as "radius:=2.0" for `--ros-args -p`."""
+    """Return parameter assignments such as "radius:=2.0" for `--ros-args -p`."""
     return [f"{name}:={json.dumps(value)}" for name, value in parameters.items()]
 
 

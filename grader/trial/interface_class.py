@@ -14,7 +14,7 @@ _TYPE = re.compile(r"([a-z][a-z0-9_]*)/(msg|srv)/([A-Z][A-Za-z0-9]*)")
 
 
 def load_class(type_name: str, kind: Literal["msg", "srv"], prefixes: Iterable[Path]) -> Any | None:  # noqa: ANN401
-    """Return the class of an interface such as `geometry_msgs/msg/Twist`, or None if it is not in any prefix.
+    """Return the class of an interface such as `geometry_msgs/msg/Twist`, or None if no prefix contains it.
 
     A submission chooses the name, so nothing is imported unless a prefix has an interface file of this name.
     """

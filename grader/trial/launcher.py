@@ -44,8 +44,8 @@ _AHEAD = (
     "type_description_interfaces.msg",
 )
 POSTPONED = ("numpy", "yaml")
-"""Modules that rclpy and the messages import, and that most nodes never use. They account for half of the CPU time that
-importing rclpy takes.
+"""Modules that most nodes never use, although rclpy and the message packages import them. They account for half of the
+CPU time that importing rclpy takes.
 """
 _NOT_NEEDED = "rosidl_generator_py.generate_py_impl"
 """A module that creates Python code from interfaces and imports a parser. Messages can be used without this module."""
@@ -105,7 +105,7 @@ def import_ahead() -> list[Postponed]:
 
 
 def _initialize_with(ours: list[str]) -> None:
-    """Add our arguments to the initialization of every ROS context."""
+    """Make every ROS context use the ROS arguments `ours` in addition to its own arguments."""
     from rclpy.context import Context
 
     original = Context.init
@@ -123,9 +123,9 @@ def deliver_before_destroying() -> None:
 
     After a crash, a publisher does not wait.
 
-    A reader drops a message that it receives after the notice that the publisher is gone. Without the delay, it would
-    depend on the machine whether the last message of a node arrives before this notice. The loops keep the node busy
-    instead of sleeping, so that simulated time does not advance.
+    A subscription drops a message that arrives after the notice that the publisher is gone. Without the wait, it would
+    depend on the load of the machine whether the last message of a node arrives before this notice. During the wait,
+    the node is busy instead of sleeping, so that simulated time does not advance.
     """
     from rclpy.duration import Duration
     from rclpy.publisher import Publisher

@@ -32,7 +32,7 @@ class LaunchError(Exception):
 
 
 def await_launcher(stdout: IO[bytes], stderr: IO[bytes] | None = None) -> None:
-    """Wait until a launcher is ready to receive the command that it must run.
+    """Wait until a launcher is ready to receive the data about its node.
 
     Raises:
         LaunchError: the launcher exited. The message is the output of the launcher, if any.
@@ -59,7 +59,8 @@ class Launcher(ABC):
     def await_started(self) -> tuple[int, ...]:
         """Wait until the process exists.
 
-        Return its process id and, in a cell, the id of bubblewrap, the ancestor of all orphans in the cell.
+        Return its process id. For a cell, also return the process id of bubblewrap, which is an ancestor of all
+        orphaned processes in the cell.
 
         Raises:
             LaunchError: the process could not be started.

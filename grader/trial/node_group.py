@@ -73,7 +73,7 @@ class NodeGroup:
         return sum(process.worked_s(begin, end) for process in self.processes)
 
     def started_ready_s(self) -> float:
-        """Return the time (s) for which the processes that the nodes started have run or waited for a processor."""
+        """Return the total time (s) for which the processes started by the nodes ran or waited for a processor."""
         return sum(process.started_ready_s() for process in self.processes)
 
 

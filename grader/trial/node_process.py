@@ -33,8 +33,7 @@ STOP_S = 3.0
 """The maximum time that the node may take to exit after SIGINT (s). After this time, the grader sends SIGTERM and, 1 s
 later, SIGKILL. The time for which the node waits for a processor does not count."""
 MOST_WAITED_S = 12.0
-"""The time for which the node waits for a processor is subtracted from the time that it takes to exit, up to this
-maximum (s)."""
+"""The maximum time (s) that is subtracted from a node's time to exit, because the node waited for a processor."""
 
 
 def enlarge(pipe: int) -> int:
@@ -113,7 +112,7 @@ class NodeProcess:
         self._launcher.close()
 
     def await_ready(self) -> None:
-        """Wait until the launcher is ready to receive the command that it must run.
+        """Wait until the launcher is ready to receive the data about its node.
 
         Raises:
             LaunchError: the launcher exited.
@@ -139,7 +138,7 @@ class NodeProcess:
         return self._guard.worked_s(begin, end) if self._guard is not None else 0.0
 
     def started_ready_s(self) -> float:
-        """Return the time (s) for which the processes that the node started have run or waited for a processor."""
+        """Return the total time (s) for which the processes started by the node ran or waited for a processor."""
         return self._guard.ready_s(but=self.pid) if self._guard is not None else 0.0
 
     def read_output(self, now_s: float) -> int:

@@ -39,17 +39,18 @@ OF_EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
 MOST_OBSERVED = 50_000
 """The maximum number of nodes and endpoints in all snapshots together."""
 MOST_MESSAGES = 20_000
-"""The maximum number of messages on one judged topic, and on all other topics together."""
+"""The maximum number of messages on each judged topic, and on all other topics together."""
 MOST_BYTES = 32 * 1024 * 1024
 MOST_JUDGED_BYTES = 4 * 1024 * 1024
-"""The maximum total size (bytes) of the messages on all topics that are not judged, and on one judged topic."""
+"""The maximum total size (bytes) of the messages: on all topics together that are not judged, and on each judged
+topic."""
 
 
 class Recorder(Node):
     """A hidden node that subscribes to the topics in the graph, up to a limit.
 
-    The simulator itself reports the commands to turtle1 and the messages on its own topics. The recorder subscribes to
-    such a topic only if other nodes publish on it, too, and not to /turtle1/cmd_vel.
+    The simulator itself reports the commands to turtle1 and the messages on its own topics. The recorder never
+    subscribes to /turtle1/cmd_vel, and to the simulator's topics only if other nodes publish on them, too.
     """
 
     def __init__(
@@ -74,7 +75,7 @@ class Recorder(Node):
         self.graph_dropped = 0
         self.follows_services = False
         self.own_nodes: tuple[str, ...] = (self.get_fully_qualified_name(),)
-        """The full names of the grader's nodes. The trial adds the names of its other nodes."""
+        """The full names of the grader's nodes: at first only the recorder. The trial adds the other nodes."""
         self._offers: set[Offer] = set()
         self._judged = frozenset(judged)
         self._subscribed: Counter[str] = Counter()

@@ -55,7 +55,7 @@ FIELDS = ("linear.x", "linear.y", "linear.z", "angular.x", "angular.y", "angular
 
 @dataclass(frozen=True)
 class Command:
-    """A geometry_msgs/msg/Twist that the turtle received on /turtle1/cmd_vel: x, y, z in m/s, and x, y, z in rad/s."""
+    """A geometry_msgs/msg/Twist that the turtle received on /turtle1/cmd_vel: `linear` in m/s, `angular` in rad/s."""
 
     t_s: float
     mono_s: float
@@ -136,8 +136,8 @@ class ProcessEnd:
     the scenario. `out_of` is set if the grader or the kernel stopped the process because it used more "memory",
     "processes" or "files" than a node may use. `stop_s` is the time from SIGINT to the exit of the process (s of wall
     time, without the time for which it waited for a processor), or None if the process exited on its own. `t_s` is the
-    time on the trial's clock (s) of SIGINT or, if the process exited on its own, of its exit. `exit_code` is negative
-    for a signal, as in subprocess.
+    time of SIGINT or, if the process exited on its own, the time of its exit (s on the trial's clock). `exit_code` is
+    negative for a signal, as in subprocess.
     """
 
     by: Literal["itself", "SIGINT", "SIGTERM", "SIGKILL"]
@@ -183,8 +183,8 @@ class Recording:
     beside: tuple[Beside, ...] = ()
     """The other nodes of the submission in the same trial."""
     own_nodes: tuple[str, ...] = ("/turtlesim",)
-    """The grader's nodes, and the additional nodes that the exercise requires. Every other node in the graph counts as
-    the node of the trial."""
+    """The full names of the grader's nodes, such as /turtlesim and /spawner. Every other node in the graph counts as a
+    node of the submission."""
     interventions: tuple[str, ...] = ()
     """The services and actions of the simulator that were called, in order, such as "spawn" or "teleport_absolute".
     After a maximum number of calls, only names that are not in the tuple yet are added."""
@@ -214,14 +214,14 @@ class Recording:
     seconds: dict[str, float] = field(default_factory=dict)
     """The wall time of each part of the trial: start, discovery, run, stop (s)."""
     stalls: tuple[tuple[float, float], ...] = ()
-    """The periods of a trial in wall time in which the machine let the simulator or the node wait for a processor:
-    (from, to) on the trial's clock (s). If the system's clock was set, the whole trial is such a period."""
+    """The periods in which the machine made the simulator or the node wait for a processor: (from, to) on the trial's
+    clock (s), only in wall time. If the system's clock was set, the whole trial is such a period."""
     crowded: bool = False
     """Whether, in a trial in wall time, other programs used the processors so much that the simulator and the node
     often had to wait."""
 
     def seen_from(self, executable: str) -> Recording:
-        """Return the recording, but with the output and the end of an additional node.
+        """Return a copy of the recording with the output and the end of an additional node instead.
 
         Raises KeyError if no additional node ran this executable.
         """

@@ -1,6 +1,6 @@
 """Convert a recording to JSON and back.
 
-The conductor sends this JSON to the grader, and recordings on the disk contain it.
+The conductor sends this JSON to the grader, and it is a part of each recording on the disk.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 def to_json(recording: Recording, *, messages: bool = True) -> dict[str, Any]:
-    """Convert a recording to plain data. Without `messages`, leave out the message contents, which are in a bag."""
+    """Convert a recording to plain data. Without `messages`, leave out the message contents: they are in a bag."""
     frames = {name: getattr(recording.frames, name).tolist() for name in Frames.__dataclass_fields__}
     return _to_json(recording, frames, messages=messages)
 

@@ -44,8 +44,8 @@ time. Therefore, its result must come from a trial in wall time."""
 GRAPH_EVERY = 31
 """The number of frames between two checks of the graph and of the DDS events (half a second)."""
 OWN_EVERY = 5
-"""The number of frames between two checks for work that no message announces, such as our own log lines and the steps
-of an action."""
+"""The number of frames between two checks for work that no message from a node announces, such as log messages of the
+simulator and the steps of an action."""
 WAITS_EVERY = 7
 """The number of frames between two checks of what the node's threads are waiting for."""
 ENDING_S = 0.5

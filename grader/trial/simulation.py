@@ -125,7 +125,7 @@ class Simulation:
     def crowded(self) -> bool:
         """Return whether other programs kept the simulator and the node from running.
 
-        In simulated time, other programs do not matter.
+        Return False in simulated time, where other programs do not affect the result.
         """
         return False
 
@@ -154,7 +154,7 @@ class Simulation:
             self.frames.append((now_s, state.x, state.y, state.theta, state.linear, state.angular, state.wall))
 
     def is_over(self, now_s: float) -> bool:
-        """Return whether the trial ends early, because turtle1 has been alone for long enough."""
+        """Return whether the trial ends early, because all other turtles have been gone for `alone_s` of the inputs."""
         alone_s = self.inputs.alone_s
         return alone_s is not None and self._in_company_s is not None and now_s - self._in_company_s >= alone_s
 
@@ -261,7 +261,7 @@ class Simulation:
             self.interventions_dropped += 1
 
     def wind_down(self) -> None:
-        """Send SIGINT to the nodes and continue, in wall time, until they have exited."""
+        """Send SIGINT to the nodes, and run frames in wall time until the nodes have exited."""
         self.node.interrupt()
         begun, from_s = time.monotonic(), self.now()
         frames = 0

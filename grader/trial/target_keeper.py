@@ -26,10 +26,11 @@ SERVICE = "/catch"
 ANNOUNCED_EVERY_S = 0.5
 NEAR_M = 1.0
 LATE_S = 1.5
-"""If the service is late, it exists from LATE_S (s) after turtle1 has first come within NEAR_M (m) of a target, or when
-turtle1 has stood still for LATE_S, but not before `catch_from_s` of the inputs. In this time, every node that is fast
-enough to catch all targets also comes within its reach, and calls the service. A node may also wait for the service
-before it drives."""
+"""A late service is offered this time (s) after turtle1 first came within NEAR_M (m) of a target, or when turtle1 has
+stood still for this time, but not before `catch_from_s` of the inputs. In this time, every node that is fast enough to
+catch all targets comes close enough to the target to call the service. A node may also wait for the service before it
+drives.
+"""
 
 
 class TargetKeeper(Node):

@@ -66,10 +66,10 @@ def nearest_first(targets: tuple[Target, ...], start: Pose) -> tuple[Target, ...
 
 
 def to_withdraw(targets: tuple[Target, ...], start: Pose) -> tuple[str, ...]:
-    """Return the names of the targets of which the trial withdraws the first that is left after the first catch.
+    """Return the names of two targets: after the first catch, the trial withdraws the first of them that is not caught.
 
-    A node that does not forget a withdrawn target drives to it, since other targets are farther away. There are no
-    names if there are fewer than three targets.
+    A node that does not forget a withdrawn target drives to it, since other targets are farther away. Return no names
+    if there are fewer than three targets.
     """
     order = nearest_first(targets, start)
     return tuple(each.name for each in order[2:0:-1]) if len(order) > 2 else ()

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from grader.trial.recording import ClockName, Pose, Recording
 
 MOST_ANSWER = 256 * MIB
-"""The maximum size of one response from the conductor (bytes). Most of a response consists of a recording's
-messages."""
+"""The maximum size of one response from the conductor (bytes). A large response consists mostly of the messages in a
+recording."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class WallTimeNeeded(Exception):  # noqa: N818 - not an error
 
 
 class OverwhelmedError(Exception):
-    """The node made the simulator fail, or kept the trial from finishing (`hung`). The message explains how."""
+    """The node made the simulator fail, or kept the trial from finishing (`hung` is true). The message explains how."""
 
     def __init__(self, how: str, *, hung: bool = False) -> None:
         super().__init__(how)

@@ -117,7 +117,7 @@ class TurtleInterface:
             self._rotate.before_frame()
 
     def after_frame(self, now_s: float) -> None:
-        """Publish the pose and the colour if they are due at `now_s` (s). Send feedback on rotations, and results."""
+        """Publish the pose and the colour if they are due at `now_s` (s). Send feedback and results of rotations."""
         if not self._rotate.idle:
             self._rotate.after_frame()
         turtle = self._turtle()

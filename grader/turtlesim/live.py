@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from grader.turtlesim.world import World
 
 EVERY = 12
-"""The number of frames per picture. There are at most about 5 pictures per second: unchanged ones are not sent."""
+"""The number of frames per picture: at most about 5 pictures per second. A picture is not sent if nothing changed."""
 SIZE_PX = 330
 TURTLE: tuple[int, int, int] = (124, 197, 118)
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 MOST_TURTLES = 64
 """The maximum number of turtles. The real turtlesim has no limit, but ours must not crash if spawning never stops."""
 MOST_NAME = 300
-"""The maximum length of a name in a log message. A longer name is shortened. Any node can send any name, even with
+"""The maximum length of a name in a log message. A longer name is shortened. Any node can send any name, even one with
 terminal control sequences."""
 
 _FRAMES_TO_LEAVE = 4

@@ -39,7 +39,7 @@ class Difference:
 
 
 def replay(inputs: Path, poses: Path) -> Difference:
-    """Replay the inputs. Return the largest difference between a pose, converted to float32, and the recorded pose."""
+    """Replay the inputs. Return the largest difference between a computed pose (as float32) and the recorded pose."""
     worst = Difference(0.0, 0, FIELDS[0])
     for (frame, recorded), (turtle, _) in zip(_poses(poses), _frames(inputs), strict=False):
         for field, theirs, ours in zip(FIELDS, recorded, _as_published(turtle.state()), strict=True):
@@ -66,7 +66,7 @@ class _Input:
 
 
 def _frames(inputs: Path) -> Iterator[tuple[Turtle, Rotation | None]]:
-    """After each frame, yield turtle1 and the rotation that it had after the frame's inputs. This never ends."""
+    """After each frame, yield turtle1 and the rotation that it had after the frame's inputs, without end."""
     world = World()
     turtle = world.turtles["turtle1"]
     by_frame = _inputs(inputs)

@@ -41,7 +41,7 @@ _NO_WINDOW = (
     "This turtlesim has no window. To see the turtle, stop turtlesim with Ctrl-C and start it again with --view "
     "(a page in the browser) or --view terminal."
 )
-"""This text is printed only on a terminal. In a pipe, the output is the same as the output of the real turtlesim."""
+"""This text is printed only on a terminal. Otherwise, the output is the same as the output of the real turtlesim."""
 
 
 class Feed(Protocol):
@@ -63,7 +63,10 @@ class Feed(Protocol):
 
 
 class View(Protocol):
-    """A view of the simulator. `paused` is true while the turtles' time is stopped, and `open` until the view ends."""
+    """A view of the simulator.
+
+    `paused` is true while the turtles' time is stopped. `open` is true until the view ends.
+    """
 
     paused: bool
     open: bool
@@ -80,8 +83,8 @@ class View(Protocol):
 def main(open_view: OpenView, args: Sequence[str] | None = None) -> int:
     """Run turtlesim until Ctrl-C, SIGTERM or the end of a view in the terminal.
 
-    Return the exit code: 0, or 2 if the node could not be created, the picture could not be written, or ROS_DOMAIN_ID
-    is invalid, or the exit code of a GraderError. Invalid arguments raise SystemExit.
+    Return the exit code: 0, the exit code of a GraderError, or 2 if the node could not be created, the picture could
+    not be written, or ROS_DOMAIN_ID is invalid. Invalid arguments raise SystemExit.
 
     `open_view` starts the view for `--view` on the given port. If the port is None, the view chooses a port.
     """
@@ -127,7 +130,7 @@ def _node(view: View | None) -> TurtlesimNode:
 def spin(node: TurtlesimNode, stop: threading.Event, view: View | None = None) -> None:
     """Compute a frame every 16 ms of CLOCK_MONOTONIC until `stop` is set. Missed frames are computed late, not skipped.
 
-    The end of a view in the terminal also ends this function. After the end of a page, the simulator continues.
+    When a view in the terminal ends, this function returns, too. When a page ends, the simulator continues.
     While the simulator is paused in the view, the turtles' time does not advance.
     """
     executor = SingleThreadedExecutor(context=node.context)

@@ -32,9 +32,9 @@ Rgb = tuple[int, int, int]
 
 
 class Picture:
-    """An image of the trail, to which new parts of the trail are added.
+    """The canvas of a terminal, with an image of the trail. `begin` paints the whole trail, and `add` its new parts.
 
-    The image is repainted only if the trail is cleared or replaced by an image, or if the size changes.
+    `begin` is called only if the trail is cleared or replaced by an image, or if the size changes.
     """
 
     def __init__(self, side: int) -> None:

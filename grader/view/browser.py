@@ -13,7 +13,7 @@ _OPENED_S = 3.0
 
 
 def there_is_one() -> bool:
-    """Return whether a page can be opened on a screen, or by the program in BROWSER (as in a remote editor)."""
+    """Return whether there is a screen for a browser, or BROWSER names a program, as in a remote editor."""
     return bool(os.environ.get("BROWSER")) or _screen()
 
 
@@ -27,7 +27,7 @@ def over_ssh() -> bool:
 
 
 def from_elsewhere(port: int) -> str:
-    """Return instructions for opening this machine's page: over ssh, on the user's machine, and else on this one."""
+    """Return instructions for opening the page: over ssh, on the user's own machine, and otherwise on this machine."""
     if over_ssh():
         user = os.environ.get("USER") or "USER"
         server = os.environ["SSH_CONNECTION"].split()[2:3] or ["THIS_MACHINE"]

@@ -111,7 +111,7 @@ class Hands:
                 self._simulator.send(json.dumps(what).encode())
 
     def _full(self, turtle: str) -> str | None:
-        """Return the full name of the turtle, or None if it does not exist, since pages must not create topics."""
+        """Return the full name of a turtle, or None if there is no such turtle: pages must not create topics."""
         if turtle not in self._state.turtles:
             return None
         return f"{self._state.namespace.rstrip('/')}/{turtle}"

@@ -30,10 +30,11 @@ SENT_EVERY_S = 0.25
 detects whether the simulator is still running.
 """
 MOST_LINES = 1500
-"""The maximum number of lines in a message. A line takes about 90 bytes, so the message fits into a socket buffer."""
+"""The maximum number of drawn lines in a message. With about 90 bytes per line, the message fits into a socket buffer.
+"""
 MOST_RECEIVED, MOST_SENT = 64, 200
-"""The maximum numbers of topics with commands, and of topics with published messages, in one message to the view. 64
-turtles do not have more topics, but a node can spawn and kill turtles without end while the view is busy, and each name
+"""The maximum number of topics with commands, and of topics with published messages, in one message to the view. These
+are enough for 64 turtles. However, a node can spawn and kill turtles without end while the view is busy, and each name
 can have 240 characters."""
 LARGEST = 1 << 20
 """The buffer size for receiving a message (bytes). No message is larger."""

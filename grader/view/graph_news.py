@@ -31,7 +31,7 @@ class GraphNews:
         self._drawing: asyncio.Task[None] | None = None
 
     def look(self, system: System) -> None:
-        """Send the topics of this system to all pages, and also the graph if it has changed."""
+        """Send the topics of the ROS system to all pages, and the graph, too, if it has changed."""
         self._system = system
         if not self._hub.pages:
             return
@@ -40,7 +40,7 @@ class GraphNews:
             self._drawing = asyncio.create_task(self._draw(system))
 
     def whole(self) -> dict[str, object]:
-        """Return the domain for a new page, and the topics and the graph if they are known."""
+        """Return the data for a new page: the domain id, and the topics and the graph if they are known."""
         known = {"topics": self._topics(), "graph": self._graph} if self._drawn is not None else {}
         return {"domain": os.environ.get("ROS_DOMAIN_ID") or "0", **known}
 

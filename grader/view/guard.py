@@ -21,8 +21,8 @@ NAMES = ("127.0.0.1", "localhost")
 """The host names that a request for this machine may contain. All ports are allowed, since ssh may forward another
 port."""
 _HOST = re.compile(rf"({'|'.join(map(re.escape, NAMES))})(:\d+)?", re.ASCII)
-"""Matches the host of a request. The content security policy of the response contains this host, so nothing else may
-be in it."""
+"""Matches the Host header of a request. The content security policy of the response contains its value, so nothing
+but a host and a port may match."""
 
 
 def refusal(headers: Mapping[str, str], *, live: bool) -> str | None:

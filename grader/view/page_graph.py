@@ -19,8 +19,8 @@ up."""
 
 
 MOST_ARROWS = 2000
-"""The maximum number of arrows, of nodes and of topics. Graphviz needs a second for this number of arrows, and the time
-grows with the square of the number."""
+"""The maximum number of arrows. It is also the maximum number of nodes, and of topics. Graphviz needs a second for this
+number of arrows, and the time grows with the square of the number."""
 NOTHING: dict[str, Any] = {"width": 0.0, "height": 0.0, "nodes": [], "arrows": []}
 """The layout of a graph without nodes and topics."""
 

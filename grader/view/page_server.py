@@ -29,7 +29,7 @@ ASSETS = Path(__file__).parent / "assets"
 STYLE = Path(__file__).parents[1] / "report/assets/page.css"
 """The style sheet of the reports, which this page also uses."""
 HOLD_S = 0.5
-"""The time without a message (s) after which no key of a page counts as held. Pages send held keys repeatedly."""
+"""If a page sends no message for this time (s), none of its keys counts as held. Pages send held keys repeatedly."""
 _LARGEST = 10_000
 
 

@@ -15,7 +15,7 @@ _TABLES = (Path("/proc/net/tcp"), Path("/proc/net/tcp6"))
 
 
 def is_of_another_user(client: tuple[str, int] | None) -> bool:
-    """Return whether a user other than this user and root opened the connection with this address and port.
+    """Return whether someone other than this user or root opened the connection with this address and port.
 
     Return False if the user is not known.
     """

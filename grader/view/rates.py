@@ -9,8 +9,8 @@ WINDOW_S = 5.0
 """A rate is computed over this time (s), unless the last two arrivals are further apart."""
 _LONGEST_S = 30.0
 _GAPS = 2.5
-"""The messages are considered to have stopped after this number of average intervals, but at least 1 s, without an
-arrival."""
+"""The messages are considered to have stopped if none arrives for this number of average intervals, and for at least
+1 s."""
 _AT_LEAST_S = 1.0
 
 

@@ -146,10 +146,12 @@ def _write(file: Path, drawn: Picture) -> None:
 
 
 def _shown_live(show: Show, port: int | None) -> bool:
-    """Serve the graph on a page until Ctrl-C. Return False immediately if no browser can show the page.
+    """Serve the graph on a page until Ctrl-C.
 
-    If no browser can be opened here, the user opens the page, but only with --port or in a terminal over ssh. Return
-    False, too, if a library for the page is not installed.
+    Return False immediately if no browser can show the page, or if a library for the page is not installed.
+
+    If no browser can be opened on this machine, the page is served only with --port or in a terminal over ssh. The user
+    then opens the page.
     """
     from grader.view import browser
 

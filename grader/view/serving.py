@@ -1,4 +1,4 @@
-"""Serve a page until Ctrl-C or until its program exits, and open it in the user's browser."""
+"""Open a page in the user's browser, and serve the page until Ctrl-C or until the simulator exits."""
 
 from __future__ import annotations
 

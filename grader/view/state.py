@@ -16,7 +16,7 @@ MOST_RATES = 1000
 
 
 class TurtleState(NamedTuple):
-    """The state of a turtle and its pen. The units are m, m, rad, m/s and rad/s."""
+    """The state of a turtle and its pen. The units of the first five values are m, m, rad, m/s and rad/s."""
 
     x: float
     y: float
@@ -31,7 +31,7 @@ class TurtleState(NamedTuple):
 
 
 class Command(NamedTuple):
-    """The last command on a topic: its time (s, monotonic), and linear (m/s) and angular (rad/s) x, y, z."""
+    """The last command on a topic: its time on CLOCK_MONOTONIC (s), linear x, y, z (m/s), angular x, y, z (rad/s)."""
 
     when_s: float
     twist: tuple[float, ...]
@@ -39,7 +39,7 @@ class Command(NamedTuple):
 
 @dataclass
 class State:
-    """The whole state of a simulator. `now_s` is the time of the last message."""
+    """The whole state of a simulator. `now_s` is the time of its last message."""
 
     now_s: float = 0.0
     paused: bool = False
@@ -48,7 +48,7 @@ class State:
     turtles: dict[str, TurtleState] = field(default_factory=dict)
     trail: Trail = field(default_factory=Trail)
     pieces: list[Stroke] = field(default_factory=list)
-    """The lines that the last message added."""
+    """The strokes that the last message added to the trail."""
     commands: dict[str, Command] = field(default_factory=dict)
     rates: dict[str, Arrivals] = field(default_factory=dict)
     """The arrivals on the simulator's topics. No subscription is needed to measure these rates."""

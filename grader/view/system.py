@@ -1,4 +1,4 @@
-"""The ROS system for a view: the graph, the rates of topics, and the node that drives for the user.
+"""The ROS system for a view: the graph, the rates of topics, and the node that sends the user's commands.
 
 The listening node is hidden and has no services, so that it does not change the visible graph. To measure
 the rate of a topic, this node subscribes to the topic, but only while a page shows rates, and only if the simulator

@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from grader.view.system import System
 
 BESIDE = 38
-"""The minimum number of columns next to the canvas. A terminal that is too narrow has only the canvas."""
+"""The minimum number of columns next to the canvas. A terminal that is too narrow shows only the canvas."""
 _BELOW = 6
-"""The number of rows for the title, the simulator's output and the keys, and of one free row."""
+"""The number of rows for the title, the simulator's output and the keys, including one empty row."""
 _LEAST = 8
 _KEYS = "↑ ↓ ← → drive · E R T D G C V B turn, F stops · Space pause · X clear · Z reset · Tab turtle · Q quit"
 
@@ -41,7 +41,7 @@ class Shown(Protocol):
 
     @property
     def system(self) -> System | None:
-        """The running system, or None if it is not known yet."""
+        """The ROS graph and the rates of topics, or None if they are not known yet."""
 
     @property
     def lines(self) -> Iterable[str]:

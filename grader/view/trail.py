@@ -38,7 +38,7 @@ Point = tuple[int, int]
 
 @dataclass
 class Stroke:
-    """A line with one pen (red, green, blue, width in px).
+    """A sequence of line segments, drawn with one pen (red, green, blue, width in px).
 
     `skipped` contains the omitted points of the last segment.
     """

@@ -1,4 +1,4 @@
-"""draw_square: reset turtlesim, then let turtle1 drive around a square until Ctrl-C."""
+"""draw_square: reset turtlesim, then drive turtle1 around a square until Ctrl-C."""
 
 from __future__ import annotations
 

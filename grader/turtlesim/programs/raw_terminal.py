@@ -30,9 +30,9 @@ def is_terminal() -> bool:
 def keyboard() -> Iterator[Callable[..., bytes | None]]:
     """Read standard input without echo and without waiting for Enter. Ctrl-C and Ctrl-Z work as usual.
 
-    Yields a function that waits for keys and returns the bytes that they send. The argument of the function is the
-    timeout in seconds, or None to wait forever. The function returns b"" if the terminal has been closed, or None if
-    the timeout expires.
+    Yields a function that waits for key presses and returns their bytes. The argument of the function is the timeout in
+    seconds, or None to wait forever. The function returns b"" if the terminal has been closed, or None if the timeout
+    expires.
     """
     number = sys.stdin.fileno()
     before = termios.tcgetattr(number)

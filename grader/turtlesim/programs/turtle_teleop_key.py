@@ -37,11 +37,11 @@ _NO_TERMINAL = (
     "file. Start the program in a separate terminal: ros2 run turtlesim turtle_teleop_key"
 )
 _DISCOVERY_S = 2.0
-"""The node waits for the discovery of turtlesim until this time (s) after its start."""
+"""The maximum time (s), from the start of the node, to wait for the discovery of turtlesim."""
 
 
 class Teleop(Node):
-    """The node teleop_turtle. A live view gives this node another name, chooses the turtle, and suppresses messages."""
+    """The node teleop_turtle. A live view gives this node another name, chooses the turtle, and hides its output."""
 
     def __init__(
         self,

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from grader.graph.endpoints import Observed
 
 MOST_FIELDS = 20
-"""The maximum number of fields that the user adds, and of numbers that are plotted for one of them."""
+"""The maximum number of fields that the user adds, and of numbers that are plotted for a field with several numbers."""
 _QOS = QoSProfile(depth=100, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 
 Sample = tuple[float, float | None]
@@ -54,7 +54,10 @@ class Plotted:
         self._told: dict[str, str] = {}
 
     def add(self, typed: str) -> None:
-        """Plot the typed fields, or the numbers of typed messages, until there are MOST_FIELDS of them."""
+        """Plot the fields that the user typed, until there are MOST_FIELDS of them.
+
+        For a topic, or a field that is a message itself, plot all of its numbers.
+        """
         for name in expand(typed):
             if len(self._wanted) < MOST_FIELDS:
                 self._wanted.setdefault(name, "Waiting for this topic.")

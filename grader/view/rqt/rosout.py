@@ -1,4 +1,4 @@
-"""The log of all nodes, for the page of rqt_console: subscribe to /rosout."""
+"""Subscribe to /rosout, the log of all nodes, for the page of rqt_console."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ MOST_LINES = 2000
 MOST_TEXT = 4000
 """The maximum length of a log message in characters."""
 MOST_NAME = 300
-"""The maximum length of the names of nodes, files and functions (characters)."""
+"""The maximum length of the name of a node, file or function (characters)."""
 MOST_CHARACTERS = 1_000_000
-"""The maximum length of all log messages that are kept. As JSON, a character takes up to 12 bytes, and turtle_relay.py
-accepts 16 MiB."""
+"""The maximum total length of the log messages that are kept (characters). As JSON, a character takes up to 12 bytes,
+and turtle_relay.py accepts 16 MiB."""
 LEVELS = {10: "Debug", 20: "Info", 30: "Warn", 40: "Error", 50: "Fatal"}
 _QOS = QoSProfile(depth=1000, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 """The QoS of /rosout (rmw_qos_profile_rosout_default in rcl). Publishers keep their messages for 10 s for nodes that
@@ -32,7 +32,7 @@ Line = dict[str, object]
 
 
 class Lines:
-    """The last log messages, limited in number and in length: any program can send messages of any length."""
+    """The last log messages, limited in number and total length: any program can send messages of any length."""
 
     def __init__(self) -> None:
         self._kept: deque[Line] = deque()

@@ -137,7 +137,7 @@ class _Controls:
         self._caller = caller
 
     def receive(self, _: object, said: dict[str, Any]) -> bool:
-        """Handle a message from a page: a field to add to or remove from the plot, or a service call."""
+        """Handle a message from a page: add a field to the plot, remove a field, or call a service."""
         if "plot" in said:
             self._ears.later(self._plot.add, str(said["plot"])[:_LARGEST_REQUEST])
         elif "unplot" in said:
