@@ -63,7 +63,7 @@ class Stalls:
         threads."""
 
     def close(self) -> None:
-        """Close the files of the threads. After that, `look` must not be called."""
+        """Close the threads' files in /proc. After that, `look` must not be called."""
         for threads in self._parts:
             if threads is not None:
                 threads.close()
@@ -107,7 +107,7 @@ class Others:
     def worked_s(self, *, but_s: float) -> float:
         """Return the CPU time (s) of all other processes since the creation of this object, minus `but_s` (s).
 
-        The time that other virtual machines on the same hardware used counts, too.
+        CPU time that other virtual machines on the same hardware used is included.
         """
         return _machine_worked_s() - time.process_time() - self._before - but_s
 

@@ -1,4 +1,4 @@
-"""Inputs: the drives, service calls and settings of a trial, from the exercise's scenario and a seed."""
+"""Inputs: the drive commands, service calls and settings of a trial, from the exercise's scenario and a seed."""
 
 from __future__ import annotations
 

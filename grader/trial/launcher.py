@@ -53,7 +53,7 @@ _SIMULATED = "use_sim_time:=true"
 DELIVERY_S = 0.5
 """The maximum time for which a publisher is kept until its messages have been acknowledged (s)."""
 _PR_SET_PDEATHSIG = 1
-"""The first argument of prctl(2). (Value: linux/prctl.h.)"""
+"""The first argument of prctl(2), with its value from linux/prctl.h."""
 _TYPES_AHEAD = (("geometry_msgs.msg", "Twist"), ("rosgraph_msgs.msg", "Clock"), ("turtlesim.msg", "Pose"))
 
 
@@ -95,7 +95,7 @@ def postponed(names: Iterable[str] = POSTPONED) -> Iterator[list[Postponed]]:
 
 
 def import_ahead() -> list[Postponed]:
-    """Import the modules that almost every node needs. Return the placeholders of modules that few nodes need."""
+    """Import the modules that almost every node needs. Return placeholders for modules that few nodes need."""
     with postponed() as modules:
         for name in _AHEAD:
             importlib.import_module(name)

@@ -30,7 +30,7 @@ class NodeGroup:
             process.await_ready()
 
     def start(self, orders: Sequence[dict[str, object]], tree: bytes) -> None:
-        """Send each launcher the install tree and the data about the node that it must run."""
+        """Send each launcher the install tree and the data about its node."""
         for process, order in zip(self.processes, orders, strict=True):
             process.start(order, tree)
 

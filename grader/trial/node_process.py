@@ -124,7 +124,7 @@ class NodeProcess:
             os.set_blocking(stream.fd, False)
 
     def start(self, order: dict[str, object], tree: bytes) -> None:
-        """Send the launcher the install tree and the data about the node that it must run."""
+        """Send the launcher the install tree and the data about its node."""
         # Do not start the guard earlier: a launcher may wait for minutes, and watching it takes 1 % of a core.
         self._guard = Guard(self._processes, self._limits, self._over, in_room=self._launcher.in_cell)
         try:

@@ -83,8 +83,8 @@ class TickPatience:
     def several_worked(self) -> bool:
         """Return whether several threads of the program shared the work. If not, one thread has a loop without a pause.
 
-        In rclpy's MultiThreadedExecutor, it depends on chance which threads do the work. Until a thread begins to run a
-        callback, the executor submits the same callback again and again, and wakes a thread each time.
+        In rclpy's MultiThreadedExecutor, it is not predictable which threads do the work. Until a thread begins to run
+        a callback, the executor submits the same callback again and again, and wakes a thread each time.
         """
         worked_s = sorted(at_s - self._before_s.get(tid, 0.0) for tid, at_s in self._node.run_times_s().items())
         return len(worked_s) > 1 and worked_s[-2] >= SHARED * sum(worked_s)

@@ -130,7 +130,7 @@ class Threads:
             raise
 
     def close(self) -> None:
-        """Close the files of the threads."""
+        """Close the threads' files in /proc."""
         for pair in self._files.values():
             for fd in pair:
                 os.close(fd)

@@ -76,7 +76,7 @@ class TargetKeeper(Node):
         self.create_service(Kill, SERVICE, self._caught)
 
     def _is_due(self, now_s: float) -> bool:
-        """Return whether a late service must exist now (s)."""
+        """Return whether a late service must be offered at the time `now_s` (s)."""
         place = self._place()
         if place != self._rest:
             self._rest, self._rest_s = place, now_s

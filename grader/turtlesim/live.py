@@ -55,7 +55,7 @@ def _wait_for_end(stop: threading.Event) -> None:
 
 
 class _ShownNode(TurtlesimNode):
-    """A turtlesim node that notifies a screen after each frame."""
+    """A turtlesim node that calls `screen.after_frame` after each frame."""
 
     screen: _Screen | None = None
 
