@@ -99,7 +99,7 @@ class Events:
     def watch(self, folder: Path) -> None:
         """Watch only this folder from now on.
 
-        As soon as the watcher can notice saves, it adds a first save to the events.
+        The first event is a save, even if no file has changed. It is queued as soon as the watcher can notice saves.
         """
         self._stop.set()
         self._stop = Event()

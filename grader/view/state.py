@@ -12,7 +12,8 @@ from grader.view.trail import Stroke, Trail, as_lists
 
 Rgb = tuple[int, int, int]
 MOST_RATES = 1000
-"""If there are more rates, those of silent topics are removed: a node can spawn and kill turtles without end."""
+"""If `State.rates` has more entries, those of silent topics are removed. A node can spawn and kill turtles without end,
+and each turtle has topics of its own."""
 
 
 class TurtleState(NamedTuple):

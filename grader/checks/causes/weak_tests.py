@@ -70,7 +70,9 @@ def always_true(code: TestCode) -> Cause | None:
 
 
 def always_false(code: TestCode) -> Cause | None:
-    """Return the cause if a test asserts a constant that is false, or calls pytest.fail, on every node, else None.
+    """Return the cause if a test fails on every ROS node, because it asserts a false constant or calls pytest.fail.
+
+    Return None if there is no such test.
 
     A test that may return, or skip itself, before it fails does not count.
     """
