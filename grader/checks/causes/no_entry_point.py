@@ -46,17 +46,19 @@ def indented(module: Module | None, name: str) -> Cause | None:
     inside = next((node for node in functions if node.name == name and node.col_offset), None)
     if module is None or inside is None:
         return None
-    text = f"{shorten(name)} is indented, so it belongs to {_outer(module, inside)} above it. Remove the indentation."
+    text = f"{shorten(name)} is indented, so it belongs to {_outer(module, inside)}. Remove the indentation."
     return Cause("main-in-class", text, Where(module.file, inside.lineno))
 
 
 def _outer(module: Module, inside: ast.FunctionDef) -> str:
     outer = next(node for node in module.nodes if any(child is inside for child in ast.iter_child_nodes(node)))
     if isinstance(outer, ast.ClassDef):
-        return "the class"
+        return "the class above it"
     if isinstance(outer, ast.FunctionDef | ast.AsyncFunctionDef):
-        return f"the function {shorten(outer.name)}"
-    return f"the block that begins on line {getattr(outer, 'lineno', inside.lineno)}"
+        return f"the function {shorten(outer.name)} above it"
+    # A case of a match statement has no line of its own, but its pattern has.
+    line = outer.pattern.lineno if isinstance(outer, ast.match_case) else getattr(outer, "lineno", inside.lineno)
+    return f"the block that begins on line {line}"
 
 
 def no_entry_point(evidence: Evidence) -> Finding:

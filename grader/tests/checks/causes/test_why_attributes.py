@@ -281,7 +281,8 @@ def test_a_function_of_the_entry_point_may_be_inside_the_class(name: str, indent
     [
         ("class A:\n", "the class above it"),
         ("class A:\n    pass\ndef run():\n", "the function run above it"),
-        ("class A:\n    pass\nif __name__ == '__main__':\n", "the block that begins on line 3 above it"),
+        ("class A:\n    pass\nif __name__ == '__main__':\n", "the block that begins on line 3"),
+        ("class A:\n    pass\nmatch 1:\n  case 1:\n", "the block that begins on line 4"),
     ],
 )
 def test_an_indented_function_belongs_to_what_is_above_it(before: str, above: str) -> None:
