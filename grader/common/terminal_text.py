@@ -16,8 +16,9 @@ BOLD, RED = "1", "31"
 _SPACE = "\0"
 """A placeholder for a space at which a line must not be broken: inside a command, and between an option and its
 value."""
-_CONTROL = re.compile(r"(?!\x1b\[(?:0|1|31|33)m)[\x00-\x08\x0b-\x1f\x7f-\x9f]")
-"""The characters of Unicode's category Cc, except line feeds, tabs, and the colours of our own messages."""
+_CONTROL = re.compile(r"(?!\x1b\[(?:0|1|31|33)m)[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
+"""The characters of Unicode's category Cc, except line feeds, tabs, and the colours of our own messages, and the
+characters that set the direction of the text after them (UAX #9), which could make a line look like another one."""
 
 
 def say(text: str, stream: Optional[TextIO] = None, style: str = "") -> None:

@@ -22,6 +22,11 @@ def test_no_control_character_is_left(text: str) -> None:
     assert not {"\x1b", "\x9b", "\r", "\b", "\x07", "\x7f", "\0"} & set(without_control(text))
 
 
+@pytest.mark.parametrize("character", "\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
+def test_no_text_is_turned_around(character: str) -> None:
+    assert without_control(f"/{character}x") == "/?x"
+
+
 @pytest.mark.parametrize("text", ["/turtle1\n", "\tmin: 0.1\n", "\x1b[33mwarning\x1b[0m", "naïve 🐢 \u200d"])
 def test_other_text_stays_as_it_is(text: str) -> None:
     assert without_control(text) == text
