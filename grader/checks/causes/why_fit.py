@@ -77,7 +77,10 @@ RADIUS_OF_C: tuple[Diagnosis, str] = (
     "radius-without-centre",
     "The third unknown is c = r² - a² - b², not r²: the squares of the centre are missing.",
 )
-"""The diagnosis and text for a radius that is wrong or NaN although the centre is right."""
+"""The diagnosis and text if the centre is right, but the radius was computed from c without the squares of the centre.
+
+The radius is then c, √|c|, NaN or infinite.
+"""
 _FIRST_TRY = (
     "The equations are wrong, or the circle is computed incorrectly from their solution. Test the function "
     "with four "
