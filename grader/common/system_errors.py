@@ -95,7 +95,7 @@ def sentence(number: int, where: str = "", room: str = ROOM) -> str:
     if number in (errno.ENOSPC, errno.EDQUOT):
         return f"The disk is full{at}: {room}."
     if number == errno.EROFS:
-        return f"The disk is read-only{at}: {_WRITABLE}."
+        return f"The disk{f' of {where}' if where else ''} is read-only: {_WRITABLE}."
     if number == errno.EMFILE:
         most = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
         return f"The grader cannot open more than {most} files: raise this limit, for example with `ulimit -n 4096`."

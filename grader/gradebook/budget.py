@@ -110,7 +110,7 @@ def walk(read: object) -> Iterator[tuple[object, int]]:
             waiting += [(inner, depth + 1) for inner in value]
 
 
-def _refuse(what: str = "data that is not a message of a kernel") -> NoReturn:
+def _refuse(what: str = "data that is not a Jupyter message") -> NoReturn:
     raise FrameError(what)
 
 

@@ -125,7 +125,7 @@ class Relay:
         for channel, parts in self._unpacker.feed(data):
             self._account.take(parts)
             if channel == ORDER:
-                raise FrameError("data that is not a message of a kernel")  # noqa: EM101
+                raise FrameError("data that is not a Jupyter message")  # noqa: EM101
             if channel == _IOPUB and self._early is not None:
                 self._early.append(parts)
             else:

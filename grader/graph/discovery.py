@@ -115,7 +115,7 @@ def _remove(node: Node) -> None:
 
 
 def _leave_shared_memory_out(profile: Path) -> None:
-    """If Fast DDS would use the grader's usual profile and LOCALHOST, replace both, so that it uses no shared memory.
+    """Keep Fast DDS from using shared memory with the grader's usual profile and the discovery range LOCALHOST.
 
     `profile` is the new profile. loopback.xml explains why `ros2` verbs use neither LOCALHOST nor shared memory.
     """

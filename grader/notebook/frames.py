@@ -68,7 +68,7 @@ class Unpacker:
             return None
         channel, count = _HEAD.unpack_from(self._data)
         if channel > ORDER or count > MOST_PARTS:
-            message = "data that is not a message of a kernel"
+            message = "data that is not a Jupyter message"
             raise FrameError(message)
         if len(self._data) < _HEAD.size + _SIZE * count:
             return None

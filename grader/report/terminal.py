@@ -72,7 +72,10 @@ def render_changes(before: Report, after: Report, console: Console) -> None:
 
 
 def early(outcomes: Sequence[Outcome]) -> list[str]:
-    """Return one line for each check whose failure is certain before the build. Users see these lines first."""
+    """Return one line for each check that is not hidden and whose failure is certain before the build.
+
+    Users see these lines first.
+    """
     shown = [(outcome, outcome.finding) for outcome in outcomes if not outcome.hidden]
     lines = [
         f"{outcome.title}: {finding.observed}" + (f" ({finding.where})" if finding.where else "")

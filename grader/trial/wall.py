@@ -80,7 +80,7 @@ class WallTrial(Simulation):
         return self._crowded
 
     def _discover(self) -> None:
-        """Wait until the node is in the graph and its topics are recorded, or has exited, or DISCOVERY_S has passed.
+        """Wait until the node is in the graph and its topics are recorded, until it has exited, or for DISCOVERY_S.
 
         The first command ends the wait immediately, since the turtle moves after this command. On a crowded machine, a
         node may need much longer to start, so the time for which it waits for a processor does not count.

@@ -62,11 +62,11 @@ def test_messages_of_a_kernel_are_accepted() -> None:
     ],
 )
 def test_data_that_are_not_a_message_are_refused(parts: list[bytes]) -> None:
-    assert refused(parts) == "data that is not a message of a kernel"
+    assert refused(parts) == "data that is not a Jupyter message"
 
 
 def test_a_message_is_accepted_only_once() -> None:
-    assert refused(message({}), message({})) == "data that is not a message of a kernel"
+    assert refused(message({}), message({})) == "data that is not a Jupyter message"
 
 
 def test_messages_have_a_budget_in_number_bytes_values_and_depth() -> None:

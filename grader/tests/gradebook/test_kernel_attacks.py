@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
 MORE_KIB = 512 * 1024
 """The maximum growth of nbgrader's process during an attack."""
-NO_MESSAGE = "The kernel sent data that is not a message of a kernel."
+NO_MESSAGE = "The kernel sent data that is not a Jupyter message."
 
 COMM = "from comm import create_comm\n"
 SEND = """\

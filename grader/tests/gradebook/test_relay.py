@@ -18,7 +18,7 @@ from grader.sandbox.bubblewrap import View
 INFO = """{"ip": "SOCKETS", "key": "key", "signature_scheme": "hmac-sha256",
 "shell_port": 1, "control_port": 2, "stdin_port": 3, "iopub_port": 4, "hb_port": 5}"""
 STAYS = "\nimport time; time.sleep(600)"
-NO_MESSAGE = "The kernel sent data that is not a message of a kernel."
+NO_MESSAGE = "The kernel sent data that is not a Jupyter message."
 
 
 class Started:
