@@ -73,6 +73,8 @@ def test_a_folder_that_is_removed_as_soon_as_it_is_watched_is_a_save(
     calls: list[Path] = []
 
     def removed(top: Path) -> list[str]:
+        if top != package:  # the watcher of an earlier test, which is just ending
+            return folders(top)
         calls.append(top)
         if len(calls) == 2:
             yielded.wait(PATIENCE_S)
