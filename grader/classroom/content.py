@@ -78,7 +78,7 @@ def fingerprint(found: Found, exercise: Exercise, task: Task | None = None) -> s
     archive = None if found.refused else _archive(found.path)
     also = (found.alike,) if found.alike else ()
     if archive is not None:
-        return _sha256(_of_archive(archive), *also) if also else _of_archive(archive)
+        return _sha256(_of_archive(archive), *also)
     if task is not None:
         return _sha256(*_parts_of_task(task), *also)
     content = read(found, exercise, "")

@@ -19,6 +19,7 @@ from multiprocessing.connection import Connection
 from threading import Thread
 from typing import IO, TYPE_CHECKING, Literal
 
+from grader.common.how_ended import how_ended
 from grader.common.interpreter import interpreter
 from grader.common.lazy import load_catkin_pkg, load_numpy
 
@@ -76,7 +77,7 @@ class Worker:
         code = self.process.wait()
         self._errors.seek(0)
         answer = self._errors.read()[-_LAST_WORDS:].decode("utf-8", "replace").strip()
-        how = f"it was killed ({signal.Signals(-code).name})" if code < 0 else f"it ended with exit code {code}"
+        how = f"it {how_ended(code)}"
         return f"{how}: {answer}" if answer else how
 
     def close(self) -> None:

@@ -118,15 +118,14 @@ def _see_own_commands() -> None:
 
 def _log_no_control_characters() -> None:
     """Replace control characters in all log messages, since nbgrader logs names that students have chosen."""
-    make = logging.getLogRecordFactory()
+    logging.setLogRecordFactory(_without_control_characters)
 
-    def plain(*about: Any, **more: Any) -> logging.LogRecord:  # noqa: ANN401 - as the factory of logging
-        record = make(*about, **more)
-        with suppress(Exception):  # logging itself reports a message with a wrong format
-            record.msg, record.args = without_control(record.getMessage()), None
-        return record
 
-    logging.setLogRecordFactory(plain)
+def _without_control_characters(*about: Any, **more: Any) -> logging.LogRecord:  # noqa: ANN401 - as in logging
+    record = logging.LogRecord(*about, **more)
+    with suppress(Exception):  # logging itself reports a message with a wrong format
+        record.msg, record.args = without_control(record.getMessage()), None
+    return record
 
 
 def _files(step: Path) -> list[str]:

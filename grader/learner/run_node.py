@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.checks.exercises import load_exercise
+from grader.common.how_ended import program_ended
 from grader.common.interpreter import interpreter
 from grader.common.terminal_text import say
 from grader.common.words import nearest
@@ -219,15 +220,8 @@ def _until_it_ends(program: Program, script: Path, env: Mapping[str, str]) -> in
             node.kill()
     if interrupted:
         return 0
-    say(f"\n{program.executable} has ended {_how(code)}")
+    say(program_ended(program.executable, code))
     return 0 if code == 0 else 1
-
-
-def _how(code: int) -> str:
-    if code == 0:
-        return "without an error."
-    because = f"because of signal {-code} ({signal.strsignal(-code)})" if code < 0 else f"with exit code {code}"
-    return f"{because}. The lines above may show where and why."
 
 
 def _interrupt(*_: object) -> None:

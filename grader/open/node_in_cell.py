@@ -18,6 +18,7 @@ from selectors import EVENT_READ
 from typing import TYPE_CHECKING
 
 from grader.colcon.runner import build
+from grader.common.how_ended import program_ended
 from grader.errors import GraderError, UsageError
 from grader.learner.run_node import program_of
 from grader.open.linked_cell import environment, linked_cell
@@ -112,8 +113,7 @@ def _until_it_ends(cell: LinkedCell, program: Program) -> int:
     if cell.out_of:
         print(f"\n{program.executable} was stopped, because it exceeded its limit on {cell.out_of}.")
         return 1
-    how = "without an error." if code == 0 else f"with exit code {code}. The lines above may show where and why."
-    print(f"\n{program.executable} has ended {how}")
+    print(program_ended(program.executable, code))
     return 0 if code == 0 else 1
 
 

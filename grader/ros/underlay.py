@@ -9,7 +9,6 @@ import os
 import re
 import shlex
 import shutil
-import signal
 import subprocess
 import sys
 import sysconfig
@@ -20,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.common import package_managers, xdg
+from grader.common.how_ended import how_ended
 from grader.common.interpreter import interpreter
 from grader.common.noexec import noexec_folder, noexec_sentence
 from grader.common.readable_by_all import make_readable
@@ -263,10 +263,8 @@ def _run(command: list[str], env: dict[str, str], tell: Callable[[str], None]) -
         if shutil.disk_usage(env["HOME"]).free < _FULL:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         end = "\n".join(line for line in lines[-_LOG_LINES:] if line)
-        code = process.returncode
-        how = f"was killed ({signal.Signals(-code).name})" if code < 0 else f"ended with exit code {code}"
         shown = f" The last lines of its output:\n{end}" if end else ""
-        message = f"The turtlesim interfaces could not be built: `{command[0]}` {how}.{shown}"
+        message = f"The turtlesim interfaces could not be built: `{command[0]}` {how_ended(process.returncode)}.{shown}"
         raise MachineError(message)
 
 

@@ -73,9 +73,17 @@ def read_stamp(path: Path = STAMP) -> Optional[Stamp]:
 
 
 def write_stamp(stamp: Stamp, path: Path = STAMP) -> None:
-    """Write the stamp atomically."""
+    """Write the stamp in one step."""
+    replace(path, json.dumps(stamp._asdict(), indent=1))
+
+
+def replace(path: Path, text: str) -> None:
+    """Write a file of ASCII text in one step: nobody reads half of it, and a set-up that is killed leaves no half.
+
+    The old file is not changed, because the installer may have linked it to its cache.
+    """
     unfinished = path.with_suffix(".new")
-    unfinished.write_text(json.dumps(stamp._asdict(), indent=1))
+    unfinished.write_text(text, "ascii")
     unfinished.replace(path)
 
 

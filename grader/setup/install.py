@@ -23,7 +23,7 @@ from grader.common import terminal_text
 from grader.common.interpreter import clean, interpreter
 from grader.errors import MachineError
 from grader.setup import installers, lock, setup_errors
-from grader.setup.bootstrap import ROOT, STAMP, Stamp, say, write_stamp
+from grader.setup.bootstrap import ROOT, STAMP, Stamp, replace, say, write_stamp
 from grader.setup.uv import uv
 
 _OPTIONS = ("--no-deps", "--require-hashes", "--no-build-isolation")
@@ -99,7 +99,7 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
         raise MachineError(message)
     folder = Path(site.getsitepackages()[0])
     for path in folder.glob("_editable_impl_*.pth"):
-        _replace(path, ascii_only(path.read_text("utf-8")))
+        replace(path, ascii_only(path.read_text("utf-8")))
     start_fast(folder)
     total = time.monotonic() - begin
     return {"download": downloading or 0.0, "install": total - (downloading or 0.0)}
@@ -112,17 +112,7 @@ def start_fast(folder: Path) -> None:
     """
     path = folder / f"{_BOOTSTRAPPER}.pth"
     if path.exists():
-        _replace(path, f"import os; os.environ.get({_BOOTSTRAPPED!r}) or __import__({_BOOTSTRAPPER!r})\n")
-
-
-def _replace(path: Path, text: str) -> None:
-    """Replace a file in one step, so that it is never half-written, even if the set-up is killed.
-
-    The file must not be changed in place: the installer may have linked it to its cache.
-    """
-    new = path.with_suffix(".new")
-    new.write_text(text, "ascii")
-    new.replace(path)
+        replace(path, f"import os; os.environ.get({_BOOTSTRAPPED!r}) or __import__({_BOOTSTRAPPER!r})\n")
 
 
 def ascii_only(lines: str) -> str:

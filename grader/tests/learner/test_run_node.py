@@ -70,7 +70,7 @@ def test_a_crash_shows_the_learners_own_file(learner: Learner) -> None:
     node.write_text(right, "utf-8")
     assert f'File "{node}", line ' in printed
     assert "NameError: name 'Twits' is not defined" in printed
-    assert "draw_circle has ended with exit code 1." in printed
+    assert "draw_circle ended with exit code 1." in printed
 
 
 def test_a_node_that_a_signal_ends_names_the_signal(learner: Learner) -> None:
@@ -79,7 +79,7 @@ def test_a_node_that_a_signal_ends_names_the_signal(learner: Learner) -> None:
     node.write_text(f"import os\n{right}".replace("Twist()", "os.kill(os.getpid(), 11)"), "utf-8")
     printed = learner.reads("run", "03", "draw_circle", "--no-view")
     node.write_text(right, "utf-8")
-    assert "draw_circle has ended because of signal 11 (Segmentation fault)." in printed
+    assert "draw_circle was killed (SIGSEGV)." in printed
 
 
 def test_a_folder_that_names_no_step_asks_for_a_step(tmp_path: Path) -> None:

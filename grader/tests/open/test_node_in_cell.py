@@ -204,7 +204,7 @@ def test_an_error_names_the_learners_own_file(learner: Course) -> None:
         output = process.stdout.read()
         assert process.wait(HANG_S) == 1
     assert f'File "{learner.node}", line ' in output
-    assert "draw_circle has ended with exit code 1." in output
+    assert "draw_circle ended with exit code 1." in output
 
 
 @needs_cells

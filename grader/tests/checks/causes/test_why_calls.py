@@ -292,15 +292,3 @@ def test_what_rclpy_refuses_is_explained(line: str, error: str, diagnosis: str, 
     found = reported(source, error)
     assert (found.diagnosis, found.line) == (diagnosis, lines[0])
     assert found.cause != "" or diagnosis == "crash"
-
-
-@pytest.mark.parametrize(
-    ("error", "diagnosis"),
-    [
-        ("TypeError: unsupported operand type(s) for /: 'float' and 'Parameter'", "parameter-itself"),
-        ("TypeError: unsupported operand type(s) for /: 'float' and 'Driver'", "crash"),
-    ],
-)
-def test_a_parameter_beside_an_operator_lacks_its_value(error: str, diagnosis: str) -> None:
-    line = 'turn = 1.0 / self.get_parameter("radius")'
-    assert reported(NODE.format(line=line), error).diagnosis == diagnosis

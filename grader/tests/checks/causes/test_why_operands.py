@@ -44,3 +44,15 @@ def test_a_comma_for_a_dot_makes_an_object_the_side_of_an_operator(line: str, di
     told = reported(DRIVER.format(line=line), "TypeError: unsupported operand type(s) for -: 'float' and 'Driver'")
     assert told.diagnosis == diagnosis
     assert ("A comma separates self from count. Write a dot: self.count." in told.cause) == (diagnosis != "crash")
+
+
+@pytest.mark.parametrize(
+    ("error", "diagnosis"),
+    [
+        ("TypeError: unsupported operand type(s) for /: 'float' and 'Parameter'", "parameter-itself"),
+        ("TypeError: unsupported operand type(s) for /: 'float' and 'Driver'", "crash"),
+    ],
+)
+def test_a_parameter_beside_an_operator_lacks_its_value(error: str, diagnosis: str) -> None:
+    line = 'turn = 1.0 / self.get_parameter("radius")'
+    assert reported(DRIVER.format(line=line), error).diagnosis == diagnosis
