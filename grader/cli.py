@@ -180,7 +180,8 @@ def class_page(
     from grader.report.html_class import PAGE, save_class_page
 
     file = out or folder / PAGE
-    save_class_page(folder, file)
+    for line in save_class_page(folder, file):
+        say(line)
     say(f"The class page: {file}", sys.stdout)
 
 

@@ -14,10 +14,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from grader.classroom.results import REPORTS
+from grader.report.class_reports import ClassReports, Entry
 from grader.report.csv import to_csv
 from grader.report.github import to_annotations, to_summary
 from grader.report.gradescope import to_gradescope
-from grader.report.html_class import PAGE, ClassReports, Entry, class_page
+from grader.report.html_class import PAGE, class_page
 from grader.report.junit import to_junit
 from grader.report.suspicion import suspicions
 

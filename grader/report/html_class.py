@@ -1,79 +1,29 @@
-"""The page of a class of students, made from reports: points, common failures with their causes, and machine errors.
-
-The reports are the JSON files below a folder. If there is a page with the same name next to a report, the class page
-links to that page.
-"""
+"""The page of a class of students, made from reports: points, common failures with their causes, and machine errors."""
 
 from __future__ import annotations
 
-import json
-import re
 from collections import Counter
 from dataclasses import dataclass, field
 from statistics import median
 from typing import TYPE_CHECKING
-from urllib.parse import quote
 
 from markupsafe import Markup
 
-from grader.checks.outcome import Status
-from grader.errors import UsageError
+from grader.report.class_reports import read_class
 from grader.report.html_page import make_page, save_page
-from grader.report.json import from_json
-from grader.report.suspicion import ERRORS, suspicions
 from grader.report.svg import picture, tag, words
-from grader.report.verdict import tone, verdict
-from grader.submission.reader import read
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from pathlib import Path
 
-    from grader.checks.outcome import Outcome
-    from grader.report.report import Report
+    from grader.report.class_reports import ClassReports, Entry
 
-LARGEST = 4_000_000
-"""The maximum size of a file that may be a report (bytes). Every report is smaller."""
 PAGE = "index.html"
 MOST_DIAGNOSES = 5
+MOST_LEFT_OUT = 200
+"""The maximum number of files that are listed because they were left out. Further files are only counted."""
 BAR = "#1c7ed6"
-
-
-@dataclass(frozen=True)
-class Entry:
-    """A report of the class. `link` is the link from the class page to the submission's page, or an empty string."""
-
-    report: Report
-    name: str
-    link: str
-    attention: str = ""
-    """The reason why an instructor should check the submission."""
-
-    @property
-    def share(self) -> float:
-        """The fraction of all points that the submission earned, from 0 to 1."""
-        return self.report.points / self.report.max if self.report.max else 0.0
-
-    @property
-    def tone(self) -> str:
-        """The kind of verdict: "passed", "failed" or "error"."""
-        return tone(self.report)
-
-    @property
-    def verdict(self) -> str:
-        """The verdict in one line."""
-        return verdict(self.report)
-
-    @property
-    def failed(self) -> tuple[Outcome, ...]:
-        """The failed checks, without the checks that were skipped because another check failed."""
-        return self.report.with_status(Status.FAILED)
-
-    @property
-    def first_error(self) -> str:
-        """The message of the first machine error, or an empty string."""
-        errors = self.report.with_status(Status.ERROR)
-        return errors[0].finding.observed if errors else ""
 
 
 @dataclass
@@ -109,78 +59,6 @@ class FailedCheck:
         return ordered[:MOST_DIAGNOSES]
 
 
-@dataclass(frozen=True)
-class ClassReports:
-    """The reports below a folder, and the files that are probably reports but cannot be read, each with the reason."""
-
-    entries: tuple[Entry, ...]
-    unreadable: tuple[tuple[str, str], ...]
-
-
-def read_class(folder: Path) -> ClassReports:
-    """Read every report below the folder, sorted by name. Raises UsageError if there is no folder or no report."""
-    if not folder.is_dir():
-        message = f"There is no folder {folder}. Give the folder that contains the reports from `grader check --json`."
-        raise UsageError(message)
-    found: list[tuple[Path, Report]] = []
-    errors: list[int] = []
-    unreadable: list[tuple[str, str]] = []
-    for file in sorted(folder.rglob("*.json")):
-        try:
-            if not file.is_file() or file.stat().st_size > LARGEST:
-                continue
-            text = file.read_text(encoding="utf-8")
-            if '"outcomes"' not in text:
-                continue  # a JSON file that is not a report
-            one, amount = from_json(text), int(json.loads(text).get(ERRORS, 0))
-            found.append((file, one))
-            errors.append(amount)
-        except (OSError, ValueError, TypeError, AttributeError, OverflowError, RecursionError, UsageError) as error:
-            unreadable.append((str(file.relative_to(folder)), str(error)))
-    if not found and not unreadable:
-        message = f"There is no report below {folder}: `grader check --json FILE` writes one."
-        raise UsageError(message)
-    names = _short([report.submission for _, report in found])
-    attention = suspicions([(report, amount) for (_, report), amount in zip(found, errors, strict=True)])
-    entries = [
-        Entry(report, name, _link(file, folder), why)
-        for (file, report), name, why in zip(found, names, attention, strict=True)
-    ]
-    return ClassReports(tuple(sorted(entries, key=lambda entry: _natural(entry.name))), tuple(unreadable))
-
-
-def _natural(name: str) -> list[tuple[int, str]]:
-    """Return a sort key for the order that people expect (2 before 10, A next to a), as in the page's script."""
-    parts = re.findall(r"[0-9]{1,18}|[^0-9]+", name.casefold())
-    return [(int(part), "") if part[0] in "0123456789" else (-1, part) for part in parts]
-
-
-def _short(names: Sequence[str]) -> list[str]:
-    """Return the names without the leading and trailing folders that all names share."""
-    parts = [name.rstrip("/").split("/") for name in names]
-    if len(parts) < 2:
-        return list(names)
-    ends = _alike([each[::-1] for each in parts])
-    begins = _alike([each[: len(each) - ends] for each in parts])
-    return ["/".join(each[begins : len(each) - ends]) or name for each, name in zip(parts, names, strict=True)]
-
-
-def _alike(paths: Sequence[Sequence[str]]) -> int:
-    """Return the number of leading folders that all paths share, not counting the last part of a path."""
-    same = 0
-    for level in zip(*(path[:-1] for path in paths), strict=False):
-        if len(set(level)) > 1:
-            break
-        same += 1
-    return same
-
-
-def _link(file: Path, folder: Path) -> str:
-    page = file.with_suffix(".html")
-    # A link must never be read as a URL with a scheme: "./" makes it a relative path.
-    return "./" + quote(page.relative_to(folder).as_posix(), errors="surrogateescape") if page.is_file() else ""
-
-
 def failures(entries: Iterable[Entry]) -> list[FailedCheck]:
     """Return the failed checks, the most frequent first."""
     checks: dict[tuple[str, str], FailedCheck] = {}
@@ -209,7 +87,8 @@ def class_page(reports: ClassReports) -> str:
         "entries": judged,
         "broken": broken,
         "attention": [entry for entry in reports.entries if entry.attention],
-        "unreadable": reports.unreadable,
+        "left_out": reports.left_out[:MOST_LEFT_OUT],
+        "more_left_out": max(0, len(reports.left_out) - MOST_LEFT_OUT),
         "exercises": exercises,
         "failures": failures(judged),
         "passed": sum(entry.tone == "passed" for entry in judged),
@@ -221,14 +100,16 @@ def class_page(reports: ClassReports) -> str:
     return make_page("class.html", ("class.js",), {}, values)
 
 
-def save_class_page(folder: Path, file: Path) -> None:
-    """Write the page for the reports below a folder.
+def save_class_page(folder: Path, file: Path) -> list[str]:
+    """Write the page for the reports below a folder. Return the lines about files that were left out.
 
     Raises:
         UsageError: there is no report, or the path of the page is not valid or not writable.
         MachineError: the disk is full, or the machine failed in another way.
     """
-    save_page(class_page(read(read_class, folder)), file)
+    reports = read_class(folder)
+    save_page(class_page(reports), file)
+    return reports.lines
 
 
 BINS = [f"{10 * each} to {10 * each + 9}" for each in range(10)] + ["100"]

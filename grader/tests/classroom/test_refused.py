@@ -16,7 +16,8 @@ from grader.classroom.find_submissions import find_submissions
 from grader.classroom.order import Order, sources_for
 from grader.classroom.refused import Refused
 from grader.classroom.task import perform, set_aside
-from grader.report.html_class import ClassReports, Entry, failures
+from grader.report.class_reports import ClassReports, Entry
+from grader.report.html_class import failures
 from grader.report.suspicion import suspicions
 from grader.submission import tree
 from grader.tests.case import copy_solution

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.errors import UsageError
+from grader.report.class_reports import ClassReports, Entry, read_class
 from grader.report.hidden import for_students
 from grader.report.html import html_page
-from grader.report.html_class import ClassReports, Entry, class_page, counts, failures, read_class, save_class_page
+from grader.report.html_class import class_page, counts, failures, save_class_page
 from grader.report.json import MOST_OUTCOMES, from_json, to_data, to_json
 from grader.tests.report.hostile import ALL, SCRIPTS
 from grader.tests.report.reports import EVIDENCE, report
@@ -111,7 +112,7 @@ def test_other_files_are_ignored_and_damaged_reports_are_listed(folder: Path) ->
     (folder / "later.json").write_text(json.dumps({**to_data(report("passed")), "schema": 99}))
     reports = read_class(folder)
     assert len(reports.entries) == 7
-    assert [name for name, _ in reports.unreadable] == ["damaged.json", "later.json"]
+    assert [name for name, _ in reports.left_out] == ["damaged.json", "later.json"]
     assert "schema 99" in class_page(reports)
 
 
@@ -122,7 +123,7 @@ def test_a_report_with_impossible_points_does_not_prevent_the_page(folder: Path,
     (folder / "forged.json").write_text(json.dumps(data))
     reports = read_class(folder)
     assert len(reports.entries) == 7
-    assert [name for name, _ in reports.unreadable] == ["forged.json"]
+    assert [name for name, _ in reports.left_out] == ["forged.json"]
     assert f"{points} of {most} points" in class_page(reports)
 
 
@@ -130,7 +131,7 @@ def test_a_report_with_thousands_of_outcomes_is_listed_and_not_read(folder: Path
     data = to_data(report("failed"))
     data["outcomes"] = data["outcomes"][:1] * (MOST_OUTCOMES + 1)
     (folder / "long.json").write_text(json.dumps(data))
-    assert [name for name, _ in read_class(folder).unreadable] == ["long.json"]
+    assert [name for name, _ in read_class(folder).left_out] == ["long.json"]
 
 
 @pytest.mark.parametrize("share", [0.0, 0.09999999, 0.1, 0.5, 0.899999, 0.9, 0.999, 1.0])

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Finding, Status
+from grader.report.class_reports import Entry
 from grader.report.github import to_summary
-from grader.report.html_class import Entry
 from grader.report.junit import to_junit
 from grader.tests.report.readers import gradescope, shown, table
 from grader.tests.report.reports import report
