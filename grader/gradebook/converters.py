@@ -6,6 +6,7 @@ import io
 import shutil
 import sys
 import tempfile
+from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,19 +15,20 @@ import nbformat
 from nbconvert.exporters import HTMLExporter, NotebookExporter
 from nbgrader.api import Gradebook
 from nbgrader.converters import Autograde, GenerateFeedback
-from nbgrader.converters.base import BaseConverter
+from nbgrader.converters.base import BaseConverter, NbGraderException
 from nbgrader.exchange.default import ExchangeCollect
 
 from grader.errors import GraderError
 from grader.gradebook import inbound, readable
 from grader.gradebook.class_folders import CLASS, GRADEBOOK, RESULTS
 from grader.gradebook.copies import copy_of
+from grader.gradebook.failed_disk import failed_disk
 from grader.gradebook.student_names import unclear
 from grader.submission import tree
 from grader.submission.reader import read
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from nbformat import NotebookNode
 
@@ -70,7 +72,53 @@ class _Copying(BaseConverter):  # type: ignore[misc, unused-ignore]
         self.notebooks: list[str] = _in(source, self.notebooks)
 
 
-class BoundedAutograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore]
+class _DiskError(BaseException):
+    """The disk has failed. This is not an Exception, since nbgrader continues with the next submission after those."""
+
+
+class _StopsWithTheDisk(BaseConverter):  # type: ignore[misc, unused-ignore]
+    """Stops at the first submission for which the disk fails: it is not at fault, and the others would fail, too."""
+
+    def convert_notebooks(self) -> None:
+        """Convert all submissions as the base class does, or log one sentence if the disk fails."""
+        try:
+            super().convert_notebooks()
+        except _DiskError as error:
+            message = f"{error} Then run the same command again."
+            self.log.critical(message)
+            raise NbGraderException(message) from error
+
+    def init_destination(self, assignment_id: str, student_id: str) -> bool:
+        """Initialize the destination as the base class does."""
+        with self._stopping(assignment_id, student_id):
+            return bool(super().init_destination(assignment_id, student_id))
+
+    def init_assignment(self, assignment_id: str, student_id: str) -> None:
+        """Copy the files as the base class does."""
+        with self._stopping(assignment_id, student_id):
+            super().init_assignment(assignment_id, student_id)
+
+    def convert_single_notebook(self, notebook_filename: str) -> None:
+        """Convert a notebook as the base class does."""
+        submission = Path(notebook_filename).parent
+        with self._stopping(submission.name, submission.parent.name):
+            super().convert_single_notebook(notebook_filename)
+
+    @contextmanager
+    def _stopping(self, assignment_id: str, student_id: str) -> Iterator[None]:
+        dest = Path(self._format_dest(assignment_id, student_id))
+        try:
+            yield
+        except Exception as error:
+            failure = failed_disk(error, dest)
+            if not failure:
+                raise
+            if self.coursedir.notebook_id == "*":
+                shutil.rmtree(dest, ignore_errors=True)  # as nbgrader does for every failed submission
+            raise _DiskError(failure) from error
+
+
+class _Autograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore]
     """nbgrader's Autograde, in which the base class `_Copying` copies the files."""
 
     def init_destination(self, assignment_id: str, student_id: str) -> bool:
@@ -113,7 +161,11 @@ def _in(folder: Path, notebooks: Sequence[str]) -> list[str]:
     return list(map(str, found))
 
 
-class BoundedFeedback(GenerateFeedback):  # type: ignore[misc, unused-ignore]
+class BoundedAutograde(_StopsWithTheDisk, _Autograde):
+    """nbgrader's Autograde with limits on what it reads."""
+
+
+class _Feedback(GenerateFeedback):  # type: ignore[misc, unused-ignore]
     """nbgrader's GenerateFeedback, but it does not copy a student's files: nbgrader would release all .html files."""
 
     notebooks: list[str]
@@ -126,6 +178,10 @@ class BoundedFeedback(GenerateFeedback):  # type: ignore[misc, unused-ignore]
             if (source / name).is_file():
                 shutil.copyfile(source / name, dest / name)
         self.notebooks: list[str] = _in(source, self.notebooks)
+
+
+class BoundedFeedback(_StopsWithTheDisk, _Feedback):
+    """nbgrader's GenerateFeedback with limits on what it reads."""
 
 
 class BoundedNotebook(NotebookExporter):
@@ -191,7 +247,10 @@ class BoundedCollect(ExchangeCollect):  # type: ignore[misc, unused-ignore]
         super().copy_files()
 
     def do_copy(self, src: str, dest: str, log: Any = None) -> None:  # noqa: ANN401 - as the base class
-        """Copy one submission. If the copy fails, log a warning and continue with the other submissions."""
+        """Copy one submission. If the copy fails, log a warning and continue with the other submissions.
+
+        If the disk has failed, stop: nbgrader removes a student's earlier submission before each copy.
+        """
         with tempfile.TemporaryDirectory(prefix="collect-") as folder:
             safe = Path(folder, "submission")
             try:
@@ -199,6 +258,8 @@ class BoundedCollect(ExchangeCollect):  # type: ignore[misc, unused-ignore]
                 read(readable.time_of, safe)
                 super().do_copy(str(safe), dest, log)
             except (GraderError, OSError, RuntimeError) as error:
+                if failure := failed_disk(error, dest):
+                    self.fail(f"{failure} Then run the same command again.")
                 self.log.warning("%s could not be collected: %s", tree.shown(src), error)
                 return
         for each in left_out:

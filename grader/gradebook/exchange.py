@@ -14,6 +14,7 @@ from nbgrader.exchange.default import ExchangeList, ExchangeReleaseFeedback
 
 from grader.errors import GraderError
 from grader.gradebook import inbound, readable
+from grader.gradebook.failed_disk import failed_disk
 from grader.submission.reader import read
 from grader.submission.tree import shown
 
@@ -22,14 +23,20 @@ class BoundedReleaseFeedback(ExchangeReleaseFeedback):  # type: ignore[misc, unu
     """Releases the feedback of each submission separately."""
 
     src_path: str
+    dest_path: str
 
     def copy_files(self) -> None:
-        """Copy the pages as the base class does. If a page cannot be released, log a warning and continue."""
+        """Copy the pages as the base class does. If a page cannot be released, log a warning and continue.
+
+        If the disk has failed, stop: the cause is not the submission, and the next page could not be written either.
+        """
         for folder in sorted(glob.glob(self.src_path)):  # noqa: PTH207 - the path is a pattern, as in the base class
             self.src_path = glob.escape(folder)
             try:
                 super().copy_files()
             except (OSError, ValueError) as error:  # ValueError: bytes that are not UTF-8
+                if failure := failed_disk(error, self.dest_path):
+                    self.fail(f"{failure} Then run the same command again.")
                 self.log.warning("The feedback in %s was not released: %s", shown(folder), error)
 
 

@@ -18,7 +18,6 @@ from grader.classroom.found import Found
 from grader.classroom.grade_class import Request, grade_found
 from grader.classroom.refused import Refused
 from grader.classroom.results import Results
-from grader.common.system_errors import OF_THE_DISK
 from grader.common.words import a_list, shorten
 from grader.errors import UnreadableError, UsageError
 from grader.gradebook.confirmed import (
@@ -27,6 +26,7 @@ from grader.gradebook.confirmed import (
     provisional_grades,
     withhold_unconfirmed,
 )
+from grader.gradebook.failed_disk import failed_disk
 from grader.gradebook.readable import time_of
 from grader.gradebook.student_names import unclear
 from grader.submission.handed_in import open_handed_in
@@ -158,7 +158,7 @@ def _readable(
             found.append(Found(student, step, submitted.parent.resolve() / submitted.name))
         except Exception as error:
             # An error in a student's files must not stop the grading of other submissions.
-            if _of_the_machine(error):
+            if failed_disk(error):
                 raise
             why[student, step] = f"it could not be read ({_in_words(error)})"
             kind: Diagnosis = "submission-link" if isinstance(error, _LinkError) else "unreadable"
@@ -183,15 +183,6 @@ class _LinkError(UnreadableError):
 def _refuse_link(student: str) -> NoReturn:
     message = f"the folder of {shorten(student)} is a symbolic link, which could lead to another student's work"
     raise _LinkError(message)
-
-
-def _of_the_machine(error: BaseException | None) -> bool:
-    """Return whether the disk, and not a student's file, caused the error."""
-    while error is not None:
-        if isinstance(error, OSError) and error.errno in OF_THE_DISK:
-            return True
-        error = error.__cause__ or error.__context__
-    return False
 
 
 def _in_words(error: BaseException) -> str:
