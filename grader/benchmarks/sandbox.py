@@ -1,8 +1,8 @@
-"""Measure the cost of the sandbox relative to F: grade the same submission with and without sandbox cells.
+"""Measure how much longer a grading takes in the sandbox, relative to F (see grader.benchmarks.check).
 
     python -m grader.benchmarks.sandbox [--times N] [--submission FOLDER]
 
-Everything is measured in one run on the same machine. The measurements alternate, so that other programs slow down all
+The same submission is graded with and without sandbox cells, in one run on the same machine. The measurements alternate, so that other programs slow down all
 of them alike.
 """
 

@@ -24,13 +24,16 @@ if TYPE_CHECKING:
 MEMORY_A_TASK = 1536 * 1024 * 1024
 """The memory that each task is expected to need (bytes). A cell may use more memory than this (sandbox.Limits), but few
 cells do."""
+JOBS_PER_PROCESSOR = 1.5
+"""With one job per processor, the processors are idle for a fifth of the time, because a trial waits for the discovery
+of its node (docs/costs.md)."""
 WAITING_A_JOB = 2
 """For each job, this many additional tasks may run while other tasks are in a trial in wall time."""
 
 
 def default_jobs() -> int:
-    """Return the number of submissions to grade in parallel: one per processor, if the memory is sufficient."""
-    return max(1, min(_processors(), _memory() // MEMORY_A_TASK))
+    """Return the number of submissions to grade in parallel: JOBS_PER_PROCESSOR, if the memory is sufficient."""
+    return max(1, min(int(JOBS_PER_PROCESSOR * _processors()), _memory() // MEMORY_A_TASK))
 
 
 def _processors() -> int:

@@ -1,12 +1,15 @@
-"""A worker process that grades one task after another, so that Python modules are imported only once.
+"""A worker: a process that grades one task after another.
 
-`python -m grader.classroom.worker DESCRIPTOR`. Student code does not run in the worker process, but in the sandbox
-cells that the worker starts. If the process that started the worker exits, then the worker and all its descendants exit
-too.
+The workers of a command are forks of one process, the worker server (`python -m grader.classroom.worker DESCRIPTOR`).
+This process has imported everything that grading needs, and has started the fork servers of the trials
+(grader.trial.fork_server), so that the workers share their memory and the fork servers. Student code does not run in
+these processes, but in the sandbox cells that the workers start. If the process that started the worker server exits,
+then the server, the workers and all their descendants exit too.
 """
 
 from __future__ import annotations
 
+import gc
 import os
 import select
 import signal
@@ -14,7 +17,9 @@ import socket
 import subprocess
 import sys
 import tempfile
+import traceback
 from contextlib import suppress
+from functools import cache
 from multiprocessing.connection import Connection
 from threading import Thread
 from typing import IO, TYPE_CHECKING, Literal
@@ -22,6 +27,9 @@ from typing import IO, TYPE_CHECKING, Literal
 from grader.common.how_ended import how_ended
 from grader.common.interpreter import interpreter
 from grader.common.lazy import load_catkin_pkg, load_numpy
+from grader.sandbox import entering
+from grader.trial.fork_client import ForkServer
+from grader.trial.forking import fork_supervised, next_request
 
 if TYPE_CHECKING:
     from grader.classroom.task import Done, Pace, Task
@@ -43,17 +51,7 @@ class Worker:
         ours, theirs = socket.socketpair()
         self._errors: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed in `close`
         with theirs:
-            # The worker gets its own session, so that Ctrl-C reaches only the owner.
-            start = interpreter("-m", "grader.classroom.worker", str(theirs.fileno()))
-            self.process = subprocess.Popen(
-                start.argv,
-                env=start.env,
-                pass_fds=(theirs.fileno(),),
-                stdin=subprocess.DEVNULL,
-                stdout=self._errors,
-                stderr=self._errors,
-                start_new_session=True,
-            )
+            self.process = _server().request({}, [theirs.fileno(), self._errors.fileno()])
         self.connection: Connection = Connection(ours.detach())
 
     def send(self, task: Task) -> None:
@@ -83,21 +81,64 @@ class Worker:
     def close(self) -> None:
         """Kill the process and everything that it started."""
         self.connection.close()
-        self.process.kill()
+        self.process.signal(signal.SIGKILL)
         self.process.wait()
+        self.process.close()
         self._errors.close()
 
 
+@cache
+def _server() -> ForkServer:
+    """Return the worker server of this process."""
+    return ForkServer(_started)
+
+
+def _started(descriptor: int) -> subprocess.Popen[bytes]:
+    """Start the worker server."""
+    start = interpreter("-m", "grader.classroom.worker", str(descriptor))
+    # The server gets its own session, so that Ctrl-C reaches only the owner.
+    return subprocess.Popen(
+        start.argv,
+        env=start.env,
+        pass_fds=[descriptor],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+
+
 def main(descriptor: int) -> None:
-    """Grade tasks until the owner exits."""
+    """Import everything, and fork a worker for each request until the owner exits."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    gc.disable()  # imports leave hardly any garbage
+    problem = ""
+    try:
+        _import_all()
+        _start_fork_servers()
+    except Exception:  # a module is missing, for example
+        problem = traceback.format_exc()
+    _, (connection, errors, result) = next_request(socket.socket(fileno=descriptor))
+    fork_supervised(result, [connection, errors])
+    entering.end_with_parent()
+    os.dup2(errors, 1)
+    os.dup2(errors, 2)
+    os.close(errors)
+    if problem:
+        os.write(2, problem.encode())
+        os._exit(1)
+    _grade_tasks(connection)
+    os._exit(0)
+
+
+def _grade_tasks(descriptor: int) -> None:
+    """Grade tasks until the owner exits."""
     os.set_inheritable(descriptor, False)  # noqa: FBT003
     connection = Connection(descriptor)
     Thread(target=_end_with_owner, args=(descriptor,), daemon=True).start()
     from grader.classroom import task as tasks
     from grader.errors import MachineError
 
-    _import_all()
     while True:
         try:
             task = connection.recv()
@@ -115,10 +156,25 @@ def main(descriptor: int) -> None:
 
 def _import_all() -> None:
     """Import in advance the modules that grading needs, so that the first task does not have to wait for the import."""
+    import grader.classroom.task
     import grader.report.html  # noqa: F401
 
     load_catkin_pkg()
     load_numpy()
+
+
+def _start_fork_servers() -> None:
+    """Start the fork servers that all workers share. If there is no sandbox or no ROS 2, start none."""
+    from grader.errors import MachineError
+    from grader.ros import installation, underlay
+    from grader.sandbox import bubblewrap
+    from grader.trial import fork_client
+
+    with suppress(MachineError):
+        if bubblewrap.usable():
+            ros = underlay.with_turtlesim(installation.find_ros())
+            fork_client.conductors(ros).start()
+            fork_client.nodes(ros).start()
 
 
 def _end_with_owner(descriptor: int) -> None:

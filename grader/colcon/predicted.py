@@ -139,7 +139,9 @@ def _looks_around(node: ast.AST, files: Mapping[str, bytes]) -> bool:
     elif isinstance(node, ast.ImportFrom) and not node.level:
         names = [node.module or ""]
     else:
-        return isinstance(node, ast.Name) and node.id in _READING
+        attribute = node.attr if isinstance(node, ast.Attribute) else ""  # such as helper.__file__, but not re.compile
+        found = node.id if isinstance(node, ast.Name) else attribute if attribute.startswith("__") else ""
+        return found in _READING
     packages = {name.partition(".")[0] for name in names}
     return any(name not in _IMPORTED and module_file(name, files) is None for name in packages)
 

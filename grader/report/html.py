@@ -93,7 +93,7 @@ def html_page(evidence: Evidence, report: Report) -> str:
 
 
 def without_content(evidence: Evidence) -> Evidence:
-    """Return the evidence without anything that came from the submission."""
+    """Return the evidence without the files of the submission, its build and its trials."""
     nothing = replace(evidence.submission, files={}, rejected=(), executable=frozenset())
     return replace(evidence, submission=nothing, build=None, runs={})
 

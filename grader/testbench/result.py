@@ -75,7 +75,7 @@ class NodeRun:
 class BenchResult:
     """The runs on the correct node and on the broken nodes.
 
-    Runs that could no longer change the verdict are left out.
+    Runs that were not started (see `take` in grader.testbench.bench) are left out.
     """
 
     runs: tuple[NodeRun, ...]

@@ -63,7 +63,7 @@ OURS = {
     ("gradescope_archive", "build_archive"): "an archive that we write",
     ("in_cell", "_next_run"): "the command that colcon starts, in its cell",
     ("judging", "so_far"): "a submission that is already read",
-    ("fork_server", "_next_request"): "a request of fork_client.py",
+    ("fork_server", "_next_order"): "a request of fork_client.py",
     ("holder", "await_ready"): "the output of bubblewrap",
     ("launcher", "run"): "a request of the conductor",
     ("node_in_cell", "main"): "a request of the desk",

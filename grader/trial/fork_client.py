@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import atexit
 import json
+import os
+import select
 import socket
 import subprocess
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING, Any, Literal
@@ -18,7 +20,7 @@ from grader.sandbox import entering
 from grader.trial.fork import Fork
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
 CONDUCTORS = {"ROS_PYTHON_CHECK_FIELDS": "0"}
 """Environment variables only for conductors. They disable the check of the values in messages. This check helps
@@ -32,14 +34,28 @@ Each fork gets a HOME of its own."""
 
 
 class ForkServer:
-    """A process that runs grader.trial.fork_server. It exits when this process exits."""
+    """A process that forks itself for each request (grader.trial.forking).
 
-    def __init__(self, kind: Literal["conductor", "node"], ros: installation.Ros) -> None:
-        self._kind, self._ros = kind, ros
+    It exits when this process and all processes that this process has forked have exited.
+    """
+
+    def __init__(self, start: Callable[[int], subprocess.Popen[bytes]]) -> None:
+        """Create a server that is started with the first request.
+
+        `start` starts the process. Its argument is the descriptor of the socket for requests, which the process
+        inherits.
+        """
+        self._start = start
         self._changing = Lock()
         self._requests: socket.socket | None = None
         self._process: subprocess.Popen[bytes] | None = None
+        self._owner = 0
         atexit.register(self.close)
+
+    def start(self) -> None:
+        """Start the process, unless it is running. Processes that this process forks afterwards share the server."""
+        with self._changing:
+            self._running()
 
     def request(self, order: Mapping[str, Any], descriptors: Sequence[int]) -> Fork:
         """Send a request with these file descriptors. Any thread may call this method."""
@@ -47,49 +63,61 @@ class ForkServer:
         with theirs:
             passed = [*descriptors, theirs.fileno()]
             with self._changing:
-                if self._process is None or self._process.poll() is not None:
-                    self._begin()
-                assert self._requests is not None
-                entering.pass_descriptors(self._requests, json.dumps(order).encode(), passed)
+                entering.pass_descriptors(self._running(), json.dumps(order).encode(), passed)
         return Fork(ours)
 
     def close(self) -> None:
-        """Stop the server and its forks."""
+        """Stop the server and its forks. If another process started the server, it keeps running."""
         with self._changing:
-            if self._process is not None and self._requests is not None:
+            if self._requests is not None:
                 self._requests.close()
+            if self._process is not None and self._owner == os.getpid():
                 self._process.kill()
                 self._process.wait()
-                self._process = self._requests = None
+            self._process = self._requests = None
 
-    def _begin(self) -> None:
-        self._requests, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        with theirs:
-            module = ("-m", "grader.trial.fork_server", self._kind, str(theirs.fileno()))
-            env = installation.environment(self._ros, home=NOBODYS_HOME, domain=None)
-            env |= CONDUCTORS if self._kind == "conductor" else {}
-            start = interpreter(*module, python=str(self._ros.python), env=env, searches=True)
-            # Without a session of its own, a node could write into the input of the user's terminal. Without the
-            # loader, a node could change an interpreter that belongs to the user, since no read-only mount hides this
-            # interpreter.
-            self._process = subprocess.Popen(
-                loaded(start.argv),
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-                env=start.env,
-                pass_fds=[theirs.fileno()],
-                start_new_session=True,
-            )
+    def _running(self) -> socket.socket:
+        """Return the socket of the server. If the server is not running, start it."""
+        if self._requests is None or _is_closed(self._requests):
+            self._requests, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+            with theirs:
+                self._process, self._owner = self._start(theirs.fileno()), os.getpid()
+        return self._requests
+
+
+def _is_closed(requests: socket.socket) -> bool:
+    """Return whether the other end of the socket is closed."""
+    ends = select.poll()
+    ends.register(requests, 0)
+    return bool(ends.poll(0))
+
+
+def _started(kind: Literal["conductor", "node"], ros: installation.Ros, descriptor: int) -> subprocess.Popen[bytes]:
+    """Start grader.trial.fork_server."""
+    env = installation.environment(ros, home=NOBODYS_HOME, domain=None)
+    env |= CONDUCTORS if kind == "conductor" else {}
+    module = ("-m", "grader.trial.fork_server", kind, str(descriptor))
+    start = interpreter(*module, python=str(ros.python), env=env, searches=True)
+    # Without a session of its own, a node could write into the input of the user's terminal. Without the loader, a node
+    # could change an interpreter that belongs to the user, since no read-only mount hides this interpreter.
+    return subprocess.Popen(
+        loaded(start.argv),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        env=start.env,
+        pass_fds=[descriptor],
+        start_new_session=True,
+    )
 
 
 @cache
 def conductors(ros: installation.Ros) -> ForkServer:
     """Return the fork server for conductors that run with this ROS 2."""
-    return ForkServer("conductor", ros)
+    return ForkServer(partial(_started, "conductor", ros))
 
 
 @cache
 def nodes(ros: installation.Ros) -> ForkServer:
     """Return the fork server for nodes that run with this ROS 2."""
-    return ForkServer("node", ros)
+    return ForkServer(partial(_started, "node", ros))

@@ -28,8 +28,6 @@ import gc
 import importlib
 import json
 import os
-import select
-import signal
 import socket
 import sys
 import traceback
@@ -37,18 +35,17 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from grader.common.linux_calls import pidfd_open, pidfd_send_signal
+from grader.common.linux_calls import pidfd_open
 from grader.sandbox import entering
 from grader.trial import launcher
-from grader.trial.fork import STARTED, STATUS
+from grader.trial.fork import STARTED
+from grader.trial.forking import fork_supervised, next_request
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
 NODES_SOCKET = 3
 """The descriptor of the socket on which a conductor requests nodes."""
-MOST_REQUEST = 64 * 1024
-"""The maximum size of a request (bytes)."""
 CONDUCTORS, NODES = 6, 5
 """The number of file descriptors that are sent to request a conductor, and to request each node."""
 CELLS_USER = 1000
@@ -71,7 +68,7 @@ def main() -> None:
     except Exception:  # a part of ROS 2 is missing, for example
         problem = traceback.format_exc()
     entering.allow_inspection(allow=False)
-    order, passed = _next_request(requests)
+    order, passed = _next_order(requests)
     with _exit_on_errors():
         (_enter_cell if kind == "node" else _enter_room)(order, problem, *passed)
     if kind == "node":
@@ -106,22 +103,12 @@ def _import_conductor() -> list[launcher.Postponed]:
     return modules
 
 
-def _next_request(requests: socket.socket) -> tuple[dict[str, Any], list[int]]:
-    """Wait for requests. For each request, fork this process, and return the request in the child process only."""
-    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the forks
-    gc.freeze()
-    gc.enable()
-    while True:
-        request, passed, *_ = socket.recv_fds(requests, MOST_REQUEST, 6)
-        if not request:
-            os._exit(0)
-        if _forked():
-            break
-        for descriptor in passed:
-            os.close(descriptor)
-    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-    requests.close()
-    entering.end_with_parent()
+def _next_order(requests: socket.socket) -> tuple[dict[str, Any], list[int]]:
+    """Wait for requests. For each request, fork this process, and return the request in the child process only.
+
+    The child process joins the control groups of the trial.
+    """
+    request, passed = next_request(requests)
     order = json.loads(request)
     for folder in order["groups"]:
         with suppress(OSError):
@@ -129,24 +116,12 @@ def _next_request(requests: socket.socket) -> tuple[dict[str, Any], list[int]]:
     return order, passed
 
 
-def _forked() -> bool:
-    """Fork this process, and return whether this is the child process.
-
-    If no child process can be created, return False. The socket for the result is then closed, so that the grader
-    notices the failure, and other trials continue.
-    """
-    try:
-        return os.fork() == 0
-    except OSError:  # too many processes
-        return False
-
-
 def _enter_room(order: dict[str, Any], problem: str, room: int, *passed: int) -> None:
     """Turn this process into a process in the room."""
     *streams, result = passed
     _report_to(streams[2], problem)
     entering.enter(room, cell=False)
-    _fork_supervised(result, [room, *streams])
+    fork_supervised(result, [room, *streams])
     entering.keep(streams)
     entering.confine(order["limits"], user=order["user"])
     os.environ.update({"HOME": order["home"], "ROS_LOG_DIR": f"{order['home']}/log"})
@@ -161,7 +136,7 @@ def _enter_cell(order: dict[str, Any], problem: str, conductors: int, result: in
     _report_to(streams[2], problem)
     by_root = os.geteuid() == 0
     entering.enter(cell, cell=True)
-    _fork_supervised(its_result, [cell, *streams])
+    fork_supervised(its_result, [cell, *streams])
     entering.keep(streams)
     call_filter = base64.b64decode(order["filter"])
     entering.confine(order["limits"], user=CELLS_USER if by_root else None, call_filter=call_filter)
@@ -196,37 +171,6 @@ def _next_node(conductor: socket.socket, nodes: int) -> list[int]:
     conductor.close()
     for _ in range(nodes):
         os.wait()
-    os._exit(0)
-
-
-def _fork_supervised(result: int, childs: Sequence[int]) -> None:
-    """Fork, and return only in the child process. The parent process reports how the child process ends.
-
-    The parent process closes the descriptors `childs`, and kills the child process if the other end of the socket
-    `result` is closed.
-    """
-    results = socket.socket(fileno=result)
-    child = os.fork()
-    if child == 0:
-        results.close()
-        os.setsid()  # otherwise, signals to its process group would reach the server and other trials
-        return
-    entering.end_with_parent()  # entering a cell may have cancelled the earlier request
-    for descriptor in childs:
-        os.close(descriptor)
-    process = pidfd_open(child)
-    try:
-        entering.pass_descriptors(results, STARTED, [process])
-        ends = select.poll()
-        ends.register(process, select.POLLIN)
-        ends.register(results, 0)  # only the end of the connection
-        if all(descriptor != process for descriptor, _ in ends.poll()):
-            pidfd_send_signal(process, signal.SIGKILL)
-        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-        results.send(STATUS.pack(code))
-    except OSError:  # nobody waits for the result
-        with suppress(ProcessLookupError):
-            pidfd_send_signal(process, signal.SIGKILL)
     os._exit(0)
 
 

@@ -29,7 +29,8 @@ class SystemClock:
 def _ahead_s() -> float:
     """Return by how much the system's clock is ahead of CLOCK_MONOTONIC (s).
 
-    This process may be interrupted between two readings, so the shortest of several readings is used.
+    This process may be interrupted after it has read one clock and before it reads the other. Therefore, the clocks
+    are compared several times, and the comparison that took the least time counts.
     """
     readings = []
     for _ in range(_READINGS):

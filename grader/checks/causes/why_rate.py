@@ -148,7 +148,7 @@ def _rate_without_spin(evidence: Evidence) -> Cause | None:
 
 
 def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:
-    """Return the cause if a function has several calls to `call`, about as many as messages per period, else None."""
+    """Return the cause if a function calls `call` several times, about as often as messages arrive per period, or None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.FunctionDef):

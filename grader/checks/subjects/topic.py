@@ -171,7 +171,7 @@ def only_type(evidence: Evidence, params: Topic) -> Finding:
     listed = _types(others)
     if others and params.type in types:
         observed = f"{params.topic} also has {listed}."
-        cause = "A topic has one type. Two publishers with different types cannot use the same topic name."
+        cause = "All publishers of a topic must use the same type. Use another topic name for the other type."
         return failed(observed, expected, Cause("second-type", cause, where))
     if others:
         cause = "The message type is the first argument of create_publisher."

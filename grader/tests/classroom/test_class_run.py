@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import pytest
 
 from grader.checks.outcome import Status
+from grader.classroom import local
 from grader.classroom.class_run import run
 from grader.classroom.find_submissions import find_submissions
 from grader.classroom.local import LocalEngine, default_jobs
@@ -104,7 +105,7 @@ def test_a_submission_that_kills_two_workers_is_an_error_and_the_others_are_grad
 
 def test_a_worker_ends_with_its_owner() -> None:
     worker = Worker()
-    pid = worker.process.pid
+    pid = worker.process.await_started()
     worker.connection.close()
     assert worker.process.wait(60) == 0
     assert not Path(f"/proc/{pid}/task/{pid}/children").exists()
@@ -180,4 +181,15 @@ def command_line(pid: int) -> bytes:
 
 
 def test_there_is_always_at_least_one_job() -> None:
-    assert 1 <= default_jobs() <= (os.cpu_count() or 1)
+    assert 1 <= default_jobs() <= 1.5 * (os.cpu_count() or 1)
+
+
+@pytest.mark.parametrize(
+    ("processors", "free_gib", "jobs"), [(1, 64, 1), (2, 64, 3), (8, 64, 12), (8, 4, 2), (2, 1, 1)]
+)
+def test_three_jobs_share_two_processors_if_the_memory_is_sufficient(
+    monkeypatch: pytest.MonkeyPatch, processors: int, free_gib: int, jobs: int
+) -> None:
+    monkeypatch.setattr(local, "_processors", lambda: processors)
+    monkeypatch.setattr(local, "_memory", lambda: free_gib * 1024**3)
+    assert default_jobs() == jobs

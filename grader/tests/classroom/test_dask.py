@@ -106,7 +106,7 @@ def test_a_submission_that_does_not_end_does_not_keep_a_worker_for_ever(monkeypa
         """A worker process that was stopped, as if its task did not end."""
 
         def send(self, _: object) -> None:
-            self.process.send_signal(signal.SIGSTOP)
+            self.process.signal(signal.SIGSTOP)
             started.append(self)
 
     started: list[Worker] = []

@@ -156,6 +156,7 @@ def test_a_damaged_tree_is_not_the_predicted_one(tree: bytes, predicted: Predict
     [
         (NODE, b"import rclpy\n", b"import os\nimport rclpy\n"),
         (NODE, b"import rclpy\n", b"import rclpy\n\nprint(__file__)\n"),
+        (NODE, b"import rclpy\n", b"import rclpy\n\nprint(rclpy.__path__)\n"),
         (NODE, b"import rclpy\n", b"import rclpy\n\nfor line in open('a.yaml'):\n    print(line)\n"),
         (NODE, b"import rclpy\n", b"import rclpy\nfrom my_robot_controller.sea import os_helper\nimport unknown\n"),
         ("package.xml", b"ament_python", b"ament_cmake"),

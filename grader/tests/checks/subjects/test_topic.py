@@ -279,7 +279,7 @@ def test_the_sentences_about_types_are_told_only_for_a_wrong_type() -> None:
         found(ONLY_TYPE, evidence(each), topic=TOPIC, type=TWIST)
         for each in (two, observed(("publisher", TOPIC, TWIST)))
     )
-    assert second.cause.startswith("A topic has one type. Two publishers with different types")
+    assert second.cause.startswith("All publishers of a topic must use the same type.")
     assert (one.status, one.cause) == (Status.PASSED, "")
     assert one.observed == f"Only {TWIST} messages are published on {TOPIC}."
 
