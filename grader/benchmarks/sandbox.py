@@ -2,8 +2,8 @@
 
     python -m grader.benchmarks.sandbox [--times N] [--submission FOLDER]
 
-The same submission is graded with and without sandbox cells, in one run on the same machine. The measurements alternate, so that other programs slow down all
-of them alike.
+The same submission is graded with and without sandbox cells, in one run on the same machine. The measurements
+alternate, so that other programs slow down all of them alike.
 """
 
 from __future__ import annotations

@@ -145,8 +145,8 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
     empty = NO_BODY.search(unreadable.message)
     if empty is not None and (OUTSIDE.match(line) or (unreadable.line or 0) > int(empty["line"]) + 1):
         text = (
-            f"No indented statement follows line {empty['line']}, so this line has no body. A comment is not a statement. "
-            "Write at least the statement pass."
+            f"No indented statement follows line {empty['line']}, so this line has no body. "
+            "A comment is not a statement. Write at least the statement pass."
         )
         return Cause("indentation", text, Where(file, int(empty["line"])))
     other = NOT_CLOSED.search(unreadable.message)

@@ -148,7 +148,7 @@ def _rate_without_spin(evidence: Evidence) -> Cause | None:
 
 
 def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:
-    """Return the cause if a function calls `call` several times, about as often as messages arrive per period, or None."""
+    """Return the cause if a function calls `call` about as often as messages arrive in one period, at least twice."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.FunctionDef):
