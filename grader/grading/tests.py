@@ -11,7 +11,6 @@ from grader.evidence.evidence import Run
 from grader.exercise.own_numbers import OwnNumbers
 from grader.grading.clock import Attempt
 from grader.submission.reader import read
-from grader.testbench.bench import Bench
 from grader.testbench.result import BenchResult, runs_of
 
 if TYPE_CHECKING:
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from grader.grading.options import Options
     from grader.grading.stopwatch import Stopwatch
     from grader.ros.installation import Ros
+    from grader.testbench.bench import Bench
 
 
 def tests_of(evidence: Evidence) -> TestsSpec:
@@ -62,6 +62,8 @@ class Tests:
     def start(self, views: Iterable[Evidence]) -> None:
         """Start the student's tests in each of these trials. The tests do not need the build."""
         for view in views:
+            from grader.testbench.bench import Bench  # few exercises have tests
+
             spec = read(tests_of, view)
             bench = self._started[view.trial.id] = Bench(
                 spec,

@@ -13,7 +13,6 @@ import re
 import sys
 import tempfile
 from dataclasses import dataclass
-from importlib import metadata
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Literal
@@ -276,7 +275,7 @@ def _wheels(prefix: Path) -> Ros | None:
         return None
     return Ros(
         kind="wheels",
-        version=metadata.version("ros-rclpy"),
+        version=_wheel_version(prefix),
         prefix=prefix,
         prefixes=(prefix,),
         python=prefix / "bin" / "python3",
@@ -292,6 +291,12 @@ def _has(prefix: Path, package: str) -> bool:
 def has_turtlesim(ros: Ros) -> bool:
     """Return whether this ROS 2 includes turtlesim, so that the turtlesim interfaces need not be built."""
     return any(_has(prefix, "turtlesim") for prefix in ros.prefixes)
+
+
+def _wheel_version(prefix: Path) -> str:
+    """Return the version of the wheel that contains rclpy. importlib.metadata would find it, but imports 40 modules."""
+    names = [found.name for found in (prefix / PYTHON_LIB).glob("ros_rclpy-*.dist-info")]
+    return max(names, default="").removeprefix("ros_rclpy-").removesuffix(".dist-info") or "of unknown version"
 
 
 def _version(prefix: Path) -> str:
