@@ -6,6 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.crash_scene import Function
 from grader.checks.causes.why_other_object import no_object
 from grader.common.words import shorten
 from grader.submission.constants import dotted
@@ -40,7 +41,7 @@ def _before_message(scene: CrashScene, objects: list[ast.expr]) -> Cause | None:
         values = [node for node in scene.nodes if isinstance(node, ast.Assign) and holder in map(dotted, node.targets)]
         if any(isinstance(each.value, ast.Constant) and each.value.value is None for each in values):
             text = f"{shorten(holder)} is None until it gets a value. Check for None before you use the value."
-            known = _just_cleared(scene, values, holder) or _reversed(scene, holder)
+            known = _just_cleared(scene, values, holder) or _reversed(scene, holder) or _never_global(scene, holder)
             return known or Cause("none-before-message", text)
     return None
 
@@ -62,4 +63,20 @@ def _reversed(scene: CrashScene, holder: str) -> Cause | None:
         if isinstance(node, ast.If) and returns and ast.unparse(node.test) == f"{holder} is not None":
             text = f"This condition is the wrong way round: the method returns if {shorten(holder)} is not None."
             return Cause("none-before-message", text, scene.at(node))
+    return None
+
+
+def _never_global(scene: CrashScene, holder: str) -> Cause | None:
+    """Return the cause if each function that assigns the variable of the module makes a local variable, else None."""
+    functions = [node for node in scene.nodes if isinstance(node, Function)]
+    if any(isinstance(node, ast.Global) and holder in node.names for node in scene.nodes):
+        return None
+    for function in functions:
+        for node in ast.walk(function):
+            if isinstance(node, ast.Name) and node.id == holder and isinstance(node.ctx, ast.Store):
+                text = (
+                    f"{function.name} gives a value only to its own local variable {holder}. To set the variable of "
+                    f"the module, {function.name} needs the line global {holder}."
+                )
+                return Cause("local-name", text, scene.at(node))
     return None

@@ -42,6 +42,7 @@ MEANINGS = {
     "IndentationError": "All lines of a block must have the same indentation.",
     "IndexError": "The sequence, such as a list or a string, has no item with this index.",
     "InvalidNodeNameException": "A node name has only letters, digits and underscores. It does not begin with a digit.",
+    "InvalidQoSProfileException": "A QoSProfile needs a depth, which is the size of the queue.",
     "InvalidTopicNameException": "A topic name may contain only letters, digits, underscores and slashes.",
     "InvalidParameterTypeException": "A parameter has the type of its default value: 2 is an integer, 2.0 is a float.",
     "KeyError": "The dictionary has no such key.",

@@ -86,11 +86,20 @@ OF_ROS_1 = {
     "sleep": "In ROS 2, a node does periodic work in the callback of a timer.",
     "get_time": "In ROS 2, the node's clock gives the time: get_clock().now().",
     "get_param": "In ROS 2, a node has declare_parameter and get_parameter.",
+    "set_param": "In ROS 2, a node has declare_parameter and set_parameters.",
+    "ServiceProxy": "In ROS 2, the method create_client of the node creates a client.",
+    "Service": "In ROS 2, the method create_service of the node offers a service.",
+    "wait_for_service": "In ROS 2, a client has the methods wait_for_service and service_is_ready.",
+    "wait_for_message": "In ROS 2, a node receives messages in the callback of a subscription.",
+    "Duration": "In ROS 2, the class Duration is in rclpy.duration.",
+    "Time": "In ROS 2, the class Time is in rclpy.time.",
     "loginfo": "In ROS 2, the logger has the method info.",
     "logwarn": "In ROS 2, the logger has the method warning.",
     "logerr": "In ROS 2, the logger has the method error.",
 }
 """Maps a name in rospy to a sentence about its replacement in ROS 2."""
+CALLED_ON_A_NODE = frozenset({"get_param", "set_param", "Publisher", "Subscriber", "Rate", "ServiceProxy"})
+"""The functions of rospy that learners call on a node. The other names can mean something else there."""
 
 NODE = (
     "create_publisher",

@@ -221,7 +221,7 @@ def _of_own_class(scene: CrashScene, owner: str, name: str) -> Cause:
             return Cause("super-init-missing", text, scene.at(made)).fixed_by(at(first, "", line))
         text = "super().__init__ creates the node. You cannot use the node before that line."
         return Cause("super-init-late", text)
-    instead = compared(scene, name)
+    instead = compared(scene, name) or (_of_ros_1(name) if name in ros_names.CALLED_ON_A_NODE else None)
     if instead is not None:
         return instead
     lines = [line for attribute, line in attributes_set(own) if attribute == name]

@@ -17,10 +17,13 @@ from grader.checks.causes.why_ended import named_only
 from grader.checks.causes.why_fields import why_field
 from grader.checks.causes.why_imports import why_no_import
 from grader.checks.causes.why_interface import why_interface
+from grader.checks.causes.why_main import why_main
 from grader.checks.causes.why_names import why_no_name, why_unbound
+from grader.checks.causes.why_no_file import why_no_file
 from grader.checks.causes.why_none import why_none
 from grader.checks.causes.why_passed import why_passed
 from grader.checks.causes.why_rate import callbacks_of
+from grader.checks.causes.why_rclpy_refused import why_rclpy_refused
 from grader.checks.causes.why_response import why_response
 from grader.checks.causes.why_transition import why_no_transition
 from grader.checks.outcome import Finding, failed
@@ -122,6 +125,14 @@ def _why_resized(scene: CrashScene) -> Cause | None:
     return Cause("crash", text)
 
 
+def _why_no_loop(scene: CrashScene) -> Cause | None:
+    """Return the cause if the node uses asyncio in a coroutine that rclpy runs, else None."""
+    if "no running event loop" not in scene.crash.message:
+        return None
+    text = "rclpy calls this callback without the event loop of asyncio. To wait, use a timer instead of asyncio."
+    return Cause("crash", text)
+
+
 def _why_await(scene: CrashScene) -> Cause | None:
     """Return the cause if a function that is not `async` contains await, else None."""
     if "'await' outside async function" not in scene.crash.message:
@@ -147,6 +158,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "AttributeError": why_no_attribute,
     "EOFError": _always("needs-stdin"),
     "ImportError": why_no_import,
+    "FileNotFoundError": why_no_file,
     "InvalidNodeNameException": _always("node-name-invalid"),
     "InvalidTopicNameException": _why_no_topic,
     "ModuleNotFoundError": why_no_import,
@@ -154,7 +166,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "NotInitializedException": _why_no_init,
     "ParameterNotDeclaredException": _why_undeclared,
     "RCLError": lambda scene: why_no_transition(scene) or why_refused(scene),
-    "RuntimeError": lambda scene: _why_resized(scene) or why_refused(scene),
+    "RuntimeError": lambda scene: _why_resized(scene) or _why_no_loop(scene) or why_refused(scene),
     "SyntaxError": _why_await,
     "TypeError": lambda scene: why_none(scene) or why_type(scene),
     "UnboundLocalError": why_unbound,
@@ -172,7 +184,8 @@ def why_crashed(evidence: Evidence, crash: Crash) -> Cause:
     """
     explain = EXPLANATIONS.get(crash.error)
     scene = CrashScene(evidence, crash)
-    special = trailing_comma(scene) or why_response(scene) or why_interface(scene) or why_passed(scene)
+    special = trailing_comma(scene) or why_main(scene) or why_response(scene) or why_interface(scene)
+    special = special or why_rclpy_refused(scene) or why_passed(scene)
     cause = special or (explain(scene) if explain is not None else None)
     return cause or Cause("crash", crash.meaning)
 

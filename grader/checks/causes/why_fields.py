@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 FIELD = re.compile(r"The '(?P<field>\w+)' field must be (?P<inner>of|a sub message of) type '(?P<type>\w+)'")
 RANGE = re.compile(r"The '(?P<field>\w+)' field must be an (?:un)?signed integer in \[(?P<low>-?\d+), (?P<high>\d+)\]")
 LIST = re.compile(r"The '(?P<field>\w+)' field must be a set or sequence")
+ELEMENT = re.compile(r"each value of type '(?P<type>\w+)'")
 FLOAT = ("float", "double")
 KINDS = {"int": "a whole number", "str": "a string", "bool": "True or False"}
 """Maps the Python type of a field to a phrase for the values of the field."""
@@ -39,6 +40,9 @@ def why_field(scene: CrashScene) -> Cause | None:
         many = LIST.search(scene.crash.message)
         if many is not None:
             text = f"The field {many['field']} is a list. Write square brackets, even for one element."
+            element = ELEMENT.search(scene.crash.message)
+            if element is not None and isinstance(assigned(scene, many["field"]), ast.List):
+                text = f"Each element of the list {many['field']} must be an object of the class {element['type']}."
             return Cause("field-type", text)
         if "Invalid arguments passed to constructor" in scene.crash.message:
             return _no_such_field(scene)
@@ -171,8 +175,11 @@ def assigned(scene: CrashScene, field: str) -> ast.expr | None:
             given = next((value for each, value in pairs if getattr(each, "attr", "") == field), None)
             if given is not None:
                 return given
-        if isinstance(node, ast.keyword) and node.arg == field:
-            return node.value
+        # A call can be longer than the line of the exception, which is the line on which the call begins.
+        keywords = node.keywords if isinstance(node, ast.Call) else []
+        given = next((each.value for each in keywords if each.arg == field), None)
+        if given is not None:
+            return given
     return None
 
 

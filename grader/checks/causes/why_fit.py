@@ -14,8 +14,14 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from grader.checks.diagnosis import Diagnosis
+    from grader.evidence.evidence import Evidence
     from grader.exercise.call_inputs import Arc
+    from grader.submission.code import Code
 
+EXTREMES = ("min", "max", "amin", "amax", "argmin", "argmax", "ptp", "sorted", "sort", "argsort")
+"""The names of functions that find extreme values."""
+EXACT_M = (1e-3, 1e-3, 1e-3)
+"""The maximum errors of a right result for points without noise (m)."""
 ROUGH_M = 0.02
 """The additional tolerance (m) for a value that was computed as the mean or from the extremes of noisy points."""
 
@@ -24,12 +30,14 @@ ROUGH_M = 0.02
 class Fit:
     """A circle that the student's code returned: centre and radius (m).
 
-    `within` contains the tolerances of the values.
+    `within` contains the tolerances of the values. `extremes` is false if the code never computes a minimum or a
+    maximum, so that it cannot have used the extreme points.
     """
 
     arc: Arc
     values: tuple[float, float, float]
     within: tuple[float, float, float]
+    extremes: bool = True
 
     @property
     def truth(self) -> tuple[float, float, float]:
@@ -54,6 +62,27 @@ class Fit:
         return all(
             abs(value - one) <= width + more for value, one, width in zip(self.values, other, self.within, strict=False)
         )
+
+
+def uses_extremes(code: Code) -> bool:
+    """Return whether the code may compute the extremes of the points: a minimum, a maximum or a sorted list."""
+    return any(code.calls(name) for name in EXTREMES)
+
+
+def why_noisy(evidence: Evidence, fit: Fit) -> Cause | None:
+    """Return the cause if another call, whose points have no noise, returned the right circle, else None."""
+    for points in evidence.trial.calls.points if fit.arc.noise_m else ():
+        arc = points.arc
+        if arc is None or arc.noise_m:
+            continue
+        values = next((each.values for each in evidence.run.called or () if each.id == points.id), None)
+        if values is not None and len(values) == 3 and Fit(arc, (values[0], values[1], values[2]), EXACT_M).right:
+            text = (
+                "The circle of exact points is right, but these points have noise, or are only an arc. Use all points, "
+                "and use a method that finds the best circle for any arc, such as lstsq."
+            )
+            return Cause("wrong-fit", text)
+    return None
 
 
 def why_fit(fit: Fit) -> Cause:
@@ -82,9 +111,8 @@ RADIUS_OF_C: tuple[Diagnosis, str] = (
 The radius is then c, √|c|, NaN or infinite.
 """
 _FIRST_TRY = (
-    "The equations are wrong, or the circle is computed incorrectly from their solution. Test the function "
-    "with four "
-    "points of a circle that you know."
+    "The function computes a circle that does not fit the points. Test the function with four points of a circle that "
+    "you know."
 )
 
 
@@ -102,7 +130,7 @@ def _why_radius(fit: Fit) -> tuple[Diagnosis, str] | None:
         return "diameter", "This is the diameter, twice the radius."
     if abs(value - c) <= more or abs(value - math.sqrt(abs(c))) <= more:
         return RADIUS_OF_C
-    if 0.0 < value - radius <= 4.0 * fit.arc.noise_m:
+    if fit.extremes and 0.0 < value - radius <= 4.0 * fit.arc.noise_m:
         return (
             "extremes-for-centre",
             "A radius that is computed only from the outermost points contains all the noise of these points.",
@@ -124,7 +152,7 @@ def _why_centre(fit: Fit) -> tuple[Diagnosis, str] | None:
             "This is the mean of the points. The mean is the centre only if the points cover the whole circle."
         )
     middle = ((xs.min() + xs.max()) / 2.0, (ys.min() + ys.max()) / 2.0)
-    if fit.is_like(middle, ROUGH_M + 3.0 * fit.arc.noise_m):
+    if fit.extremes and fit.is_like(middle, ROUGH_M + 3.0 * fit.arc.noise_m):
         text = (
             "This is the midpoint between the extreme points. The circle of an arc extends beyond the points of the "
             "arc."

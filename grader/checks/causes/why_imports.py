@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
+from grader.checks.causes.why_own_import import why_circular, why_no_own_module
 from grader.checks.edit import at
 from grader.common.words import nearest, shorten
 
@@ -20,6 +21,8 @@ NOT_HERE = {
 """Maps a module to a sentence about it. A correct program may import the module, but the grader does not have it."""
 OWN_INTERFACES = ("_interfaces", "_msgs")
 """The usual endings of the name of a package that contains messages."""
+PART_OF_ROS_1 = re.compile(r"(?P<service>[A-Z]\w*)(?P<part>Request|Response)")
+"""Matches a class of rospy for the request or the response of a service, such as SetBoolResponse."""
 NO_MODULE = re.compile(r"No module named '(?P<name>[\w.]+)'")
 NO_NAME = re.compile(r"cannot import name '(?P<name>\w+)' from '(?P<module>[\w.]+)'")
 
@@ -30,7 +33,7 @@ def why_no_import(scene: CrashScene) -> Cause | None:
     module, name = NO_MODULE.search(text), NO_NAME.search(text)
     if module is not None:
         return _no_module(scene, module["name"])
-    return _no_name(scene, name["name"], name["module"]) if name is not None else None
+    return _no_name(scene, name["name"], name["module"]) if name is not None else why_circular(scene)
 
 
 def _no_module(scene: CrashScene, name: str) -> Cause:
@@ -54,6 +57,9 @@ def _no_module(scene: CrashScene, name: str) -> Cause:
     if beside is not None:
         text = f"{beside} exists, but you must import it with its package name: FOLDER.{top}."
         return Cause("sibling-import", text)
+    own = why_no_own_module(scene, name)
+    if own is not None:
+        return own
     guess = nearest(name, {*ros_names.MODULES, *(each.partition(".")[0] for each in ros_names.MODULES)}, alike=0.8)
     if guess is not None:
         text = f"A similar module exists: {guess}. Compare the two names letter by letter."
@@ -83,6 +89,10 @@ def _no_name(scene: CrashScene, name: str, module: str) -> Cause:
         right = ros_names.MODULE_OF[known]
         fix = at(scene.crash.where, f"from {module} ", f"from {right} ")
         return Cause("import-wrong-place", f"{known} is in the module {right}.").fixed_by(fix)
+    part = PART_OF_ROS_1.fullmatch(name)
+    if part is not None and module.endswith(".srv"):
+        text = f"{name} is the name in ROS 1. In ROS 2, import {part['service']}: its {part['part']} is an attribute."
+        return Cause("import-name", text)
     guess = nearest(name, [each for each, place in ros_names.MODULE_OF.items() if place == module])
     fix = at(scene.crash.where, name, guess) if guess else ()
     instead = f", but it has {guess}" if guess else ""

@@ -82,6 +82,10 @@ def _unknown(scene: CrashScene, name: str) -> Cause:
 
 
 def _of_self(scene: CrashScene, name: str) -> Cause | None:
+    if name == "self" and scene.function is None:
+        return Cause(
+            "self-parameter", "self exists only inside a method. Move this line into a method, such as __init__."
+        )
     if name == "self":
         return Cause("self-parameter", "A method can use self only if self is its first parameter.")
     own = scene.own_class

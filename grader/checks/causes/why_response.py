@@ -15,6 +15,8 @@ from grader.submission.where import Where
 if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
+DISPLAYS: dict[object, str] = {ast.Tuple: "a tuple", ast.List: "a list", ast.Dict: "a dictionary"}
+"""Maps a kind of expression to a phrase for its value, which is never a response."""
 OF_A_RESPONSE = re.compile(r"'\w+_Response' object has no attribute")
 
 
@@ -43,9 +45,12 @@ def why_response(scene: CrashScene) -> Cause | None:
 
 
 def _returned_instead(method: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
-    """Return a phrase for the returned value if it is the request or a constant, else an empty string."""
+    """Return a phrase for the returned value if it is the request, a constant or a collection, else an empty string."""
     returned = [node.value for node in ast.walk(method) if isinstance(node, ast.Return)]
     request = method.args.args[1].arg if len(method.args.args) > 1 else ""
     if any(isinstance(value, ast.Name) and value.id == request for value in returned):
         return f"the request ({shorten(request)})"
+    for value in returned:
+        if type(value) in DISPLAYS:
+            return DISPLAYS[type(value)]
     return next((repr(value.value) for value in returned if isinstance(value, ast.Constant)), "")

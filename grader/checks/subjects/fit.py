@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import read_traceback
 from grader.checks.causes.why_crashed import crash_finding
-from grader.checks.causes.why_fit import RADIUS_OF_C, Fit, why_fit
+from grader.checks.causes.why_fit import RADIUS_OF_C, Fit, uses_extremes, why_fit, why_noisy
 from grader.checks.causes.why_no_error import why_no_error
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
@@ -30,6 +30,10 @@ IN_MODULE = ", in <module>"
 """The end of a traceback entry for code outside of functions."""
 DTYPE = re.compile(r"Cannot (?:construct a dtype from an array|interpret .* as a data type)|Field elements must be")
 """Matches numpy's messages about an array or a list in place of the type of an array."""
+PARAMETERS = re.compile(r"TypeError: \w+\(\) (?:takes|missing) ")
+"""Matches Python's message about a call with the wrong number of arguments."""
+OPTION = re.compile(r"error: the following arguments are required: (?P<name>--?[\w-]+)")
+"""Matches the message of argparse about a missing option."""
 SIGMAS = 6.0
 """The maximum error that noise may cause in a correct result, in standard deviations of the best fit."""
 
@@ -71,7 +75,8 @@ def fits_circle(evidence: Evidence, params: FitCall) -> Finding:
         cause = f"{name} must return three numbers: `return x, y, radius`."
         return failed(observed, expected, Cause("result-form", cause, where))
     observed = f"{name} returned x={values[0]:.3f}, y={values[1]:.3f} and radius={values[2]:.3f}."
-    fit = Fit(arc, (values[0], values[1], values[2]), tolerances(arc, params.rounding_m))
+    within = tolerances(arc, params.rounding_m)
+    fit = Fit(arc, (values[0], values[1], values[2]), within, extremes=uses_extremes(evidence.code))
     if not all(math.isfinite(value) for value in values):
         if fit.centre_right:
             return failed(observed, expected, Cause(*RADIUS_OF_C).at(where))
@@ -80,7 +85,12 @@ def fits_circle(evidence: Evidence, params: FitCall) -> Finding:
             "numpy only prints a warning."
         )
         return failed(observed, expected, Cause("not-a-number", cause, where))
-    return passed(observed) if fit.right else failed(observed, expected, why_fit(fit).at(where))
+    if fit.right:
+        return passed(observed)
+    why = why_fit(fit)
+    if why.diagnosis == "wrong-fit":
+        why = why_noisy(evidence, fit) or why
+    return failed(observed, expected, why.at(where))
 
 
 def tolerances(arc: Arc, rounding_m: float) -> tuple[float, float, float]:
@@ -104,9 +114,30 @@ def stopped(evidence: Evidence, called: Called, expected: str, name: str) -> Fin
         if known is not None:
             return failed(observed, expected, known.at(crash.where or where))
         return crash_finding(evidence, crash, observed, expected)
+    parameters = _other_parameters(evidence, called, expected, name)
+    if parameters is not None:
+        return parameters
+    option = OPTION.search(called.stderr)
+    if option is not None:
+        text = f"The program gets its argument without an option such as {shorten(option['name'])}."
+        return failed(f"{name} ended with an error of argparse.", expected, Cause("call-ended", text, where))
     last = called.stderr.strip().splitlines()[-1:]
     how = f"{called.ended or 'no result'}{f': {shorten(last[0], 80)}' if last else ''}"
     return failed(f"{name} ended the program ({how}).", expected, Cause("call-ended", "", where))
+
+
+def _other_parameters(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
+    """Return a finding if the function of the exercise has the wrong number of parameters, else None."""
+    last = "".join(called.stderr.strip().splitlines()[-1:])
+    function = evidence.trial.calls.function.rpartition(":")[2]
+    if not PARAMETERS.match(last) or not last.startswith(f"TypeError: {function}()"):
+        return None
+    nodes = [(each, node) for each in evidence.code.modules for node in each.nodes]
+    own = [(each, node) for each, node in nodes if isinstance(node, ast.FunctionDef) and node.name == function]
+    where = [Where(each.file, node.lineno) for each, node in own]
+    text = f"{function} is called with two arguments: the x of all points, and the y of all points."
+    cause = Cause("argument-missing" if "missing" in last else "too-many-arguments", text)
+    return failed(f"{name} raised {shorten(last, 90)}.", expected, cause.at(next(iter(where), None)))
 
 
 def _raiser(evidence: Evidence, called: Called, name: str) -> str:
@@ -210,6 +241,9 @@ def refuses(evidence: Evidence, params: OneCall) -> Finding:
         cause = "The caller expects ValueError, and cannot know what another exception means."
         cause = "" if raiser != name else cause
         return failed(f"{raiser} raised {crash.observed}.", expected, Cause("other-error", cause, crash.where or where))
+    parameters = _other_parameters(evidence, called, expected, name)
+    if parameters is not None:
+        return parameters
     exits = called.ended.startswith("exit")
     cause = "sys.exit ends the whole program. After an exception, the caller can decide what to do." if exits else ""
     observed = f"{name} ended the program ({called.ended or 'no result'})."

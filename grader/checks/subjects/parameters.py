@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -9,16 +10,18 @@ from typing import TYPE_CHECKING, Any
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_rate import callbacks_of
+from grader.checks.causes.why_silent import methods_of
 from grader.checks.kind import Kind, choice, number, string, table
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.services import calls_of
 from grader.common.words import a_list, shorten
 from grader.common.words import number as shown
 from grader.submission.constants import evaluate
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
-    from grader.submission.where import Where
     from grader.trial.observed import Call
 
 CLOSE = 1e-6
@@ -200,7 +203,8 @@ def _refused(evidence: Evidence, observed: str, expected: str, reason: str) -> F
         text = (
             "The callback must return a SetParametersResult in every case. Without return, the callback returns None."
         )
-        return failed(observed, expected, Cause("result-not-returned", text, where))
+        several = _returns_several(evidence)
+        return failed(observed, expected, several or Cause("result-not-returned", text, where))
     if reason.startswith(OTHER_TYPE):
         text = "The type of the default value is the type of the parameter. Write 2.0 instead of 2."
         return failed(observed, expected, Cause("parameter-type", text, evidence.place("declare_parameter")))
@@ -213,6 +217,17 @@ def _refused(evidence: Evidence, observed: str, expected: str, reason: str) -> F
         return failed(observed, expected, Cause("parameter-range", text, evidence.place("declare_parameter")))
     text = "For every valid value, the callback must return SetParametersResult(successful=True)."
     return failed(observed, expected, Cause("parameter-refused", text, where))
+
+
+def _returns_several(evidence: Evidence) -> Cause | None:
+    """Return the cause if the callback for parameters returns a list or a tuple, else None."""
+    names = {name for _, name in callbacks_of(evidence, "add_on_set_parameters_callback")}
+    for module, method in methods_of(evidence):
+        for node in ast.walk(method) if method.name in names else ():
+            if isinstance(node, ast.Return) and isinstance(node.value, ast.List | ast.ListComp | ast.Tuple):
+                text = "The callback must return one SetParametersResult for all its parameters, not a list or a tuple."
+                return Cause("result-not-returned", text, Where(module.file, node.lineno))
+    return None
 
 
 DECLARES = Kind(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import read_traceback
-from grader.checks.causes.why_fit import Fit, why_fit
+from grader.checks.causes.why_fit import Fit, uses_extremes, why_fit
 from grader.checks.kind import Kind, string, strings
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.fit import OneCall, stopped, tolerances
@@ -60,10 +60,15 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
     if broken is not None:
         return broken
     lines = [line.strip() for line in called.stdout.splitlines() if line.strip()]
+    pattern = Format(params.format).pattern()
+    logged = called.stderr.splitlines() if not any(map(pattern.fullmatch, lines)) else []
+    if any(pattern.fullmatch(line.strip().rpartition("]: ")[2]) for line in logged):
+        cause = "The line is in the log, which goes to stderr. Write it with print, which goes to stdout."
+        log = evidence.place("info", "warning", "warn", "error", "debug")
+        return failed(f"{name} did not print the line.", expected, Cause("prints-nothing", cause, log))
     if not lines:
         cause = "print writes a line. The function main of the entry point must reach the line with print."
         return failed(f"{name} printed nothing.", expected, Cause("prints-nothing", cause, evidence.code.start))
-    pattern = Format(params.format).pattern()
     found = next((match for match in map(pattern.fullmatch, lines) if match is not None), None)
     where = evidence.place("print")
     if found is None and re.search(r"\bnan\b", lines[-1]):
@@ -141,7 +146,8 @@ def _why(evidence: Evidence, key: str, given: dict[str, float], bag: BagInput) -
     if key in ("x", "y", "radius"):
         within = _within(bag)
         values = (given["x"], given["y"], given["radius"])
-        return why_fit(Fit(bag.arc, values, (within["x"], within["y"], within["radius"])))
+        known = (within["x"], within["y"], within["radius"])
+        return why_fit(Fit(bag.arc, values, known, extremes=uses_extremes(evidence.code)))
     return Cause("wrong-count", "Each message on the topic counts once.")
 
 

@@ -9,6 +9,7 @@ from grader.checks.causes import no_entry_point
 from grader.checks.causes.crash import crash_of
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended, why_no_node
+from grader.checks.causes.why_node_name import why_node_name
 from grader.checks.kind import Kind, NoParams
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.subjects.entry_point import entry_point
@@ -77,11 +78,7 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
     other = _other_module(evidence)
     if other is not None:
         return failed(observed, expected, other)
-    calls = evidence.code.calls
-    by_class = calls("__init__") or not calls("create_node")
-    giver = "super().__init__" if by_class else "create_node"
-    cause = f"The node name is the first argument of {giver}."
-    return failed(observed, expected, Cause("node-name", cause, where))
+    return failed(observed, expected, why_node_name(evidence, guess.rpartition("/")[2]))
 
 
 def _other_module(evidence: Evidence) -> Cause | None:
@@ -92,6 +89,8 @@ def _other_module(evidence: Evidence) -> Cause | None:
     file = f"{folder.replace('.', '/')}/{executable}.py"
     if not folder or last == executable or file not in evidence.submission.files:
         return None
+    if any(each.file == file for each in evidence.code.modules):
+        return None  # the module of the entry point imports the other one, so it can lead to the right node
     text = f"The entry point {executable} leads to {shorten(last)}.py, and the package also has a file {executable}.py."
     return Cause("entry-point-other", text, no_entry_point.line(evidence))
 

@@ -26,6 +26,13 @@ def cause(name: str) -> str:
         ("sleep", "In ROS 2, a node does periodic work in the callback of a timer."),
         ("get_time", "In ROS 2, the node's clock gives the time: get_clock().now()."),
         ("get_param", "In ROS 2, a node has declare_parameter and get_parameter."),
+        ("set_param", "In ROS 2, a node has declare_parameter and set_parameters."),
+        ("ServiceProxy", "In ROS 2, the method create_client of the node creates a client."),
+        ("Service", "In ROS 2, the method create_service of the node offers a service."),
+        ("wait_for_service", "In ROS 2, a client has the methods wait_for_service and service_is_ready."),
+        ("wait_for_message", "In ROS 2, a node receives messages in the callback of a subscription."),
+        ("Duration", "In ROS 2, the class Duration is in rclpy.duration."),
+        ("Time", "In ROS 2, the class Time is in rclpy.time."),
         ("loginfo", "In ROS 2, the logger has the method info."),
         ("logwarn", "In ROS 2, the logger has the method warning."),
         ("logerr", "In ROS 2, the logger has the method error."),
@@ -41,3 +48,10 @@ def test_what_replaces_a_name_of_rospy_is_told_for_that_name_only(name: str, wor
 def test_a_name_that_rospy_does_not_have_is_not_one_of_ros_1(near: str, name: str) -> None:
     assert "belongs to rospy" not in cause(near)
     assert f"A similar name exists: {name}." in cause(near)
+
+
+@pytest.mark.parametrize(("name", "told"), [("get_param", True), ("ServiceProxy", True), ("get_parm", False)])
+def test_a_function_of_rospy_is_not_a_method_of_a_node(name: str, *, told: bool) -> None:
+    error = f"AttributeError: 'Driver' object has no attribute '{name}'"
+    found = reported("import rclpy\n" + DRIVER.format(line=f"self.{name}()"), error)
+    assert (f"{name} belongs to rospy, the library of ROS 1." in found.cause) == told

@@ -95,3 +95,17 @@ def test_a_loop_over_what_it_changes_is_told(error: str, *, found: bool) -> None
     cause = reported(DRIVER.format(line="self.drive()"), f"RuntimeError: {error}").cause
     assert ("Loop over a copy: list() makes one." in cause) == found
     assert ("An item was added or removed while a loop went through the collection." in cause) == found
+
+
+@pytest.mark.parametrize(("error", "found"), [("no running event loop", True), ("cannot start a new loop", False)])
+def test_a_callback_has_no_event_loop_of_asyncio(error: str, *, found: bool) -> None:
+    cause = reported(DRIVER.format(line="await asyncio.sleep(0.5)"), f"RuntimeError: {error}").cause
+    assert ("rclpy calls this callback without the event loop of asyncio." in cause) == found
+
+
+@pytest.mark.parametrize(
+    ("error", "found"), [("rclpy.exceptions.InvalidQoSProfileException: no depth", True), ("KeyError: 'depth'", False)]
+)
+def test_a_quality_needs_a_depth(error: str, *, found: bool) -> None:
+    cause = reported(DRIVER.format(line="QoSProfile()"), error).cause
+    assert ("A QoSProfile needs a depth, which is the size of the queue." in cause) == found

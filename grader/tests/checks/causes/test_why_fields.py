@@ -122,3 +122,23 @@ class Driver(Node):
     found = reported(source, FLOAT)
     assert found.cause.endswith(words)
     assert found.line == (3 if "default value" in words else 7)
+
+
+RANGE = (
+    "AssertionError: The 'ranges' field must be a set or sequence with length <= 1 and each value of type "
+    "'FloatingPointRange'"
+)
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("msg.ranges = [(0.2, 3.0)]", "Each element of the list ranges must be an object of the class FloatingPoint"),
+        ("Parameter(  # crashed\n    ranges=[(0.2, 3.0)],\n)", "Each element of the list ranges must be an object"),
+        ("msg.ranges = (0.2, 3.0)", "The field ranges is a list. Write square brackets, even for one element."),
+    ],
+)
+def test_a_list_of_other_objects_has_its_brackets(line: str, words: str) -> None:
+    cause = reported(line if "# crashed" in line else f"{line}  # crashed\n", RANGE).cause
+    assert words in cause
+    assert ("Each element" not in cause) == ("Each element" not in words)

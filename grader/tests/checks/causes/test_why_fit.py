@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from grader.checks.causes.why_fit import Fit, why_fit
+from grader.checks.causes.why_fit import Fit, uses_extremes, why_fit
 from grader.common.lazy import np
 from grader.exercise.call_inputs import Arc
+from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
 
 ARC = Arc(6.0, 4.0, 3.0, 20.0, 140.0, 300, 0.01)
 X, Y, R = ARC.x_m, ARC.y_m, ARC.radius_m
@@ -23,8 +24,8 @@ def between_extremes() -> tuple[float, float, float]:
 
 
 OTHERWISE = (
-    "The equations are wrong, or the circle is computed incorrectly from their solution. Test the function "
-    "with four points of a circle that you know."
+    "The function computes a circle that does not fit the points. Test the function with four points of a circle that "
+    "you know."
 )
 SENTENCES = (
     "The two coordinates of the centre are swapped.",
@@ -78,7 +79,7 @@ def says(values: tuple[float, float, float]) -> str:
             (between_extremes()[0] + 0.1, *between_extremes()[1:]),
             "This is the midpoint between the extreme points. The circle of an arc extends beyond the points of the",
         ),
-        ((1.0, 2.0, 3.5), (X, Y, 2 * R), "The equations are wrong, or the circle is computed incorrectly"),
+        ((1.0, 2.0, 3.5), (X, Y, 2 * R), "The function computes a circle that does not fit the points."),
     ],
 )
 def test_each_mistake_is_known_by_its_numbers(
@@ -86,6 +87,16 @@ def test_each_mistake_is_known_by_its_numbers(
 ) -> None:
     (sentence,) = (each for each in SENTENCES if each.startswith(words))
     assert (says(values), says(near) != sentence) == (sentence, True)
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [("min", True), ("max", True), ("ptp", True), ("sorted", True), ("mean", False), ("minimum", False)],
+)
+def test_only_code_that_computes_extremes_can_use_them(call: str, *, told: bool) -> None:
+    code = evidence(recording([]), submission({NODE_FILE: f"{call}(x)\n"})).code
+    fit = Fit(ARC, between_extremes(), WITHIN, extremes=uses_extremes(code))
+    assert ("This is the midpoint between the extreme points." in why_fit(fit).text) == told
 
 
 def test_a_radius_of_2_does_not_tell_the_square_from_the_diameter() -> None:

@@ -45,6 +45,16 @@ HELPER = {"my_robot_controller/helper.py": "", "my_robot_controller/unhelper.py"
             "The module geometry_msgs.msg has no such name",
         ),
         (
+            "cannot import name 'SetBoolResponse' from 'std_srvs.srv'",
+            "import-name",
+            "SetBoolResponse is the name in ROS 1. In ROS 2, import SetBool: its Response is an attribute.",
+        ),
+        (
+            "cannot import name 'SetBoolResponse' from 'std_srvs.msg'",
+            "import-name",
+            "The module std_srvs.msg has no such name",
+        ),
+        (
             "No module named 'tkinter'",
             "module-missing",
             "tkinter is Python's module for graphical windows. This grader does not have tkinter, so it",

@@ -172,3 +172,28 @@ def test_a_local_name_is_reported_by_the_line_that_sets_it(source: str, name: st
     found = reported(source, error)
     assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))
     assert words in found.cause
+
+
+AT_CLASS_LEVEL = """\
+class Driver(Node):
+    {line}
+    def send(self):
+        pass
+
+    def stop():
+        {inside}
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "inside", "told"),
+    [
+        ("self.timer = self.create_timer(0.5)  # crashed", "pass", True),
+        ("@self.create_timer(0.5)  # crashed", "pass", True),
+        ("", "self.timer.cancel()  # crashed", False),
+    ],
+)
+def test_self_exists_only_inside_a_method(line: str, inside: str, *, told: bool) -> None:
+    found = reported(AT_CLASS_LEVEL.format(line=line, inside=inside), "NameError: name 'self' is not defined")
+    assert found.diagnosis == "self-parameter"
+    assert ("self exists only inside a method. Move this line into a method, such as" in found.cause) == told

@@ -66,3 +66,22 @@ def test_a_none_from_elsewhere_blames_no_attribute(first: str, line: str) -> Non
 def test_a_string_plus_a_number_has_nothing_to_do_with_none() -> None:
     error = "TypeError: unsupported operand type(s) for +: 'int' and 'str'"
     assert reported(NODE.format(first="None", line="dx = 1 + self.x"), error).diagnosis == "string-and-number"
+
+
+MODULE_VARIABLE = """\
+publisher = None
+
+def send():
+    publisher.publish(Twist())  # crashed
+
+def main():
+    {line}
+    publisher = rclpy.create_node("driver").create_publisher(Twist, "/turtle1/cmd_vel", 10)
+"""
+
+
+@pytest.mark.parametrize(("line", "told"), [("rclpy.init()", True), ("global publisher", False)])
+def test_a_variable_of_the_module_is_set_only_with_global(line: str, *, told: bool) -> None:
+    found = reported(MODULE_VARIABLE.format(line=line), "AttributeError: 'NoneType' object has no attribute 'publish'")
+    words = "main gives a value only to its own local variable publisher. To set the variable of the module, main needs"
+    assert (words in found.cause, found.diagnosis) == (told, "local-name" if told else "none-before-message")

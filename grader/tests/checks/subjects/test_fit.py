@@ -105,7 +105,8 @@ def test_what_a_fit_returned_has_a_cause(called: Called, diagnosis: str | None) 
     ],
 )
 def test_an_arc_shows_what_is_taken_for_its_centre(values: tuple[float, ...], diagnosis: str | None) -> None:
-    assert judged("arc", replace(returned(*values), id="arc")).diagnosis == diagnosis
+    source = {"my_robot_controller/circle_fit.py": b"a = (min(x) + max(x)) / 2\n"}
+    assert judged("arc", replace(returned(*values), id="arc"), source).diagnosis == diagnosis
 
 
 @pytest.mark.parametrize(
@@ -295,3 +296,37 @@ def test_the_source_and_the_exception_show_the_cause(
 ) -> None:
     assert words in told(judged("whole", raised("whole", errors[0]), true))
     assert words not in told(judged("whole", raised("whole", errors[1]), near))
+
+
+@pytest.mark.parametrize(
+    ("error", "check", "told"),
+    [
+        ("TypeError: fit_circle() takes 1 positional argument but 2 were given", "whole", True),
+        ("TypeError: fit_circle() takes 1 positional argument but 2 were given", "too-few", True),
+        ("TypeError: fit_circle() missing 1 required positional argument: 'z'", "whole", True),
+        ("TypeError: helper() takes 1 positional argument but 2 were given", "whole", False),
+        ("TypeError: unsupported operand", "too-few", False),
+    ],
+)
+def test_a_function_with_other_parameters_is_told(error: str, check: str, *, told: bool) -> None:
+    finding = judged(check, Called(check, "exit 1", stderr=error, kind="TypeError Exception"))
+    assert ("fit_circle is called with two arguments: the x of all points, and the y" in finding.cause) == told
+    assert told == (finding.diagnosis in ("argument-missing", "too-many-arguments"))
+    assert told == ("raised TypeError: fit_circle()" in finding.observed)
+
+
+@pytest.mark.parametrize(
+    ("exact", "check", "words"),
+    [
+        (RIGHT, "noise", "The circle of exact points is right, but these points have noise, or are only an arc."),
+        (returned(X, Y, 9.0), "noise", "The function computes a circle that does not fit the points."),
+        (RIGHT, "lists", "The function computes a circle that does not fit the points."),
+    ],
+)
+def test_a_function_that_fits_only_exact_points_is_told(exact: Called, check: str, words: str) -> None:
+    wrong = Called(check, "exit 0", values=(1.2, 3.4, 0.7), kind="tuple")
+    lists = Called("lists", "exit 0", values=(1.2, 3.4, 0.7), kind="tuple")
+    others = (exact, lists) if check == "noise" else (exact,)
+    finding = judged(check, wrong, others=others)
+    assert (finding.cause.startswith(words), finding.diagnosis) == (True, "wrong-fit")
+    assert ("exact points" not in finding.cause) == ("exact points" not in words)

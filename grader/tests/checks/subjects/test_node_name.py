@@ -19,3 +19,76 @@ def test_an_entry_point_of_another_module_is_told(module: str, source: str | Non
     given = finding("node-name", evidence(SHAPES["other name"](), package, build=build))
     words = "The entry point draw_circle leads to draw_square.py, and the package also has a file draw_circle.py."
     assert (given.cause == words) == found
+
+
+NAME = "draw_cirle"
+"""The name of the node in the recording, which is not the name that the exercise requires."""
+NAMED = "class {}({}):\n    def __init__(self):\n        super().__init__({})\n"
+IMPORTS = "from my_robot_controller.other import Other\n"
+RUNS = "def main():\n    node = {}()\n"
+
+
+@pytest.mark.parametrize(
+    ("source", "other", "words", "line"),
+    [
+        (
+            NAMED.format("Circle", "Node", f'"{NAME}"'),
+            "",
+            "The node name is the first argument of super().__init__.",
+            3,
+        ),
+        (
+            NAMED.format("Circle", "Node", '"draw_circle"') + f'rclpy.init(args=["--ros-args", "__node:={NAME}"])\n',
+            "",
+            "This remapping rule gives the node another name.",
+            4,
+        ),
+        (
+            NAMED.format("Circle", "Node", '"draw_circle"') + 'rclpy.init(args=["--ros-args", "cmd_vel:=x"])\n',
+            "",
+            "The node name is the first argument of super().__init__.",
+            3,
+        ),
+        (
+            IMPORTS + NAMED.format("Circle", "Other", ""),
+            NAMED.format("Other", "Node", f'"{NAME}"'),
+            f"Circle inherits the name {NAME} from Other, which passes it to its base class.",
+            2,
+        ),
+        (
+            IMPORTS + NAMED.format("Circle", "Other", '"draw_circle"') + RUNS.format("Circle"),
+            NAMED.format("Other", "Node", f'"{NAME}"'),
+            "The node name is the first argument of super().__init__.",
+            3,
+        ),
+        (
+            IMPORTS + RUNS.format("Other"),
+            NAMED.format("Other", "Node", f'"{NAME}"'),
+            f"main creates an object of Other, whose node has the name {NAME}.",
+            3,
+        ),
+        (
+            NAMED.format("Circle", "Node", f'"{NAME}"'),
+            NAMED.format("Other", "Node", '"draw_circle"'),
+            "The entry point draw_circle leads to draw_circle.py. The node named draw_circle is in other.py.",
+            14,
+        ),
+        (
+            NAMED.format("Circle", "Node", f'"{NAME}"'),
+            'print("draw_circle")\n',
+            "The node name is the first argument of super().__init__.",
+            3,
+        ),
+    ],
+)
+def test_what_gave_the_node_its_name_is_told(source: str, other: str, words: str, line: int) -> None:
+    package = submission({NODE_FILE: source, "my_robot_controller/other.py": other})
+    given = finding("node-name", evidence(SHAPES["other name"](), package))
+    assert (given.cause, given.where is not None and given.where.line) == (words, line)
+
+
+def test_a_module_that_imports_the_right_one_can_be_the_right_one() -> None:
+    files = {NODE_FILE: "", "my_robot_controller/nodes.py": "import my_robot_controller.draw_circle\n"}
+    build = replace(BUILD, entry_points={"draw_circle": "my_robot_controller.nodes:main"})
+    given = finding("node-name", evidence(SHAPES["other name"](), submission(files), build=build))
+    assert "the package also has a file draw_circle.py" not in given.cause

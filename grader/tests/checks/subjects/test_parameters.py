@@ -262,3 +262,33 @@ def test_a_range_with_steps_is_told(reason: str, *, found_: bool) -> None:
 
 def about_calls(call: Call, package: Submission) -> Evidence:
     return evidence(recording(every(0.5, 2.0, 1.0), calls=(call,)), package)
+
+
+CHECKS = """\
+class Driver(Node):
+    def __init__(self):
+        super().__init__("draw_circle")
+        self.add_on_set_parameters_callback(self.check)
+
+    def check(self, parameters):
+        return {value}
+"""
+
+
+@pytest.mark.parametrize(
+    ("value", "line"),
+    [
+        ("[SetParametersResult(successful=True) for _ in parameters]", 7),
+        ("SetParametersResult(successful=True), None", 7),
+        ("[SetParametersResult(successful=True)]", 7),
+        ("None", 4),
+    ],
+)
+def test_a_list_of_results_is_not_one_result(value: str, line: int) -> None:
+    calls = (was_set(1.0, successful=False, reason="Callback returned an invalid type"),)
+    given = evidence(recording([], calls=calls), submission({NODE_FILE: CHECKS.format(value=value)}))
+    finding = found(SETS, given, parameter="radius", value=1.0, answer="accepted")
+    words = "one SetParametersResult for all its parameters, not a list or a tuple."
+    assert (words in finding.cause, finding.diagnosis) == (line == 7, "result-not-returned")
+    assert finding.where is not None
+    assert finding.where.line == line

@@ -168,3 +168,30 @@ def test_a_program_that_opens_another_bag_is_told(path: str, *, found_: bool) ->
     finding = judged("report", raised("slow", f"FileNotFoundError: The following paths are missing: [{path}]"))
     words = "The program must open the bag that its first argument names, whatever the name is: sys.argv[1]."
     assert (words in told(finding)) == found_
+
+
+LOGGED = Called("slow", "exit 0", stdout="noise", stderr=f"[INFO] [1.5] [bag_report]: {LINE}")
+
+
+@pytest.mark.parametrize(
+    ("called", "words", "told"),
+    [
+        (LOGGED, "The line is in the log, which goes to stderr. Write it with print", True),
+        (printed("noise"), "The line is in the log, which goes to stderr.", False),
+        (
+            Called("slow", "exit 2", stderr="bag_report: error: the following arguments are required: --bag"),
+            "The program gets its argument without an option such as --bag.",
+            True,
+        ),
+        (
+            Called("slow", "exit 2", stderr="bag_report: error: the following arguments are required: bag, topic"),
+            "The program gets its argument without an option such as",
+            False,
+        ),
+    ],
+)
+def test_how_a_program_is_called_and_answers_is_told(called: Called, words: str, *, told: bool) -> None:
+    finding = judged("report", called)
+    assert (words in finding.cause) == told
+    observed = ("bag_report did not print the line.", "bag_report ended with an error of argparse.")
+    assert (finding.observed in observed) == told

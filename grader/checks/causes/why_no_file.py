@@ -1,0 +1,31 @@
+"""Explain why a file that the node opens does not exist: the build did not install it."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.common.words import shorten
+
+if TYPE_CHECKING:
+    from grader.checks.causes.crash_scene import CrashScene
+
+MISSING = re.compile(r"No such file or directory: '(?P<path>[^']+)'")
+
+
+def why_no_file(scene: CrashScene) -> Cause | None:
+    """Return the cause if the node opens a file that the package contains, at a path where it is not installed."""
+    found = MISSING.search(scene.crash.message)
+    last = found["path"].rpartition("/")[2] if found is not None else ""
+    own = next((path for path in sorted(scene.evidence.submission.files) if path.rpartition("/")[2] == last), None)
+    if found is None or own is None or own.endswith(".py"):
+        return None
+    if "/share/" in found["path"]:
+        text = f"The build does not install {shorten(own)} there, because data_files in setup.py does not list it."
+        return Cause("crash", text)
+    text = (
+        f"The package contains {shorten(own)}, but a node does not run in the folder of its package. Install the file "
+        "with data_files, and open it in the share folder of the package."
+    )
+    return Cause("crash", text)

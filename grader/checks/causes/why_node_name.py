@@ -1,0 +1,115 @@
+"""Explain why the node has another name: a remapping rule, another class, or an inherited name."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.no_entry_point import line
+from grader.common.words import shorten
+from grader.submission.code import Code, read_module
+from grader.submission.constants import evaluate
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from grader.evidence.evidence import Evidence
+    from grader.submission.code import Call, Module
+
+GIVERS = ("__init__", "create_node", "Node")
+"""The functions that get the name of a node as their first argument."""
+
+
+def why_node_name(evidence: Evidence, name: str) -> Cause:
+    """Return the reason why the node has the name `name` (without a slash)."""
+    rule = remapping_rule(evidence, "__node:=") or remapping_rule(evidence, "__name:=")
+    if rule is not None:
+        return Cause("node-name", "This remapping rule gives the node another name.", rule)
+    calls = [call for giver in GIVERS for call in evidence.code.calls(giver)]
+    of_name = next((call for call in calls if _name(call) == name), None)
+    if of_name is not None:
+        other = _inherited(evidence, of_name, name) or _of_another_class(evidence, of_name, name)
+        other = other or _other_file(evidence, of_name, calls)
+        if other is not None:
+            return other
+    by_class = evidence.code.calls("__init__") or not evidence.code.calls("create_node")
+    giver = "super().__init__" if by_class else "create_node"
+    where = of_name.where if of_name is not None else evidence.place("create_node", "__init__")
+    return Cause("node-name", f"The node name is the first argument of {giver}.", where)
+
+
+def remapping_rule(evidence: Evidence, rule: str) -> Where | None:
+    """Return the place of a string in the code that contains this part of a remapping rule, or None."""
+    for module in evidence.code.modules:
+        for node in module.nodes:
+            if isinstance(node, ast.Constant) and isinstance(node.value, str) and rule in node.value:
+                return Where(module.file, node.lineno)
+    return None
+
+
+def _name(call: Call) -> object:
+    return evaluate(call.argument(0, "node_name"), call.module.names)
+
+
+def _classes(evidence: Evidence) -> Iterator[tuple[Module, ast.ClassDef]]:
+    for module in evidence.code.modules:
+        yield from ((module, node) for node in module.nodes if isinstance(node, ast.ClassDef))
+
+
+def _class_of(call: Call) -> ast.ClassDef | None:
+    """Return the class that contains the call, or None."""
+    around = [node for node in call.module.nodes if isinstance(node, ast.ClassDef)]
+    return next((each for each in around if any(node is call.node for node in ast.walk(each))), None)
+
+
+def _inherited(evidence: Evidence, call: Call, name: str) -> Cause | None:
+    """Return the cause if a class without a name of its own is derived from the class with this call, else None."""
+    base = _class_of(call)
+    for module, node in _classes(evidence):
+        bases = [ast.unparse(each).rpartition(".")[2] for each in node.bases]
+        if base is not None and base.name in bases and not _mentions(node, evidence.trial.node or ""):
+            text = f"{node.name} inherits the name {shorten(name)} from {base.name}, which passes it to its base class."
+            return Cause("node-name", text, Where(module.file, node.lineno))
+    return None
+
+
+def _mentions(node: ast.AST, text: str) -> bool:
+    return any(isinstance(each, ast.Constant) and each.value == text for each in ast.walk(node))
+
+
+def _of_another_class(evidence: Evidence, call: Call, name: str) -> Cause | None:
+    """Return the cause if the function of the entry point uses a class of another file for this node, else None."""
+    own = _class_of(call)
+    module = next((each for each in evidence.code.modules if each.file == evidence.code.node_file), None)
+    if own is None or module is None or module is call.module:
+        return None
+    function = (evidence.entry_point() or "").partition(":")[2].strip()
+    for node in module.nodes:
+        inside = ast.walk(node) if isinstance(node, ast.FunctionDef) and node.name == function else ()
+        for each in inside:
+            if isinstance(each, ast.Name) and each.id == own.name:
+                text = f"{function} creates an object of {own.name}, whose node has the name {shorten(name)}."
+                return Cause("node-name", text, Where(module.file, each.lineno))
+    return None
+
+
+def _other_file(evidence: Evidence, call: Call, calls: list[Call]) -> Cause | None:
+    """Return the cause if a file to which the entry point does not lead creates a node with the right name."""
+    wanted, files = evidence.trial.node, evidence.submission.files
+    if call.module.file != evidence.code.node_file or any(_name(each) == wanted for each in calls):
+        return None
+    known = {module.file for module in evidence.code.modules}
+    for path in sorted(files):
+        if path in known or not path.endswith(".py") or path.startswith("test/"):
+            continue
+        others = [other for giver in GIVERS for other in Code((read_module(path, files[path]),)).calls(giver)]
+        if any(_name(each) == wanted for each in others):
+            here = call.module.file.rpartition("/")[2]
+            text = (
+                f"The entry point {evidence.trial.executable} leads to {here}. The node named {wanted} is in "
+                f"{path.rpartition('/')[2]}."
+            )
+            return Cause("entry-point-other", text, line(evidence))
+    return None

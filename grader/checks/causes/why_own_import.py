@@ -1,0 +1,59 @@
+"""Explain why an import from the student's own package failed: a missing __init__.py, or a circular import."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.common.words import shorten
+from grader.submission.code import import_path, module_file
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from grader.checks.causes.crash_scene import CrashScene
+
+CIRCULAR = re.compile(r"cannot import name '(?P<name>\w+)' from partially initialized module '(?P<module>[\w.]+)'")
+
+
+def why_no_own_module(scene: CrashScene, name: str) -> Cause | None:
+    """Return the cause if the module is in a folder of this package that the build does not install, else None."""
+    files = scene.evidence.submission.files
+    folder = next((each for each in _folders(name) if _has_modules(each, files)), None)
+    if folder is None or folder == name.partition(".")[0]:
+        return None
+    path = folder.replace(".", "/")
+    if f"{path}/__init__.py" in {import_path(each) for each in files}:
+        return None
+    text = f"The folder {shorten(path)} has no file __init__.py, so the build does not install it."
+    return Cause("missing-init", text)
+
+
+def _folders(name: str) -> list[str]:
+    """Return the dotted name and the names of the packages around it, the longest first."""
+    parts = name.split(".")
+    return [".".join(parts[:count]) for count in range(len(parts), 0, -1)]
+
+
+def _has_modules(folder: str, files: Collection[str]) -> bool:
+    path = folder.replace(".", "/")
+    return any(import_path(each).startswith(f"{path}/") and each.endswith(".py") for each in files)
+
+
+def why_circular(scene: CrashScene) -> Cause | None:
+    """Return the cause if two modules of this package import each other, else None."""
+    found = CIRCULAR.search(scene.crash.message)
+    file = module_file(found["module"], scene.evidence.submission.files) if found is not None else None
+    if found is None or file is None:
+        return None
+    here = scene.module.file if scene.module is not None else ""
+    name = file.rpartition("/")[2]
+    both = f"{here.rpartition('/')[2]} and {name} import each other" if here != file else f"{name} imports itself"
+    text = (
+        f"{both}, so {found['name']} does not exist yet when this line needs it. Remove one of the two imports, for "
+        f"example by moving {found['name']} to a third file."
+    )
+    if here == file:
+        text = f"{both}. Remove this import: the names of a file can be used in it without an import."
+    return Cause("name-too-early", text)

@@ -1,0 +1,45 @@
+"""Imports from the student's own package that fail, each with files that are nearly the same."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.tests.checks.crashes import reported
+
+PACKAGE = "my_robot_controller"
+NO_MODULE = f"ModuleNotFoundError: No module named '{PACKAGE}.nodes'"
+CIRCLE = f"from {PACKAGE}.{{}} import SPEED  # crashed\n"
+PARTIAL = (
+    f"ImportError: cannot import name 'SPEED' from partially initialized module '{PACKAGE}.{{}}' "
+    "(most likely due to a circular import) (/ws/a.py)"
+)
+
+
+@pytest.mark.parametrize(
+    ("files", "diagnosis"),
+    [
+        ({f"{PACKAGE}/nodes/counter.py": ""}, "missing-init"),
+        ({f"{PACKAGE}/nodes/counter.py": "", f"{PACKAGE}/nodes/__init__.py": ""}, "module-missing"),
+        ({f"{PACKAGE}/others/counter.py": ""}, "module-missing"),
+    ],
+)
+def test_a_folder_without_init_is_not_installed(files: dict[str, str], diagnosis: str) -> None:
+    found = reported(f"import {PACKAGE}.nodes.counter  # crashed\n", NO_MODULE, files)
+    assert found.diagnosis == diagnosis
+    told = f"The folder {PACKAGE}/nodes has no file __init__.py, so the build does not install it." in found.cause
+    assert told == (diagnosis == "missing-init")
+
+
+@pytest.mark.parametrize(
+    ("module", "error", "words"),
+    [
+        ("other", PARTIAL, "draw_circle.py and other.py import each other, so SPEED does not exist yet when this line"),
+        ("draw_circle", PARTIAL, "draw_circle.py imports itself. Remove this import: the names of a file can be used"),
+        ("elsewhere", PARTIAL, ""),
+        ("other", "ImportError: cannot import name 'SPEED' from '{}'", ""),
+    ],
+)
+def test_two_modules_that_import_each_other_are_named(module: str, error: str, words: str) -> None:
+    found = reported(CIRCLE.format(module), error.format(module), {f"{PACKAGE}/other.py": ""})
+    told = "import each other" in found.cause or "imports itself" in found.cause
+    assert (found.cause.startswith(words), told) == (True, bool(words))
