@@ -1,4 +1,4 @@
-"""The command `grader`: its subcommands and their options. This module has no logic."""
+"""The command `grader`: its subcommands and their options."""
 
 from __future__ import annotations
 
@@ -93,7 +93,10 @@ def check(
         Optional[Path],  # noqa: UP045
         typer.Option(help="Save a recording that `grader regrade` can judge again.", metavar="DIR"),
     ] = None,
-    seed: Annotated[Optional[int], typer.Option(help="Seed for a random start pose of the turtle.")] = None,  # noqa: UP045
+    seed: Annotated[
+        Optional[int],  # noqa: UP045
+        typer.Option(help="Seed for a random start pose of the turtle, and for the other random inputs of the trials."),
+    ] = None,
     confined: Annotated[
         bool, typer.Option("--sandbox", help="Run only in a sandbox. By default, the sandbox is used if possible.")
     ] = False,

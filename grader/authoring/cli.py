@@ -1,4 +1,4 @@
-"""The author's commands: `grader release` and `grader validate`. This module has no logic."""
+"""The author's commands: `grader release` and `grader validate`."""
 
 from __future__ import annotations
 

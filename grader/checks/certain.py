@@ -104,4 +104,5 @@ FACTS = SHOWN | FROM_ORDER
 """In checks of a trial, a report states these causes as facts, and all other causes as possibilities until a tested fix
 confirms them. In checks of the files or the build, every cause counts as a fact (grader/report/certainty.py)."""
 ON_EVERY_MACHINE = SHOWN | CONCLUSIONS
-"""Diagnoses that also hold on a busy machine. In wall time, too little processor time may explain any other."""
+"""Diagnoses that also hold on a busy machine. In wall time, too little processor time may be the reason for
+any other diagnosis."""

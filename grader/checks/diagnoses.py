@@ -99,7 +99,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "straight-line": "the turtle drives but does not turn",
         "wall": "the turtle hits a wall",
         "wrong-direction": "the turtle drives in the wrong direction, clockwise or counter-clockwise",
-        "wrong-radius": "the circle has the wrong radius",
+        "wrong-radius": "the circle or arc has the wrong radius",
         "wrong-centre": "the circle is in the wrong place",
         "polygon": "the turtle drives straight sides with corners instead of a circle",
         "not-round": "the trajectory is not round",

@@ -1,4 +1,4 @@
-"""The instructor's commands: `grader grade` and `grader gradescope build`. This module has no logic."""
+"""The instructor's commands: `grader grade` and `grader gradescope build`."""
 
 from __future__ import annotations
 
@@ -102,7 +102,10 @@ def grade(
             help="auto, simulated or wall. auto: simulated time, or wall time in doubtful cases.", metavar="CLOCK"
         ),
     ] = Clock.auto,
-    seed: Annotated[Optional[int], typer.Option(help="Seed for a random start pose of the turtle.")] = None,  # noqa: UP045
+    seed: Annotated[
+        Optional[int],  # noqa: UP045
+        typer.Option(help="Seed for a random start pose of the turtle, and for the other random inputs of the trials."),
+    ] = None,
     explain: Annotated[
         bool,
         typer.Option(

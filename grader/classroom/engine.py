@@ -11,8 +11,7 @@ if TYPE_CHECKING:
     from grader.classroom.task import Done, Task
 
 TASK_S = 1800.0
-"""A worker that is busy for longer than this (s) is considered hung. This time is longer than the sum of all time
-limits for one submission."""
+"""A worker that is busy for longer than this (s) is considered hung."""
 
 
 @dataclass(frozen=True)

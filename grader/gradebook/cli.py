@@ -1,4 +1,4 @@
-"""The commands `grader gradebook`, `grader class` and `grader kernel`. This module has no logic."""
+"""The commands `grader gradebook`, `grader class` and `grader kernel`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The learner's commands: start, run, watch, hint, status and solution. This module has no logic."""
+"""The learner's commands: start, run, watch, hint, status and solution."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ class Holder:
     """The processes of bubblewrap and of entering.HOLDER. The room or cell exists until they exit."""
 
     def __init__(self, command: Callable[[int], Sequence[str]], pass_fds: Sequence[int] = ()) -> None:
-        """Start bubblewrap. `command(info_fd)` returns the command line, whose program is entering.HOLDER."""
+        """Start bubblewrap. `command(info_fd)` returns a command line of bubblewrap that runs entering.HOLDER."""
         self._info, info = os.pipe()
         self._first: int | None = None
         self._changing = Lock()

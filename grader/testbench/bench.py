@@ -149,9 +149,10 @@ class _Queue:
         """Return the next run, or None if no further run is needed.
 
         If the tests have rejected the correct node, they earn no points for rejecting broken nodes. Therefore, only the
-        remaining runs on the correct node are started after that. If the tests may hang on the correct node, and no run
-        on the correct node has ended, the next run is an additional run on this node. This run is not one of the
-        pending runs: otherwise, tests could choose when one of these takes place.
+        remaining runs on the correct node are started after that, or after MOST_HANGS runs have exceeded their time. If
+        the tests may hang on the correct node, and no run on the correct node has ended, the next run is an additional
+        run on this node. This run is not one of the pending runs: otherwise, tests could choose when one of these takes
+        place.
         """
         with self._lock:
             rights = [each for each in self.ended if not each.node]

@@ -39,21 +39,22 @@ SIGMAS = 6.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class OneCall:
-    """One call that the trial makes to the student's function or program."""
-
-    call: str = string("the id of a call", about="The id of a `[[trial.points]]` or a `[[trial.bag]]`.")
-
-
-@dataclass(frozen=True, kw_only=True)
-class FitCall(OneCall):
+class FitCall:
     """One call that the trial makes to the student's function with the points of a circle."""
 
+    call: str = string("the id of a call", about="The id of a `[[trial.points]]` that describes a circle.")
     rounding_m: float = number(
         1e-3,
         above=0,
         about="The maximum error of each value without noise (m). With noise, six standard deviations are added.",
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class RefusedCall:
+    """One call that the trial makes to the student's function with points that determine no circle."""
+
+    call: str = string("the id of a call", about="The id of a `[[trial.points]]` with the lists `x` and `y`.")
 
 
 def fits_circle(evidence: Evidence, params: FitCall) -> Finding:
@@ -215,7 +216,7 @@ def _is_raise(evidence: Evidence, where: Where | None) -> bool:
     return any(where is not None and node.lineno == where.line for node in raised)
 
 
-def refuses(evidence: Evidence, params: OneCall) -> Finding:
+def refuses(evidence: Evidence, params: RefusedCall) -> Finding:
     """The function raises ValueError with a message for points that do not determine a circle."""
     called = evidence.called(params.call)
     name = evidence.trial.calls.function.rpartition(":")[2]
@@ -272,13 +273,13 @@ FITS = Kind(
     FitCall,
     fits_circle,
     about="A function that is called with the points of a `[[trial.points]]` returns the centre and the radius of "
-    "their circle. The tolerance is derived from the noise of the points.",
+    "their circle.",
 )
 REFUSES = Kind(
     "raises_value_error",
     "trial",
     "The function refuses points that determine no circle",
-    OneCall,
+    RefusedCall,
     refuses,
     about="The function raises ValueError with a message when it is called with the points of a `[[trial.points]]`.",
 )

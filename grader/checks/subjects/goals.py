@@ -42,7 +42,7 @@ class SendsGoals:
     Each heading is `turn_deg` to the left of the previous heading.
     """
 
-    heading_deg: float = number(about="The heading of the first goal, in degrees: 0 is to the right, 90 is up.")
+    heading_deg: float = number(about="The heading of goal number `nth`, in degrees: 0 is to the right, 90 is up.")
     nth: float = number(1, at_least=1, about="The number of the first goal that is compared, counted from 1.")
     total: float = number(1, at_least=1, about="The number of goals that are compared.")
     turn_deg: float = number(0.0, about="The angle to the left from one goal to the next.")

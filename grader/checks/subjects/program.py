@@ -13,7 +13,7 @@ from grader.checks.causes.crash import read_traceback
 from grader.checks.causes.why_fit import Fit, uses_extremes, why_fit
 from grader.checks.kind import Kind, string, strings
 from grader.checks.outcome import Finding, failed, passed
-from grader.checks.subjects.fit import OneCall, stopped, tolerances
+from grader.checks.subjects.fit import stopped, tolerances
 from grader.checks.subjects.log import FORMAT
 from grader.common.words import shorten
 from grader.evidence.student_log import Format
@@ -30,7 +30,14 @@ HUNDREDTH = 0.0101
 
 
 @dataclass(frozen=True, kw_only=True)
-class Printed(OneCall):
+class OneRun:
+    """One run of the program with the path of a bag."""
+
+    call: str = string("the id of a call", about="The id of a `[[trial.bag]]`.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Printed(OneRun):
     """One run of the program, and the names of the printed numbers that are compared."""
 
     format: str = string("a line with replacement fields", about=FORMAT)
@@ -86,7 +93,7 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
     )
 
 
-def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
+def ends_with_message(evidence: Evidence, params: OneRun) -> Finding:
     """If the bag contains no pose, the program exits with a message and an exit code other than 0."""
     called = evidence.called(params.call)
     name = evidence.trial.executable
@@ -214,7 +221,7 @@ ENDS = Kind(
     "ends_with_message",
     "trial",
     "The program reports what is missing",
-    OneCall,
+    OneRun,
     ends_with_message,
     about="The argument of the executable is the path of a `[[trial.bag]]` without poses. The executable prints a "
     "sentence and ends with an exit code other than 0, without a traceback.",
