@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 def colcon_faults(commands: Sequence[Sequence[str]]) -> list[str]:
     """Return one error message per command line, or an empty string if colcon accepts the command line.
 
-    Paths need not exist. If colcon cannot start, every command line counts as accepted. `grader doctor` reports it.
+    Paths need not exist. If colcon cannot start, every command line counts as accepted.
     """
     own = {name: value for name, value in os.environ.items() if not name.startswith("COLCON_")}
     start = interpreter("-m", "grader.authoring.parse_colcon", env={**own, "COLCON_HOME": os.devnull})

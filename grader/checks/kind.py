@@ -2,7 +2,7 @@
 
 A dataclass next to the check function defines the parameters of a kind. The functions `number`, `string`, `strings`,
 `table` and `choice` create the fields of the dataclass with their defaults and allowed values. A new exercise that uses
-only existing kinds needs no Python code.
+only existing kinds needs no new code in the grader.
 """
 
 # ruff: noqa: ANN401 (the functions below return what dataclasses.field returns)

@@ -35,11 +35,11 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
 
 OWN = "exercises"
-"""The folder of a clone that contains the student's work."""
+"""The folder of a clone of the course that contains the student's work."""
 _OF_PROGRAMS = (".git", ".github", ".gitlab", ".idea", ".ipynb_checkpoints", ".venv", ".vscode", "__MACOSX")
 """Folders that programs create next to submissions."""
 _OF_THE_COURSE = (OWN, "course", "docs", "grader", "solutions")
-"""The folders of a clone."""
+"""The folders of a clone of the course."""
 
 
 def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Path) -> tuple[Found, ...]:

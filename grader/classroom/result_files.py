@@ -6,7 +6,8 @@
     gradescope/NAME.json  Gradescope's results.json of each submission
     github-summary.md, github-annotations.txt   for a GitHub Actions step
 
-Students can see the files for CI and Gradescope. For a hidden check, these files contain only the result.
+Students can see the files for CI and Gradescope. For a hidden check, these files contain at most the result
+and the points.
 """
 
 from __future__ import annotations

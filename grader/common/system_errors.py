@@ -44,7 +44,8 @@ def refusal(error: BaseException) -> Optional[str]:
 def _refusal_behind(error: BaseException) -> Optional[str]:
     """Return the sentence for the system error that Python was handling when `error` was raised, or None.
 
-    Removing a temporary folder that the user is not allowed to open recurses endlessly in Python 3.10 to 3.12.
+    For example, in Python 3.10 to 3.12, removing a temporary folder that the user is not allowed to open ends with a
+    RecursionError.
     """
     behind = error.__context__
     while behind is not None and not isinstance(behind, OSError):

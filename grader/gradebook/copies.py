@@ -18,7 +18,7 @@ MOST_REPORTED = 20
 def copy_of(submission: Path, copy: Path, *, notebooks: bool = True) -> tuple[str, ...]:
     """Copy the regular files of a submission to `copy`, which may already exist.
 
-    Without `notebooks`, files that end in .ipynb are not copied. Return the reasons why other entries were omitted.
+    Without `notebooks`, files that end in .ipynb are not copied. Return the reasons why entries were rejected.
     """
     found = read(tree.read_folder, submission, follow=False)
     files = {path: data for path, data in found.files.items() if notebooks or not path.endswith(".ipynb")}

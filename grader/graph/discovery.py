@@ -171,7 +171,8 @@ class Settling:
     def settle(self, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> bool:
         """Wait until nothing new has arrived for 0.1 s and all participants on this machine have sent their data.
 
-        If nodes on other machines can take part, also wait at least NOTHING_THERE_S, or `deadline_s` if it is set.
+        If nodes on other machines can take part, or the number of participants on this machine is unknown, also wait at
+        least NOTHING_THERE_S, or `deadline_s` if it is set.
 
         The wait ends earlier if `enough` returns true. `deadline_s` is the maximum waiting time (s), or None for the
         default. Return False if the deadline passes first.

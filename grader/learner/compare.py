@@ -36,7 +36,8 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
     """Print the differences from the solution, and the answers to the questions under "To think about".
 
     Raises:
-        UsageError: the learner has not passed the step yet, or this copy of the course has no solutions.
+        UsageError: there is no such step, the learner has not passed it yet, or this copy of the course has no
+            solutions.
     """
     exercise = find_exercise(step)
     root = progress.workspace_of(folder)

@@ -119,7 +119,7 @@ class Code:
         return found
 
     def calls(self, name: str) -> list[Call]:
-        """Return the calls to functions and methods whose dotted name ends with this name, in source order.
+        """Return the calls to functions and methods with this name, such as "publish", in source order.
 
         If ALIKE maps another method to this name, the calls to that method are included.
         """

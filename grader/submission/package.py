@@ -147,7 +147,7 @@ def digest(files: Mapping[str, bytes]) -> str:
 def write_copy(submission: Submission, destination: Path) -> None:
     """Write the files to the new folder `destination`.
 
-    All users can read these files, because the processes in a sandbox run as another user.
+    All users can read these files, because student code runs in a cell as another user if root runs the grader.
 
     Raises UsageError if a path leads out of the folder (in a submission that is not from `open_submission`), and
     MachineError if the folder exists, or the disk is full or cannot be written.

@@ -143,7 +143,7 @@ class Recorder(Node):
         return tuple(sorted(self._offers, key=lambda offer: (offer.service, offer.type, offer.node)))
 
     def follow_services(self) -> None:
-        """Store the services that other nodes offer now."""
+        """Store the services that other nodes offer now, except those that every node has."""
         for name, space in self.get_node_names_and_namespaces():
             node = f"{space.rstrip('/')}/{name}"
             if node in self.own_nodes or len(self._offers) >= MOST_SERVICES:

@@ -28,7 +28,7 @@ _SERVED_WITH = ("starlette", "uvicorn", "websockets")
 _WITHOUT_COLOURS = ("", "dumb", "unknown")
 """The values of TERM for terminals without colours."""
 _ENDS_S = 5.0
-"""The maximum time for a view to exit after its simulator has exited (s). After this time, the view is killed."""
+"""The maximum time for a view to exit after its socket has been closed (s). After this time, the view is killed."""
 
 
 class View:

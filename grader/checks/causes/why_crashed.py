@@ -101,7 +101,7 @@ def _why_value(scene: CrashScene) -> Cause | None:
 
 
 ARGUMENTS = re.compile(r"error: the following arguments are required: (?P<names>.+)")
-"""The message of argparse, which ends the program with exit code 2."""
+"""Matches the message with which argparse ends the program if a required argument is missing."""
 
 
 def _why_usage(scene: CrashScene) -> Cause | None:

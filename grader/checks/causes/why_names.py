@@ -14,6 +14,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.comma_for_dot import comma_for_dot
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
+from grader.checks.causes.imported_otherwise import imported_otherwise
 from grader.checks.causes.why_other_object import NEED_THE_NODE
 from grader.checks.edit import Edit, at
 from grader.common.words import nearest, shorten
@@ -56,6 +57,7 @@ def why_no_name(scene: CrashScene) -> Cause | None:
         or _of_self(scene, name)
         or _of_string(scene, name)
         or _in_other_capitals(scene, name)
+        or imported_otherwise(scene, name)
         or _of_import(scene, name)
         or _bound_elsewhere(scene, name)
         or _alike(scene, name)

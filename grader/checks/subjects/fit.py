@@ -188,7 +188,7 @@ def _why_raised(evidence: Evidence, crash: Crash, id_: str) -> Cause | None:
         return Cause("lstsq-result", cause)
     of_circle = any(each.id == id_ and each.arc for each in evidence.trial.calls.points)
     if of_circle and crash.error == "ValueError" and _is_raise(evidence, crash.where):
-        cause = "Your own code raises this error: its condition is true for these points, although they form a circle."
+        cause = "Your own code raises this error for these points, although they form a circle."
         return Cause("refuses-circle", cause)
     stacks = evidence.code.calls("vstack")
     if stacks and crash.error == "LinAlgError":

@@ -125,7 +125,7 @@ def places_differ(evidence: Evidence, params: PlacesDiffer) -> Finding:
     views = (evidence, evidence.from_trial(params.other))
     calls = [[call for call in _spawns(each) if str(call.request["name"]).startswith(params.name)] for each in views]
     if not all(calls):
-        why = f"in both trials, the node did not spawn turtles whose names begin with {shorten(params.name)}"
+        why = f"in at least one of the two trials, no turtle whose name begins with {shorten(params.name)} was spawned"
         return Finding(Status.SKIPPED, f"Not judged, because {why}.")
     now, before = ([(float(call.request["x"]), float(call.request["y"])) for call in made] for made in calls)
     if now[: len(before)] == before[: len(now)]:

@@ -42,7 +42,7 @@ def domain() -> str:
 
 
 def name() -> str:
-    """Return the name of the daemon's socket, which is the same for all commands that see the same graph."""
+    """Return the name of the daemon's socket: the same for all commands of one user that see the same graph."""
     network = Path("/proc/self/ns/net").stat().st_ino
     decisive = [str(PROTOCOL), str(os.getuid()), str(network), domain()]
     decisive += [f"{variable}={os.environ.get(variable, '')}" for variable in _DECIDE]

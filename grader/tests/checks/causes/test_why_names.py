@@ -135,6 +135,15 @@ def test_an_unbound_name_in_other_words_is_local_all_the_same() -> None:
         ),
         ("msg = twist()  # crashed\nfrom a import Twist\n", "twist", "name-misspelt", "A similar name exists: Twist."),
         (DRIVER.format(line="create_timer(1, 2)"), "create_timer", "missing-self", "write self.create_timer"),
+        ("import math as m\nx = math.pi  # crashed\n", "math", "name-undefined", "imports math under the name m."),
+        ("from a.b import Twist as T\nx = Twist()  # crashed\n", "Twist", "name-undefined", "under the name T."),
+        ("x = math.pi  # crashed\nimport math\n", "math", "name-too-early", "Line 2 imports math, after this line."),
+        (
+            "def a():\n    import math  # look\ndef b():\n    x = math.pi  # crashed\n",
+            "math",
+            "local-name",
+            "inside a, so the name does not exist in other functions.",
+        ),
     ],
 )
 def test_a_name_that_stands_elsewhere_is_reported_where(source: str, name: str, diagnosis: str, words: str) -> None:

@@ -287,7 +287,7 @@ def source(stack: str = "asarray", solver: str = "lstsq", line: str = "pass") ->
             source(line="raise ValueError('a line')"),
             source(line="int('a line')"),
             ("ValueError: a line", "ValueError: a line"),
-            "Your own code raises this error: its condition is true for these points, although they form a circle.",
+            "Your own code raises this error for these points, although they form a circle.",
         ),
     ],
 )

@@ -89,7 +89,7 @@ def test_places_that_are_the_same_each_time_are_not_random() -> None:
     assert "x=2.00, y=3.00 both times" in finding.observed
     assert found(PLACES_DIFFER, given(calls=[]), other=twice.trial.id).status is Status.SKIPPED
     other = found(PLACES_DIFFER, twice, other=twice.trial.id, name="prey")
-    assert "the node did not spawn turtles whose names begin with prey." in other.observed
+    assert "no turtle whose name begins with prey was spawned." in other.observed
 
 
 ALL = [spawn(0.5, name, *place) for name, place in PLACES.items()]
@@ -222,6 +222,4 @@ def test_places_are_compared_with_those_of_another_trial() -> None:
         assert ("The node was started twice, and target1 was at x=2.00, y=3.00 both times." in reported) == is_same
         assert (reported.strip() == "Each time the node starts, the turtles are in different places.") != is_same
     none = replace(both, runs={same.trial.id: same.run, "other": given(calls=[]).run})
-    assert "the node did not spawn turtles whose names begin with target." in told(
-        found(PLACES_DIFFER, none, other="other")
-    )
+    assert "no turtle whose name begins with target was spawned." in told(found(PLACES_DIFFER, none, other="other"))
