@@ -13,7 +13,7 @@ extensions = ["myst_parser"]
 root_doc = "README"
 PAGES = {
     "Learn": ["docs/learner", "course/*/lesson", "docs/commands", "docs/glossary", "docs/ros2-differences"],
-    "Teach": ["docs/instructor", "grader/classroom/templates/README", "docs/security"],
+    "Teach": ["docs/instructor", "grader/classroom/templates/README", "docs/security", "docs/sandbox"],
     "Write exercises": ["docs/authors", "docs/kinds", "grader/checks/README"],
     "Project": [
         "docs/design",

@@ -13,7 +13,10 @@ from grader.errors import UsageError
 from grader.exercise.model import catalogue, course_folder
 
 _FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore", ".gitattributes", "COLCON_IGNORE")
-_PAGES = ("learner.md", "commands.md", "glossary.md", "kinds.md", "ros2-differences.md", "security.md")
+_PAGES = (
+    *("learner.md", "commands.md", "glossary.md", "kinds.md", "ros2-differences.md", "security.md"),
+    "sandbox.md",
+)
 """The pages of docs/ that students need. The others are for instructors, authors and developers."""
 _TARGETS = ("help", "demo", "notebooks", "clean", "python3")
 """The targets of the Makefile that need neither the tests, the solutions nor the other pages."""

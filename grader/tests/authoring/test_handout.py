@@ -37,6 +37,7 @@ def test_students_get_lessons_starting_points_and_the_grader(students: Path) -> 
         "grader/setup/bootstrap.py",
         "docs/learner.md",
         "docs/security.md",
+        "docs/sandbox.md",
     ):
         assert (students / name).is_file()
 
@@ -50,7 +51,7 @@ def test_students_get_no_solution_and_no_test(students: Path) -> None:
 
 def test_no_page_for_students_tells_an_instructor_what_to_do(students: Path) -> None:
     pages = sorted(path.relative_to(students).as_posix() for path in students.glob("docs/*"))
-    names = ("commands", "glossary", "kinds", "learner", "ros2-differences", "security")
+    names = ("commands", "glossary", "kinds", "learner", "ros2-differences", "sandbox", "security")
     assert pages == [f"docs/{name}.md" for name in names]
     for page in (*pages, "README.md", "Makefile", *(f"course/{name}/lesson.md" for name in catalogue())):
         text = (students / page).read_text("utf-8")

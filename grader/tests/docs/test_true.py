@@ -14,10 +14,12 @@ from grader.gradebook import relay
 from grader.gradebook.budget import Budget
 from grader.sandbox.limits import MIB, MOST_SIGNALS, NODE_LIMITS, Limits
 from grader.sandbox.user import FEW_USERS, FIRST_USER, USERS
-from grader.submission import answers_toml, code, package_xml, reader, tree
+from grader.submission import answers_toml, bag_folder, code, constants, package_xml, reader, tree
 from grader.tests.docs.pages import ROOT, text_of
 from grader.trial.conductor import MESSAGES_HZ, REQUESTS_HZ
 
+SANDBOX = "docs/sandbox.md"
+"""The page with the limits of all processes."""
 COLUMNS = (runner.LIMITS, NODE_LIMITS, Limits())
 """The limits for the build, the node and the kernel, in the order of the table's columns."""
 KEYS = {
@@ -36,7 +38,7 @@ OPTIONAL = {"[[trial]]": {"alone_s", "beside"}}
 
 
 def row(words: str) -> list[str]:
-    line = next(line for line in text_of("docs/security.md").splitlines() if line.startswith(f"| {words} |"))
+    line = next(line for line in text_of(SANDBOX).splitlines() if line.startswith(f"| {words} |"))
     return [cell.strip() for cell in line.strip("|").split("|")[1:]]
 
 
@@ -59,16 +61,19 @@ def test_the_limits_of_a_cell_are_those_of_the_code(words: str, name: str, unit:
 
 
 def test_every_limit_of_a_cell_is_in_the_table() -> None:
-    table = text_of("docs/security.md").split("| limit | build | node | kernel |", 1)[1].split("\n\n", 1)[0]
+    table = text_of(SANDBOX).split("| limit | build | node | kernel |", 1)[1].split("\n\n", 1)[0]
     assert len(table.strip().splitlines()) - 1 == len(Limits.__dataclass_fields__)
 
 
 def test_the_budgets_of_reading_are_those_of_the_code() -> None:
-    text = " ".join(text_of("docs/security.md").split())
+    text = " ".join(text_of(SANDBOX).split())
     reported = f"{code.MAX_BYTES // 1000} kB per Python file and {code.MOST_BYTES // 1_000_000} MB in total"
     assert reported in text
     answers, manifest = (f"{one.MAX_BYTES // 1000} kB" for one in (answers_toml, package_xml))
     assert f"{manifest} for package.xml, {answers} for answers.toml" in text
+    chunk = f"{bag_folder.MOST_CHUNK_BYTES // MIB} MiB per chunk of a bag"
+    assert f"{constants.MAX_NODES:,} evaluated syntax nodes per Python module" in text
+    assert f"{bag_folder.MOST_MESSAGES:,} messages and {chunk}" in text
     assert (
         f"{tree.MAX_FILES:,} files, {tree.MAX_FILE_BYTES // MIB} MiB per file and {tree.MAX_TOTAL_BYTES // MIB} MiB"
         in text
@@ -76,7 +81,7 @@ def test_the_budgets_of_reading_are_those_of_the_code() -> None:
 
 
 def test_the_limits_of_the_processes_of_the_grader_are_those_of_the_code() -> None:
-    text, budget = " ".join(text_of("docs/security.md").split()), Budget()
+    text, budget = " ".join(text_of(SANDBOX).split()), Budget()
     one, total = budget.message // MIB, budget.total // MIB
     assert (
         f"{budget.messages:,} messages from its kernel, {one} MiB each, {total} MiB and a million JSON values in total"
@@ -88,11 +93,12 @@ def test_the_limits_of_the_processes_of_the_grader_are_those_of_the_code() -> No
     times, size = f"{reader.CPU_S} s of CPU time, {read_s:g} s of wall time", f"{memory} GiB of address space"
     assert f"{times}, {size} in addition to the grader's, {answer} MiB of output" in text
     assert f"at most {MOST_SIGNALS} per cell" in text
-    assert f"{REQUESTS_HZ} requests or {MESSAGES_HZ} messages per second" in text
+    security = " ".join(text_of("docs/security.md").split())
+    assert f"{REQUESTS_HZ} requests or {MESSAGES_HZ} messages per second" in security
 
 
 def test_the_users_of_the_cells_are_named() -> None:
-    text = " ".join(text_of("docs/security.md").split())
+    text = " ".join(text_of(SANDBOX).split())
     assert f"{FIRST_USER} to {FIRST_USER + USERS - 1}" in text
     assert f"{FEW_USERS[0]} to {FEW_USERS[-1]}" in text
 
