@@ -56,6 +56,12 @@ def parse(text: str, *, dictionary: bool = True) -> Any:  # noqa: ANN401
             'A value looks like "{linear: {x: 2.0}, angular: {z: 1.0}}": quotes around it, a space after each colon.'
         )
         raise Ros2Error(message) from error
+    except RecursionError as error:
+        message = "The passed value is nested too deeply"
+        raise Ros2Error(message) from error
+    except ValueError as error:  # a value that looks like a date, such as 2027-13-01
+        message = f"The passed value cannot be read: {error}"
+        raise Ros2Error(message) from error
     if values is None:
         return {}
     if dictionary and not isinstance(values, dict):

@@ -12,6 +12,7 @@ from grader.ros import message_values
 from grader.ros.failure import Ros2Error, did_you_mean
 from grader.ros.rendering import Form, to_yaml
 from grader.ros2.completion import action_types, actions, completes, prototype
+from grader.ros2.given_file import standard_input
 
 if TYPE_CHECKING:
     import argparse
@@ -51,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
     from grader.graph.discovery import cli_node, settle
 
     made = message_values.load_type(args.action_type, "action", "action type")
-    given = message_values.parse(sys.stdin.read() if args.stdin else args.goal, dictionary=False)
+    given = message_values.parse(standard_input() if args.stdin else args.goal, dictionary=False)
     try:
         goal = message_values.fill(made.Goal(), given)
     except message_values.MisfitError as error:

@@ -6,7 +6,9 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from rclpy.duration import Duration
+from rclpy.exceptions import NameValidationException
 
+from grader.common.words import printable
 from grader.graph.discovery import settle
 from grader.ros import message_values
 from grader.ros.failure import Ros2Error
@@ -89,7 +91,11 @@ class Player:
                 self._log.warn(f"Ignoring a topic '{topic}', reason: {str(error).splitlines()[0]}.")
                 continue
             profiles = getattr(connection.ext, "offered_qos_profiles", [])
-            made[connection.topic] = self._node.create_publisher(kind, topic, bag_qos.to_play(profiles))
+            try:
+                made[connection.topic] = self._node.create_publisher(kind, topic, bag_qos.to_play(profiles))
+            except NameValidationException as error:
+                reason = str(error).splitlines()[0].removesuffix(":")
+                self._log.warn(f"Ignoring a topic '{printable(topic)}', reason: {reason}.")
         if chosen and not made:
             message = "[ERROR] [ros2bag]: None of the selected topics can be published."
             raise Ros2Error(message)

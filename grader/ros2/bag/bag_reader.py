@@ -9,11 +9,17 @@ from typing import TYPE_CHECKING
 
 from rosbags.rosbag2 import Reader
 
+from grader.common.words import shorten
 from grader.ros.failure import Ros2Error
+from grader.ros2.given_file import MOST_BYTES, why_not
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
+
+
+class BagError(Exception):
+    """A bag cannot be read, for the reason in the message."""
 
 
 @contextmanager
@@ -33,14 +39,56 @@ def open_bag(path: Path) -> Iterator[Reader]:
             )
         raise Ros2Error(text)
     try:
+        _require_files(path)
         reader = Reader(path)
         reader.open()
+        _require_valid(reader)
     except Exception as error:  # a damaged file can cause any error, such as a bad offset, string or checksum
         raise _damaged(path, error) from error
     try:
         yield reader
     finally:
         reader.close()
+
+
+def _require_files(path: Path) -> None:
+    """Raise BagError if opening the bag would wait for ever or never end."""
+    metadata = path / "metadata.yaml"
+    if not path.is_dir():
+        _require_file(path, None)
+        return
+    _require_file(metadata, MOST_BYTES)
+    # The metadata may name any file in the folder.
+    for file in path.iterdir():
+        if file.exists() and not (file.is_dir() or file.is_file()):
+            _require_file(file, None)
+
+
+def _require_file(file: Path, most: int | None) -> None:
+    why = why_not(file, most=most)
+    if why:
+        message = f"{file.name}: {why}"
+        raise BagError(message)
+
+
+def _require_valid(reader: Reader) -> None:
+    """Raise BagError if the metadata has values with which the bag cannot be described or played."""
+    for one in reader.connections:
+        for name, value in (("name", one.topic), ("type", one.msgtype)):
+            if not isinstance(value, str):
+                message = f"the {name} of a topic is not a string: {shorten(str(value))}"
+                raise BagError(message)
+        _require_number(f"the number of messages on {shorten(one.topic)}", one.msgcount)
+    _require_number("the number of messages", reader.message_count)
+    if reader.message_count:
+        _require_number("the start", reader.start_time)
+        _require_number("the duration", reader.duration - 1)  # rosbags adds a nanosecond
+
+
+def _require_number(name: str, value: object) -> None:
+    if not isinstance(value, int) or not 0 <= value < 2**63:
+        message = f"{name} is not a number from 0 to 2**63 - 1: {shorten(str(value))}"
+        raise BagError(message)
 
 
 def messages(

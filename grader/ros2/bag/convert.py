@@ -6,10 +6,11 @@ import argparse
 import heapq
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from grader.ros.failure import Ros2Error
 from grader.ros2.bag.options import STORAGES, absolute, contains
+from grader.ros2.given_file import why_not
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,9 +33,19 @@ def add(parser: argparse.ArgumentParser) -> None:
         "-o",
         "--output-options",
         required=True,
-        type=argparse.FileType("r"),
+        type=_options_file,
         help="YAML file that lists the new bags under output_bags: uri, storage_id, topics and more",
     )
+
+
+def _options_file(text: str) -> IO[str]:
+    """Open the file with the options, or return standard input for `-`, for argparse."""
+    why = why_not(Path(text), piped=True) if text != "-" else ""
+    if why:
+        message = f"can't open '{text}': {why}"
+        raise argparse.ArgumentTypeError(message)
+    opened: IO[str] = argparse.FileType("r", encoding="utf-8")(text)
+    return opened
 
 
 def run(args: argparse.Namespace) -> int:
@@ -83,7 +94,7 @@ def _options(file: Any) -> list[dict[str, Any]]:  # noqa: ANN401
             data = yaml.safe_load(file)
         bags = data["output_bags"]
         right = all(bag.setdefault("storage_id", "mcap") in STORAGES and isinstance(bag["uri"], str) for bag in bags)
-    except (yaml.YAMLError, KeyError, TypeError, AttributeError) as error:
+    except (yaml.YAMLError, KeyError, TypeError, AttributeError, ValueError, RecursionError) as error:
         raise _unreadable(file) from error
     if not right or not bags:
         raise _unreadable(file)

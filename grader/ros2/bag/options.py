@@ -39,7 +39,12 @@ def add_log_level(parser: argparse.ArgumentParser) -> None:
 def existing_path(text: str) -> Path:
     """Convert an argument to an existing path, for argparse."""
     path = Path(text)
-    if not path.exists():
+    try:
+        there = path.exists()
+    except OSError as error:
+        message = f"Bag path '{text}' cannot be opened: {error.strerror}"
+        raise argparse.ArgumentTypeError(message) from error
+    if not there:
         message = f"Bag path '{text}' does not exist!"
         raise argparse.ArgumentTypeError(message)
     return path

@@ -16,6 +16,7 @@ from mcap.stream_reader import StreamReader
 from grader.ros.failure import Ros2Error
 from grader.ros2.bag.bag_writer import BagWriter
 from grader.ros2.bag.logger import Logger
+from grader.ros2.given_file import why_not
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -47,6 +48,10 @@ def recover(folder: Path) -> None:
     if not files:
         message = f"[ERROR] [ros2bag]: No .mcap or .db3 file in '{folder}'"
         raise Ros2Error(message)
+    for file in files:
+        if why := why_not(file, most=None):
+            message = f"[ERROR] [ros2bag]: '{file}' cannot be read: {why}"
+            raise Ros2Error(message)
     storage = "mcap" if files[0].suffix == ".mcap" else "sqlite3"
     log = Logger("rosbag2_cpp")
     log.info(f"Beginning reindexing bag in directory: {folder}")

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from grader.ros.failure import Ros2Error
+from grader.ros2.given_file import why_not
 from grader.ros2.param.options import add_node, add_timeout
 
 if TYPE_CHECKING:
@@ -47,6 +49,10 @@ def read(file: str, *, use_wildcard: bool) -> list[Any]:
     Raises:
         Ros2Error: the file cannot be read, or it is not a parameter file.
     """
+    why = why_not(Path(file), piped=True)
+    if why:
+        message = f"The parameter file {file} cannot be read: {why}"
+        raise Ros2Error(message)
     import yaml
     from rclpy.parameter import parameter_dict_from_yaml_file
 
@@ -54,8 +60,8 @@ def read(file: str, *, use_wildcard: bool) -> list[Any]:
         return list(parameter_dict_from_yaml_file(file, use_wildcard).values())
     except OSError as error:
         message = f"The parameter file {file} cannot be read: {error.strerror}"
+    except (yaml.YAMLError, AssertionError, AttributeError, TypeError, ValueError, RecursionError) as error:
+        message = f"The file {file} is not a parameter file in YAML: {' '.join(str(error).split())}"
     except RuntimeError as error:
         message = str(error)
-    except (yaml.YAMLError, AttributeError, TypeError, ValueError) as error:
-        message = f"The file {file} is not a parameter file in YAML: {' '.join(str(error).split())}"
     raise Ros2Error(message)

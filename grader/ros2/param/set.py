@@ -43,7 +43,7 @@ def value_of(text: str) -> Any:  # noqa: ANN401
 
     try:
         return get_parameter_value(text)
-    except (yaml.YAMLError, AssertionError, TypeError, ValueError) as error:
+    except (yaml.YAMLError, AssertionError, TypeError, ValueError, RecursionError) as error:
         message = f"The value cannot be read: {text}"
         raise Ros2Error(message) from error
 

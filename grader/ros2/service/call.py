@@ -11,6 +11,7 @@ from grader.graph.names import absolute, hidden
 from grader.ros import message_values
 from grader.ros.failure import Ros2Error, did_you_mean
 from grader.ros2.completion import completes, prototype, service_types, services
+from grader.ros2.given_file import standard_input
 
 if TYPE_CHECKING:
     import argparse
@@ -50,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
         message = "rate must be greater than zero"
         raise Ros2Error(message)
     made = message_values.load_type(args.service_type, "srv", "service type")
-    given = sys.stdin.read() if args.stdin else args.values
+    given = standard_input() if args.stdin else args.values
     request = message_values.fill(made.Request(), message_values.parse(given, dictionary=False))
     name = absolute(args.service_name)
     package, last = args.service_type.split("/")[0], args.service_type.split("/")[-1]

@@ -11,6 +11,7 @@ from grader.ros import message_values
 from grader.ros.failure import Ros2Error
 from grader.ros2 import qos
 from grader.ros2.completion import completes, prototype, topic_types, topics
+from grader.ros2.given_file import standard_input
 from grader.ros2.options import add_spin, positive_float
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ def run(args: argparse.Namespace) -> int:
 
     made = message_values.load_type(args.message_type, "msg")
     stamps: list[message_values.Stamper] = []
-    given = message_values.parse(sys.stdin.read() if args.stdin else args.values)
+    given = message_values.parse(standard_input() if args.stdin else args.values)
     message = message_values.fill(made(), given, stamps)
     times = 1 if args.once else args.times
     wanted = args.wait_matching_subscriptions
