@@ -72,7 +72,7 @@ def test_the_budgets_of_reading_are_those_of_the_code() -> None:
     answers, manifest = (f"{one.MAX_BYTES // 1000} kB" for one in (answers_toml, package_xml))
     assert f"{manifest} for package.xml, {answers} for answers.toml" in text
     chunk = f"{bag_folder.MOST_CHUNK_BYTES // MIB} MiB per chunk of a bag"
-    assert f"{constants.MAX_NODES:,} evaluated syntax nodes per Python module" in text
+    assert f"{constants.MAX_NODES:,} syntax nodes per Python module are evaluated" in text
     assert f"{bag_folder.MOST_MESSAGES:,} messages and {chunk}" in text
     assert (
         f"{tree.MAX_FILES:,} files, {tree.MAX_FILE_BYTES // MIB} MiB per file and {tree.MAX_TOTAL_BYTES // MIB} MiB"
