@@ -1,6 +1,6 @@
 """Measure how often reports name the true cause of a generated mistake, and how often they contain a false statement.
 
-    python -m grader.benchmarks.causes [--count 200] [--seed 1] [--only OPERATOR ...] [--keep FOLDER]
+    python -m grader.benchmarks.causes [--count 200] [--seed 1] [--only OPERATOR ...] [--keep FOLDER | --again FOLDER]
 
 The benchmark puts mistakes into correct packages with the operators of grader/tests/operators (two operators in a third
 of the packages), and judges the packages in simulated time. The correct packages are four of the solutions, and cases

@@ -92,7 +92,7 @@ def grade(
     roster: Annotated[
         Optional[Path],  # noqa: UP045
         typer.Option(
-            help="CSV with the columns submission and student, for folders that are not named after student ids.",
+            help="CSV with the columns submission and student, for submissions that are not named after student ids.",
             metavar="FILE.csv",
         ),
     ] = None,

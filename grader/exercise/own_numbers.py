@@ -34,7 +34,7 @@ _INVISIBLE = frozenset(
 without the characters in UNSAFE_CATEGORIES, and the empty Braille pattern."""
 
 
-SAME = "capital letters, extra spaces, invisible characters and the encoding of accents do not count"
+SAME = "capital letters, character width, extra spaces, invisible characters and the encoding of accents do not count"
 """The differences that `normal_id` ignores, as a clause for messages."""
 
 

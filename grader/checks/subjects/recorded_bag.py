@@ -179,7 +179,7 @@ READABLE = Kind(
     "The bag can be read",
     InBag,
     readable,
-    about="A folder of the package contains a bag (MCAP) that can be read, with at least one message and "
+    about="A folder of the package contains a bag (uncompressed MCAP) that can be read, with at least one message and "
     "`metadata.yaml`.",
 )
 TOPIC = Kind(
