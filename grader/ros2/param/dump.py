@@ -26,15 +26,18 @@ def run(args: argparse.Namespace) -> int:
 
 
 def dumped(node_name: str, values: dict[str, Any]) -> str:
-    """Return the values in the format of a parameter file. Each dot in a name starts a new level."""
+    """Return the values in the format of a parameter file. Each dot in a name starts a new level.
+
+    If a node has a parameter `a` and a parameter `a.b`, `a` cannot contain a level, so that `a.b` is written as one
+    key. `ros2 param load` and `--params-file` read such a key, too. The real `ros2 param dump` fails in this case.
+    """
     import yaml
 
     tree: dict[str, Any] = {}
     for name, value in values.items():
-        *path, last = name.split(".")
-        level = tree
-        for part in path:
-            level = level.setdefault(part, {})
-        level[last] = value.tolist() if hasattr(value, "tolist") else value
+        level, begin = tree, 0
+        while (dot := name.find(".", begin)) >= 0 and name[:dot] not in values:
+            level, begin = level.setdefault(name[begin:dot], {}), dot + 1
+        level[name[begin:]] = value.tolist() if hasattr(value, "tolist") else value
     text: str = yaml.safe_dump({node_name: {"ros__parameters": tree}}, default_flow_style=False, sort_keys=True)
     return text
