@@ -121,7 +121,8 @@ NUMBERS = Kind(
     "The numbers are your own",
     NoParams,
     own_numbers,
-    about="The file named in `[numbers]` contains the numbers that belong to the student who submitted it.",
+    about="The file named in `[numbers]` contains the numbers that belong to the student who is named in it. In a class, "
+    "this student submitted the file.",
 )
 CIRCLE = Kind(
     "own_circle",
@@ -139,6 +140,7 @@ RATE = Kind(
     "Commands arrive at your own rate",
     OwnRate,
     own_rate,
-    about="This kind is like `rate`, but the rate is the student's own number.",
+    about="This kind is like `rate`, but the rate is the student's own number. Each interval may be 0.8 to 1.3 periods "
+    "long.",
     drives=True,
 )
