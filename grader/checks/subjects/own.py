@@ -121,8 +121,8 @@ NUMBERS = Kind(
     "The numbers are your own",
     NoParams,
     own_numbers,
-    about="The file named in `[numbers]` contains the numbers that belong to the student who is named in it. In a class, "
-    "this student submitted the file.",
+    about="The file named in `[numbers]` contains the numbers that belong to the student who is named in it. In a "
+    "class, this student submitted the file.",
 )
 CIRCLE = Kind(
     "own_circle",
