@@ -86,7 +86,7 @@ class SharedBuilds:
         if reference is None or built is None:
             return build(submission)
         if is_earlier:
-            tell("Using an earlier build: only the modules differ")
+            tell("Using an earlier build: at most the modules differ")
         # The time for testing causes depends on the time that a build with colcon takes.
         return replace(built, build=replace(built.build, seconds=reference.build.seconds))
 

@@ -49,7 +49,7 @@ def a_list(items: Sequence[str], last: str = "and", *, most: int = 12) -> str:
 
 
 def number(value: float, unlike: float | None = None) -> str:
-    """Return the number with four significant digits, or with all digits if it would otherwise look equal to `unlike`.
+    """Return the number with up to four significant digits, or with all if it would otherwise look equal to `unlike`.
 
     NaN and infinity are spelled out.
     """

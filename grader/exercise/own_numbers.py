@@ -56,7 +56,7 @@ class NumbersSpec:
 
 @dataclass(frozen=True)
 class OwnNumbers:
-    """The numbers of one student, each with its name. The name contains the unit of the number."""
+    """The values of one student, each with its name. If a value has a unit, its name contains the unit."""
 
     student: str
     values: Mapping[str, Value]

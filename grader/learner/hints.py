@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
     """Return the next hint of a step or of a part of a step. The default is the current step.
 
-    After all hints have been shown, the last hint for a failed check is repeated, or the last hint if no check failed.
-    If `step` is a single letter, it is a part of the current step.
+    Hints for work that is done are omitted. After all other hints have been shown, the last one for a failed check is
+    repeated, or the last one if no check failed. If there is no hint to show, the text says why. If `step` is a single
+    letter, it is a part of the current step.
 
     Raises:
         UsageError: no step was named or started, or the step or its part does not exist.
@@ -36,10 +37,11 @@ def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
     wanted = [index for index, each in enumerate(exercise.hints) if part is None or each.part == _part(exercise, part)]
     known = progress.load(root).step(exercise.id)
     index = _next(exercise, wanted, known)
-    if index is None and (part or (known.passed and not known.failed)):
+    if index is None and (part or known.passed) and not _has_failed(exercise, part, known):
         return f"{_whole(exercise, part)} has passed, so you do not need more hints."
     if index is None:
-        return f"{exercise.id} has no hints for the checks that have not passed. `grader check` shows these checks."
+        whole = _whole(exercise, part)
+        return f"{whole} has no hints for the checks that have not passed. `grader check` shows these checks."
     read = (*(each for each in known.read if each != index), index)
     progress.update(root, lambda before: before.with_step(exercise.id, replace(before.step(exercise.id), read=read)))
     place = f"{sum(each in read for each in wanted)} of {len(wanted)}"
@@ -111,6 +113,14 @@ def _is_done(exercise: Exercise, hint: Hint, known: StepProgress) -> bool:
     of_part = {each.id for each in exercise.checks if hint.part and each.title.startswith(f"{hint.part})")}
     needed = set(hint.checks) & of_part or set(hint.checks)
     return bool(needed) and needed <= set(known.done) and not set(hint.checks) & set(known.failed)
+
+
+def _has_failed(exercise: Exercise, part: str | None, known: StepProgress) -> bool:
+    """Return whether a check of the part, or of the exercise if `part` is None, failed in the last report."""
+    if part is None:
+        return bool(known.failed)
+    begin = f"{_part(exercise, part)})"
+    return any(each.id in known.failed and each.title.startswith(begin) for each in exercise.checks)
 
 
 def _about(exercise: Exercise, index: int, known: StepProgress) -> str:

@@ -76,7 +76,7 @@ def work_folder(exercise: Exercise, workspace: Path) -> Path:
 def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = False) -> Started:
     """Add the files of the step that are missing from the workspace. With `fresh`, existing work is moved away first.
 
-    If each student has different numbers in this step, the numbers of `student` are written.
+    If each student has different numbers in this step, a missing file with numbers gets those of `student`.
 
     Raises:
         UsageError: a file is in the place of a folder, or a folder is in the place of a file.

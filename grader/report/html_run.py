@@ -117,7 +117,7 @@ def _left_out(recording: Recording) -> list[str]:
     """Describe the data that was left out because the recording was full."""
     amounts = (
         (recording.dropped, "message", ""),
-        (recording.interventions_dropped, "call", " to the simulator's services"),
+        (recording.interventions_dropped, "call", " to the simulator's services and actions"),
         (recording.graph_dropped, "part", " of the graph"),
     )
     left_out = [count(amount, thing) + of for amount, thing, of in amounts if amount]

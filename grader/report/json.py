@@ -9,7 +9,7 @@ Schema 4. Every key except `change` is always present. Strings are never null un
     grader, ros   their versions
     clock         {used: "simulated" or "wall" ("none" when no trial ran), why: a sentence}
     confined      false if the student's code ran without a sandbox, with resource limits only
-    seed          the seed of the turtle's random start pose; null for the default start
+    seed          the value of --seed, for random inputs such as the start pose; null without --seed
     points, max   sums over the outcomes; a check with status "error" counts 0 points
     outcomes      [{id, kind, title, status: "passed", "failed", "skipped" or "error", points, max, seen, expected,
                   cause, diagnosis: stable id of the cause or null, where: {file, line or null} or null, hidden,

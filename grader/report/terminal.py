@@ -169,7 +169,7 @@ def _footnotes(report: Report, *, verbose: bool) -> list[str]:
     simulated_alone = report.clock == "simulated" and "in wall time: " not in why
     notes = [] if simulated_alone and not verbose else [f"{clock}: {why}" if clock and why else clock or why]
     if report.seed is not None:
-        notes.append(f"The turtle's random start pose was generated with seed {report.seed}.")
+        notes.append(f"The random inputs of the trials were generated with seed {report.seed}.")
     if not report.confined:
         notes.append(UNCONFINED)
     if report.recording is not None:

@@ -54,10 +54,17 @@ def of_configuration(env: Mapping[str, str]) -> Dict[str, str]:
 
 
 def configuration_files(env: Mapping[str, str], root: Path = Path("/")) -> List[Path]:
-    """Return the paths of pip's configuration files, which need not exist. A later file overrides an earlier one."""
+    """Return the paths of the configuration files that pip reads if they exist. A later file overrides an earlier one.
+
+    If PIP_CONFIG_FILE names a file that exists, pip does not read the files in the user's home.
+    """
+    chosen = env.get("PIP_CONFIG_FILE")
+    if chosen == os.devnull:
+        return []
     home = Path(env.get("HOME", "/nowhere"))
     shared = (env.get("XDG_CONFIG_DIRS") or "/etc/xdg").split(os.pathsep)
     own = Path(env.get("XDG_CONFIG_HOME") or home / ".config")
-    files = [*(root / place[1:] / "pip/pip.conf" for place in reversed(shared)), root / "etc/pip.conf"]
-    files += [home / ".pip/pip.conf", own / "pip/pip.conf"]
-    return files + ([Path(env["PIP_CONFIG_FILE"])] if env.get("PIP_CONFIG_FILE") else [])
+    files = [*(root / place[1:] / "pip/pip.conf" for place in shared), root / "etc/pip.conf"]
+    if not (chosen and Path(chosen).exists()):
+        files += [home / ".pip/pip.conf", own / "pip/pip.conf"]
+    return files + ([Path(chosen)] if chosen else [])

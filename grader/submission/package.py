@@ -1,4 +1,4 @@
-"""Submission: a student's folder, in which the only package has been found and read."""
+"""Submission: the package or the answers.toml that has been found in a student's folder and read."""
 
 from __future__ import annotations
 

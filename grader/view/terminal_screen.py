@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from grader.view.system import System
 
 BESIDE = 38
-"""The minimum number of columns next to the canvas. A terminal that is too narrow shows only the canvas."""
+"""The minimum number of columns next to the canvas. With less than twice this width, the terminal
+shows nothing there."""
 _BELOW = 6
 """The number of rows for the title, the simulator's output and the keys, including one empty row."""
 _LEAST = 8

@@ -42,7 +42,7 @@ class LogFeedback:
     """
 
     format: str = string(
-        "a log line that contains remaining", about="The format of a line with the number `remaining`."
+        "a log line that contains {remaining}", about="The format of a line with the number `remaining`."
     )
     period_s: float = number(0.5, above=0, about="The time between two lines.")
     tolerance_rad: float = number(0.05, above=0, about="The maximum error in the angle.")

@@ -40,7 +40,9 @@ LENGTHS = ("hypot", "sqrt", "dist")
 class LogPosition:
     """The logged x and y may be up to `lag_s` old and may differ from the turtle's position by up to the tolerance."""
 
-    format: str = string("a log line that contains x and y", about="The format of a line with the numbers `x` and `y`.")
+    format: str = string(
+        "a log line that contains {x} and {y}", about="The format of a line with the numbers `x` and `y`."
+    )
     tolerance_m: float = number(0.02, above=0, about="The maximum error of x and y.")
     lag_s: float = number(0.15, above=0, about="The maximum age of the position in a line.")
 
@@ -52,7 +54,9 @@ class LogDistance:
     It may be up to `lag_s` old and may differ from the real distance by up to the tolerance.
     """
 
-    format: str = string("a log line that contains distance", about="The format of a line with the number `distance`.")
+    format: str = string(
+        "a log line that contains {distance}", about="The format of a line with the number `distance`."
+    )
     tolerance_m: float = number(0.05, above=0, about="The maximum error in the distance.")
     lag_s: float = number(0.15, above=0, about="The maximum age of the distance in a line.")
 

@@ -106,7 +106,10 @@ def _all_hold(bands: tuple[Band, ...], six: Six) -> bool:
 
 
 def _right_values(evidence: Evidence, wanted: Six, off: list[int]) -> tuple[Edit, ...]:
-    """Return the edits that correct the wrong fields. Each edit changes or inserts an assignment on a separate line."""
+    """Return edits that correct wrong fields. Each edit changes or inserts an assignment on a separate line.
+
+    A field gets no edit if the source sets it in another way.
+    """
     edits: list[Edit] = []
     sets: list[tuple[Where, str]] = []
     for index, field in enumerate(FIELDS):

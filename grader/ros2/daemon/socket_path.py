@@ -1,7 +1,7 @@
 """The address of the daemon, which depends on the user, the domain and the network.
 
-The socket is in a folder that only this user can access. The name of the socket depends on everything that determines
-which graph a node discovers.
+The socket is in a folder that only this user can access. The name of the socket also depends on other environment
+variables that determine which graph a node discovers.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _DECIDE = (
     "ROS_SECURITY_KEYSTORE",
     "ROS_STATIC_PEERS",
 )
-"""The environment variables that determine which graph a node discovers."""
+"""The environment variables that, besides ROS_DOMAIN_ID, determine which graph a node discovers."""
 
 
 def domain() -> str:
@@ -42,7 +42,7 @@ def domain() -> str:
 
 
 def name() -> str:
-    """Return the name of the daemon's socket: the same for all commands of one user that see the same graph."""
+    """Return the name of the daemon's socket, which is the same for all commands with the same user and settings."""
     network = Path("/proc/self/ns/net").stat().st_ino
     decisive = [str(PROTOCOL), str(os.getuid()), str(network), domain()]
     decisive += [f"{variable}={os.environ.get(variable, '')}" for variable in _DECIDE]

@@ -116,6 +116,13 @@ def test_a_part_that_has_passed_needs_no_hint() -> None:
     assert hints.hint("07", None, "d") == "Part d) of 07-challenges has passed, so you do not need more hints."
 
 
+def test_a_part_in_which_only_a_check_without_hints_fails_is_not_called_passed() -> None:
+    verdict(LAST, done=("goal", "goal-subscription", "goal-turn", "goal-first-pose"), failed=("goal-stop",))
+    assert hints.hint("07", None, "d") == (
+        "Part d) of 07-challenges has no hints for the checks that have not passed. `grader check` shows these checks."
+    )
+
+
 @pytest.mark.parametrize(("failed", "part"), [("catches", "b"), ("random", "a")])
 def test_a_passed_part_gets_no_hint_because_of_a_later_part_that_was_not_judged(failed: str, part: str) -> None:
     of_a = ("dependencies", "entry-point", "catcher-entry-point", "start", "spawns", "topic", "announces", "removes")

@@ -231,8 +231,8 @@ def test_the_page_has_nothing_that_differs_from_run_to_run() -> None:
 def test_the_page_says_what_a_full_recording_left_out() -> None:
     assert "The recording was full" not in page_of(evidence(good()))
     full = replace(good(), dropped=1, interventions_dropped=300, graph_dropped=20)
-    reported = "It does not contain 1 message, 300 calls to the simulator&#39;s services and 20 parts of the graph."
-    assert reported in page_of(evidence(full))
+    reported = "1 message, 300 calls to the simulator&#39;s services and actions and 20 parts of the graph."
+    assert f"It does not contain {reported}" in page_of(evidence(full))
 
 
 def test_each_trial_of_an_exercise_is_shown() -> None:

@@ -176,7 +176,7 @@ def test_advice_looks_different_from_a_failure() -> None:
 
 def test_the_seed_and_the_recording_are_printed() -> None:
     text = reported(report("passed", seed=7, recording="kept/here"))
-    assert "The turtle's random start pose was generated with seed 7.\nRecording: kept/here\n" in text
+    assert "The random inputs of the trials were generated with seed 7.\nRecording: kept/here\n" in text
 
 
 HOSTILE = st.text(alphabet=st.sampled_from("ab\x1b[]{}/\\\n\r\t\u202e\x9b\x07:red%") | st.characters(), max_size=80)

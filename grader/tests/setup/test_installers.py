@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from grader.setup import install, installers
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 LATER = {"_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
 
@@ -43,15 +40,29 @@ def test_only_mirrors_and_certificates_are_kept_of_the_configuration_of_pip(tmp_
     for name, text in (
         (".pip", "[global]\ncert = /a b.pem\nindex-url = https://old/simple\ntarget = /tmp/t\n[wheel]\nproxy = p\n"),
         (".config/pip", "[install]\nindex-url = https://new/simple\nuser = true\nno-binary = :all:\n"),
-        ("malformed", "target = /tmp/t\n"),
+        ("malformed/pip", "target = /tmp/t\n"),
     ):
         (tmp_path / name).mkdir(parents=True)
         (tmp_path / name / "pip.conf").write_text(text)
-    env = {"HOME": str(tmp_path), "PIP_CONFIG_FILE": str(tmp_path / "malformed/pip.conf"), "XDG_CONFIG_DIRS": "/none"}
+    env = {"HOME": str(tmp_path), "XDG_CONFIG_DIRS": f"{tmp_path}/malformed"}
     kept = installers.of_configuration(env)
     assert kept.pop("PIP_CERT") == "/a b.pem"
     assert kept.pop("PIP_INDEX_URL") == "https://new/simple"
     assert not {"PIP_USER", "PIP_TARGET", "PIP_NO_BINARY", "PIP_PROXY"} & set(kept)
+
+
+def test_the_configuration_files_are_those_that_pip_reads_in_its_order(tmp_path: Path) -> None:
+    shared = [Path("/a/pip/pip.conf"), Path("/b/pip/pip.conf"), Path("/etc/pip.conf")]
+    own = [Path("/home/me/.pip/pip.conf"), Path("/home/me/.config/pip/pip.conf")]
+    chosen = tmp_path / "pip.conf"
+    env = {"HOME": "/home/me", "XDG_CONFIG_DIRS": "/a:/b"}
+    assert installers.configuration_files(env) == [*shared, *own]
+    env["PIP_CONFIG_FILE"] = str(chosen)
+    assert installers.configuration_files(env) == [*shared, *own, chosen]
+    chosen.touch()
+    assert installers.configuration_files(env) == [*shared, chosen]
+    env["PIP_CONFIG_FILE"] = "/dev/null"
+    assert installers.configuration_files(env) == []
 
 
 def test_pip_reads_no_configuration_file_of_another_project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
