@@ -48,17 +48,23 @@ def raise_lost_stops() -> None:
 
 
 def _raise_again(discarded: sys.UnraisableHookArgs) -> None:
-    lost = discarded.exc_value
-    if not isinstance(lost, KeyboardInterrupt):
+    if isinstance(discarded.exc_value, KeyboardInterrupt):
+        _raise_soon(discarded.exc_value)
+    else:
         sys.__unraisablehook__(discarded)
-        return
 
+
+def _raise_soon(lost: KeyboardInterrupt) -> None:
     def again(_number: int, _frame: FrameType | None) -> None:
         signal.signal(signal.SIGALRM, handler)
         signal.setitimer(signal.ITIMER_REAL, *rest)
         raise lost
 
-    # The command ends soon. Exceptions that Python discards until then are consequences of the interruption.
-    sys.unraisablehook = lambda _: None
+    def discard(discarded: sys.UnraisableHookArgs) -> None:
+        # The command ends soon, so other discarded exceptions are consequences of the interruption.
+        if discarded.exc_value is lost:
+            _raise_soon(lost)
+
+    sys.unraisablehook = discard
     handler = signal.signal(signal.SIGALRM, again)
     rest = signal.setitimer(signal.ITIMER_REAL, _SOON_S)

@@ -105,11 +105,6 @@ def receives(thread: str) -> bool:
     return of_dds(thread) and not thread.startswith(_DDS_TIMERS)
 
 
-def only_sends(thread: str) -> bool:
-    """Return whether a thread with this name belongs to Fast DDS and only sends data."""
-    return of_dds(thread) and not receives(thread)
-
-
 class Threads:
     """The threads of a process. If `wanted` is given, only the threads whose names `wanted` accepts are observed.
 
@@ -144,19 +139,23 @@ class Threads:
             GoneError: the process has exited.
         """
         for _ in range(100):
-            self._refresh()
+            main = self._refresh()
             try:
                 asleep, runs = True, []
-                for stat, schedstat in self._files.values():
+                for tid, (stat, schedstat) in self._files.items():
                     # Read the state first. If a thread is in state S but just falling asleep, its count changes a
                     # moment later.
-                    asleep &= _state(os.pread(stat, 64, 0)) == _SLEEPING
+                    asleep &= (main if tid == self.pid else _state(os.pread(stat, 64, 0))) == _SLEEPING
                     runs.append(os.pread(schedstat, 64, 0))
             except ProcessLookupError:  # a thread has exited in the meantime
                 self._count = b""
                 continue
             return Look(asleep, tuple(runs))
         raise GoneError
+
+    def only(self, look: Look, wanted: Callable[[str], bool]) -> tuple[bytes, ...]:
+        """Return the schedstat lines of the last observation's threads whose names `wanted` accepts."""
+        return tuple([run for tid, run in zip(self._files, look.runs, strict=True) if wanted(self._names[tid])])
 
     def runs(self) -> tuple[bytes, ...]:
         """Return the schedstat lines of the last observation's threads (see `Look`), or () if one of them has exited.
@@ -213,15 +212,17 @@ class Threads:
             found.append(_wait(tid, self._names[tid], words))
         return found
 
-    def _refresh(self) -> None:
+    def _refresh(self) -> int:
+        """Find the threads of the process, unless their number is unchanged. Return the state of the main thread."""
         try:
             fields = _fields(os.pread(self._main, 512, 0))
         except ProcessLookupError:
             raise GoneError from None
-        if fields[0] in (b"Z", b"X"):
+        state = fields[0][0]
+        if state in b"ZX":
             raise GoneError
         if fields[17] == self._count and self._files:
-            return
+            return state
         try:
             tids = {int(task.name) for task in Path(f"/proc/{self.pid}/task").iterdir()}
         except FileNotFoundError:
@@ -233,6 +234,7 @@ class Threads:
         for tid in sorted(tids - set(self._names)):
             self._add(tid)
         self._count = fields[17]
+        return state
 
     def _add(self, tid: int) -> None:
         try:
@@ -270,8 +272,8 @@ def _state(stat: bytes) -> int:
 
 
 def _fields(stat: bytes) -> list[bytes]:
-    # The fields from the state, [0], onwards. [17] is the number of threads.
-    return stat[stat.rindex(b")") + 2 :].split()
+    # The fields from the state, [0], to the number of threads, [17].
+    return stat[stat.rindex(b")") + 2 :].split(b" ", 18)
 
 
 def _wait(tid: int, thread: str, words: list[str]) -> Wait:

@@ -17,9 +17,10 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 from rosgraph_msgs.msg import Clock
 
+from grader.common.linux_calls import sleep_precisely
 from grader.trial.node_group import GroupThreads
 from grader.trial.patience import HandshakePatience, TickPatience
-from grader.trial.rest import HIDDEN, DoubtError, GoneError, Threads, not_of_dds, of_dds, only_sends, receives
+from grader.trial.rest import HIDDEN, DoubtError, GoneError, Threads, not_of_dds, of_dds, receives
 from grader.trial.simulation import Simulation
 from grader.turtlesim.turtle import FRAME_S
 
@@ -32,9 +33,8 @@ if TYPE_CHECKING:
     from grader.trial.recording import Pose
 
 QUIET_S = 0.02
-"""The time without discovery traffic after which discovery counts as finished (s). The value is less than half the time
-between two announcements (fastdds.xml). If the value were larger, the announcements of the simulator and the node might
-leave no gap of this length for many seconds."""
+"""The time without discovery traffic after which discovery counts as finished (s). The simulator and the node must
+leave gaps of this length, so it is less than half the time between two announcements (fastdds.xml)."""
 WAKE_S = 1.0
 """The maximum time to wait until each node has reacted to /clock at time 0 (s). A node that uses create_rate never
 reacts."""
@@ -88,6 +88,7 @@ class SimulatedTrial(Simulation):
         Raises:
             DoubtError: simulated time may misjudge the node, and the plan sets `stop_at_doubt`.
         """
+        sleep_precisely()
         try:
             self.lap("start")
             self._handshake()
@@ -138,8 +139,7 @@ class SimulatedTrial(Simulation):
 
     def _watch(self) -> None:
         self._node = GroupThreads(self.node.pids)
-        self._receivers = Threads(os.getpid(), receives)
-        self._senders = Threads(os.getpid(), only_sends)
+        self._own = Threads(os.getpid(), of_dds)
         self._received: tuple[bytes, ...] = ()
         self._handled: tuple[bytes, ...] = ()
 
@@ -156,18 +156,18 @@ class SimulatedTrial(Simulation):
                 before = None
                 time.sleep(_POLL_S)
             elif before is None:
-                before, equal = self._node.runs() + self._receivers.runs() + self._senders.runs(), 0
+                before, equal = self._node.runs() + self._own.runs(), 0
                 continue
             else:
-                node, receivers, senders = self._node.look(), self._receivers.look(), self._senders.look()
-                runs = node.runs + receivers.runs + senders.runs
-                asleep = node.asleep and receivers.asleep and senders.asleep
+                node, own = self._node.look(), self._own.look()
+                runs = node.runs + own.runs
+                asleep = node.asleep and own.asleep
                 if asleep and runs == before:
                     equal += 1
                     if equal < (1 if node.counted else 3):
                         continue
                     if not self.node.waited_to_write(self.node.read_output(self._now_s)):
-                        self._received = receivers.runs
+                        self._received = self._own.only(own, receives)
                         return True
                 before, equal = runs, 0
                 if not asleep:
