@@ -131,7 +131,9 @@ def check(
     with progress() as tell:
         graded = grade(requested, opened, options, tell, early=lambda failed: tell.keep_all(early(failed)), build=build)
         if recording:
-            recording_format.save(recording, graded.evidence, graded.report.ros, graded.prefixes)
+            recording_format.save(
+                recording, graded.evidence, graded.report.ros, graded.prefixes, confined=graded.report.confined
+            )
     from grader.learner import steps
 
     following = steps.note(requested, opened.package_dir, graded.report)
@@ -165,7 +167,7 @@ def regrade(
         check_writable(file)
     other = find_exercise(exercise) if exercise else None
     kept, outcomes = read(_judged, recording, (lambda _: other) if other else load_exercise)
-    report = report_of(kept.evidence, outcomes, kept.ros, {})
+    report = report_of(kept.evidence, outcomes, kept.ros, {}, confined=kept.confined)
     _show(report, kept.evidence, json, image, html, verbose=verbose)
 
 

@@ -5,7 +5,8 @@
                      instead, if the student's tests were run
     build.json       the result of the build
     tries.json       the fixes that were tested, with their results; only for instructors, since it shows solutions
-    submission.json  name, student, digest and paths, the version of ROS 2, and what could not be read or run
+    submission.json  name, student, digest and paths, the version of ROS 2, whether the code ran in a sandbox, and what
+                     could not be read or run
     source/          the files of the submission
     exercise/        the exercise at that time: exercise.toml
     COLCON_IGNORE    so that colcon never runs the submission's setup.py
@@ -54,10 +55,14 @@ class Archived:
 
     evidence: Evidence
     ros: str
+    confined: bool | None
+    """Whether the code ran in a sandbox, or None if the archive does not say so: it is from an earlier version."""
 
 
-def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -> None:
+def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path], *, confined: bool | None = True) -> None:
     """Write the evidence to a folder, which must be new or empty. `prefixes` are the folders with the .msg files.
+
+    `confined` is whether the code ran in a sandbox, as in the report.
 
     Raises:
         UsageError: the path is a file, or a folder that is not empty.
@@ -72,7 +77,7 @@ def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -
         write_copy(submission, folder / "source" / submission.package_dir.name)
         (folder / "exercise").mkdir()
         shutil.copyfile(evidence.exercise.folder / FILE_NAME, folder / "exercise" / FILE_NAME)
-        _write(folder / "submission.json", _about(evidence, ros))
+        _write(folder / "submission.json", _about(evidence, ros, confined))
         if evidence.build is not None:
             _write(folder / "build.json", {"schema": _SCHEMA, **asdict(evidence.build)})
         if evidence.tries != Tries():
@@ -155,7 +160,7 @@ def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
             executable=opened.executable,
             student=text_or_none(about.get("student")),
         )
-        ros = text(about["ros"])
+        ros, confined = text(about["ros"]), _true_or_false(about.get("confined"))
         build = _build(_read(folder / "build.json")) if (folder / "build.json").exists() else None
         fault = _fault(**about["fault"]) if about["fault"] else None
         tries = _tries(_read(folder / "tries.json")) if (folder / "tries.json").exists() else Tries()
@@ -176,10 +181,10 @@ def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
             f"the grader ({why})."
         )
         raise UsageError(message) from error
-    return Archived(Evidence(kept, submission, build, runs, fault, tries), ros)
+    return Archived(Evidence(kept, submission, build, runs, fault, tries), ros, confined)
 
 
-def _about(evidence: Evidence, ros: str) -> dict[str, Any]:
+def _about(evidence: Evidence, ros: str, confined: bool | None) -> dict[str, Any]:
     submission = evidence.submission
     return {
         "schema": _SCHEMA,
@@ -190,9 +195,17 @@ def _about(evidence: Evidence, ros: str) -> dict[str, Any]:
         "student": submission.student,
         "files": [os.fsencode(path).decode("utf-8", "backslashreplace") for path in submission.files],
         "ros": ros,
+        "confined": confined,
         "fault": asdict(evidence.fault) if evidence.fault else None,
         "runs": {trial: {"overwhelmed": run.overwhelmed} for trial, run in evidence.runs.items()},
     }
+
+
+def _true_or_false(value: object) -> bool | None:
+    if value is not None and not isinstance(value, bool):
+        problem = f"{value!r:.40} is neither true nor false"
+        raise ValueError(problem)
+    return value
 
 
 def _fault(stage: Stage, message: object, *, unreadable: bool) -> Fault:

@@ -19,7 +19,7 @@ from grader.report.html_page import make_page, save_page
 from grader.report.html_run import runs_of
 from grader.report.logs import logs_of
 from grader.report.plain import plain_line
-from grader.report.verdict import UNCONFINED, tone, verdict
+from grader.report.verdict import sandbox_note, tone, verdict
 from grader.submission.reader import read
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ def _page(evidence: Evidence, report: Report) -> str:
     unmade = [check for check in shown if check.kind == "error" and check.outcome.finding.observed == fault]
     values = {
         "report": report,
-        "unconfined": UNCONFINED,
+        "sandbox_note": sandbox_note(report),
         "verdict": verdict(report),
         "tone": tone(report),
         "to_fix": [each for each in shown if each.kind in ("failed", "error", "advice") and each not in unmade],

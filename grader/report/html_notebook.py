@@ -14,7 +14,7 @@ from grader.errors import UnreadableError
 from grader.report.escaped_template import compiled, fill
 from grader.report.html import ShownCheck, without_content
 from grader.report.html_run import runs_of
-from grader.report.verdict import UNCONFINED, tone, verdict
+from grader.report.verdict import sandbox_note, tone, verdict
 from grader.submission.reader import read
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def _fragment(evidence: Evidence, report: Report) -> str:
     worth = [o for o in report.outcomes if o.max or o.status is not Status.PASSED]
     values = {
         "report": report,
-        "unconfined": UNCONFINED,
+        "sandbox_note": sandbox_note(report),
         "verdict": verdict(report),
         "tone": tone(report),
         "checks": [ShownCheck(number, outcome) for number, outcome in enumerate(worth, 1)],

@@ -8,7 +8,8 @@ Schema 4. Every key except `change` is always present. Strings are never null un
     submission    {name as the user typed it, sha256 of its files}
     grader, ros   their versions
     clock         {used: "simulated" or "wall" ("none" when no trial ran), why: a sentence}
-    confined      false if the student's code ran without a sandbox, with resource limits only
+    confined      false if the student's code ran without a sandbox, with resource limits only; null if this is not
+                  known, in a report on a recording from an earlier version
     seed          the value of --seed, for random inputs such as the start pose; null without --seed
     points, max   sums over the outcomes; a check with status "error" counts 0 points
     outcomes      [{id, kind, title, status: "passed", "failed", "skipped" or "error", points, max, seen, expected,
@@ -128,7 +129,7 @@ def _report(data: dict[str, Any]) -> Report:
         ros=text(data["ros"]),
         clock=text(data["clock"]["used"]),
         clock_why=text(data["clock"]["why"]),
-        confined=True if data["schema"] == 1 else bool(data["confined"]),
+        confined=True if data["schema"] == 1 else None if data["confined"] is None else bool(data["confined"]),
         seed=whole_or_none(data["seed"]),
         outcomes=tuple(_read_outcome(each) for each in data["outcomes"]),
         seconds={text(stage): number(seconds) for stage, seconds in data["seconds"].items()},

@@ -33,8 +33,9 @@ class Report:
     seconds: dict[str, float] = field(default_factory=dict)
     """The wall time of each stage (s)."""
     recording: str | None = None
-    confined: bool = True
-    """False if the student's code ran outside a sandbox, with resource limits only."""
+    confined: bool | None = True
+    """False if the student's code ran outside a sandbox, with resource limits only. None if this is not known, because
+    the report is about a recording from an earlier version of the grader."""
     exercise_digest: str = ""
     """The sha256 of the exercise.toml with which this report was made."""
 
@@ -80,7 +81,12 @@ class Report:
 
 
 def report_of(
-    evidence: Evidence, outcomes: tuple[Outcome, ...], ros: str, seconds: dict[str, float], *, confined: bool = True
+    evidence: Evidence,
+    outcomes: tuple[Outcome, ...],
+    ros: str,
+    seconds: dict[str, float],
+    *,
+    confined: bool | None = True,
 ) -> Report:
     """Return the report on a submission, from its evidence and the outcomes of its checks.
 

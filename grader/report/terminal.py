@@ -15,7 +15,7 @@ from grader.checks.outcome import Outcome, Status
 from grader.common.standard_streams import has_signs
 from grader.common.words import count, printable
 from grader.report.certainty import cause_label
-from grader.report.verdict import UNCONFINED, tone, verdict
+from grader.report.verdict import sandbox_note, tone, verdict
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -170,8 +170,7 @@ def _footnotes(report: Report, *, verbose: bool) -> list[str]:
     notes = [] if simulated_alone and not verbose else [f"{clock}: {why}" if clock and why else clock or why]
     if report.seed is not None:
         notes.append(f"The random inputs of the trials were generated with seed {report.seed}.")
-    if not report.confined:
-        notes.append(UNCONFINED)
+    notes.append(sandbox_note(report))
     if report.recording is not None:
         notes.append(f"Recording: {printable(report.recording)}")
     return [note for note in notes if note]

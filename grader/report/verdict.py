@@ -14,6 +14,7 @@ UNCONFINED = (
     "The code ran without a sandbox, with limits on time, memory, processes and file size only: "
     "`grader doctor` says why."
 )
+UNKNOWN = "It is not known whether the code ran in a sandbox: the recording is from an earlier version of the grader."
 
 Tone = Literal["passed", "failed", "error"]
 
@@ -23,6 +24,11 @@ def tone(report: Report) -> Tone:
     if report.with_status(Status.ERROR):
         return "error"
     return "failed" if report.exit_code else "passed"
+
+
+def sandbox_note(report: Report) -> str:
+    """Return a sentence if the code ran without a sandbox, or if this is not known, or else an empty string."""
+    return {True: "", False: UNCONFINED, None: UNKNOWN}[report.confined]
 
 
 def verdict(report: Report) -> str:

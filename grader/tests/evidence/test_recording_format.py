@@ -49,6 +49,20 @@ def test_what_was_tried_comes_back_so_that_a_report_can_tell_it_again(tmp_path: 
     assert recording_format.load(tmp_path / "kept", lambda _: CHALLENGES).evidence.tries == tries
 
 
+def test_a_recording_says_whether_the_code_ran_in_a_sandbox(tmp_path: Path) -> None:
+    for confined in (True, False, None):
+        folder = tmp_path / str(confined)
+        recording_format.save(folder, some_trials(), "none", (), confined=confined)
+        assert recording_format.load(folder, lambda _: CHALLENGES).confined is confined
+    file = tmp_path / "True" / "submission.json"
+    about = json.loads(file.read_text())
+    file.write_text(json.dumps({name: value for name, value in about.items() if name != "confined"}))
+    assert recording_format.load(tmp_path / "True", lambda _: CHALLENGES).confined is None  # an earlier version
+    file.write_text(json.dumps({**about, "confined": "yes"}))
+    with pytest.raises(UsageError, match="'yes' is neither true nor false"):
+        recording_format.load(tmp_path / "True", lambda _: CHALLENGES)
+
+
 def test_a_recording_of_an_older_grader_is_refused(tmp_path: Path) -> None:
     recording_format.save(tmp_path / "kept", some_trials(), "none", ())
     file = tmp_path / "kept" / "submission.json"

@@ -49,10 +49,15 @@ def test_the_verdict_is_that_of_a_sandbox_and_the_report_says_so(
     confined = {**without, "PYTHONPATH": SOURCED_ENV.get("PYTHONPATH", "")}
     reports = []
     for name, env in (("without", without), ("within", confined)):
-        done = grader(env, "check", package, "--exercise", STEP, "--clock", clock, "--json", tmp_path / f"{name}.json")
+        report, kept = tmp_path / f"{name}.json", tmp_path / f"{name}.kept"
+        options = ("--exercise", STEP, "--clock", clock, "--json", report, "--recording", kept)
+        done = grader(env, "check", package, *options)
         assert done.returncode == 0, done.stdout + done.stderr
         assert ("without a sandbox" in done.stdout) == (name == "without")
-        reports.append(json.loads((tmp_path / f"{name}.json").read_text()))
+        reports.append(json.loads(report.read_text()))
+        done = grader(confined, "regrade", kept, "--json", report)
+        assert ("without a sandbox" in done.stdout) == (name == "without")
+        assert json.loads(report.read_text())["confined"] == (name == "within")
     assert alike(reports[0]) == alike(reports[1])
     assert [report["confined"] for report in reports] == [False, True]
 

@@ -28,8 +28,9 @@ def test_the_format_has_not_changed(status: str) -> None:
 
 @pytest.mark.parametrize("status", sorted(EVIDENCE))
 def test_a_report_survives_json_unchanged(status: str) -> None:
-    made = report(status, recording="kept/here", seed=7, confined=False)
-    assert from_json(to_json(made)) == made
+    for confined in (True, False, None):
+        made = report(status, recording="kept/here", seed=7, confined=confined)
+        assert from_json(to_json(made)) == made
 
 
 def test_a_report_of_an_older_schema_is_read() -> None:

@@ -13,7 +13,7 @@ from rich.console import Console
 from grader.checks.cause import Cause
 from grader.checks.outcome import Status, failed, passed
 from grader.report.terminal import HIDDEN, SAME, render
-from grader.report.verdict import UNCONFINED
+from grader.report.verdict import UNCONFINED, UNKNOWN
 from grader.submission.where import Where
 from grader.tests.report.reports import report
 
@@ -68,6 +68,8 @@ def test_a_run_without_a_sandbox_is_reported_in_one_line() -> None:
     lines = reported(report("passed", confined=False), width=200).splitlines()
     assert [line for line in lines if "sandbox" in line] == [UNCONFINED]
     assert "sandbox" not in reported(report("passed"))
+    lines = reported(report("passed", confined=None), width=200).splitlines()
+    assert [line for line in lines if "sandbox" in line] == [UNKNOWN]
 
 
 def worth(points: float, *, others: tuple[float, ...] = (100.0,)) -> Report:
