@@ -28,7 +28,7 @@ def run(args: argparse.Namespace) -> int:
     """Set all parameters. Return 0 even if the node rejects some of the parameters.
 
     Raises:
-        Ros2Error: the file cannot be read, or it is not a parameter file.
+        Ros2Error: the node does not exist or does not respond, the file cannot be read, or it is not a parameter file.
     """
     from grader.ros2.param.parameter_client import parameters_of
 
