@@ -1,12 +1,13 @@
-"""Measure how long the grader takes to find mistakes in files, and to check the slowest case in simulated time.
+"""Measure how long the grader takes to find mistakes in files, and how long a check of each case takes.
 
     python -m grader.benchmarks.mistakes [--only NNN ...]
 
 F is the cost of the same work without the grader: a colcon build of the package, and one process with one rclpy node
 for each trial of the exercise (benchmarks/bare.py). For example, 04-package-files has two trials, and 07-challenges has
 four. Each part of F is the median of three measurements. The speed of a machine varies during the minutes that this
-benchmark takes, so F is measured again after every few cases. A case that exceeds the target in the first measurement
-is measured three more times, each time immediately after F. The median of these three measurements is used.
+benchmark takes, so F is measured again after every few cases. Cases that need wall time are left out. A case that
+exceeds the target in the first measurement is measured three more times, each time immediately after F. The median of
+these three measurements is used.
 """
 
 from __future__ import annotations
