@@ -39,7 +39,7 @@ line."""
 
 @dataclass(frozen=True)
 class ShownCheck:
-    """A check as the page shows it. `above` is the number of an earlier check that shows the same lines of code."""
+    """A check as the page shows it. `above` is the number of an earlier check that shows the same line of code."""
 
     number: int
     outcome: Outcome

@@ -116,7 +116,7 @@ def start_fast(folder: Path) -> None:
 
 
 def ascii_only(lines: str) -> str:
-    """Return the lines of a .pth file in ASCII, without changing their meaning.
+    """Return the lines of a .pth file in ASCII, without changing their meaning. Lines that are not ASCII must be paths.
 
     With LC_ALL=C, or with a locale that the machine does not have, Python 3.10 to 3.12 reads .pth files as ASCII. If
     the path of the course contained other characters, no interpreter of .venv would start.

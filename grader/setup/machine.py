@@ -1,8 +1,8 @@
 """The properties of this machine (Pythons, a sourced ROS 2, system programs), and messages about missing programs.
 
-The set-up runs this module with any `python3`, before anything is installed. With an old Python, users must get a
-message instead of a SyntaxError. Therefore, this module and bootstrap.py use only the syntax of Python 3.6 and the
-standard library.
+The set-up uses this module with any `python3`, before anything is installed. With an old Python, users must get a
+message instead of a SyntaxError. Therefore, this module, bootstrap.py and all modules that they import use only the
+syntax of Python 3.6 and the standard library.
 """
 
 import json

@@ -1,7 +1,7 @@
 """Time limits for a node.
 
 The limits apply to CPU time and to the time for which the node sleeps, so the load of the machine has hardly any
-effect.
+effect. Only HANDSHAKE_S and TICK_S apply to wall time.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ TICK_CPU_S = 1.0
 """The maximum CPU time (s) that a node may use on one frame. If a node uses more, it is assumed never to become
 idle."""
 TICK_S = 30.0
+"""The maximum wall time for the node and the simulator to respond to each other in one frame (s)."""
 SHARED = 0.1
 """If a second thread did at least this share of the work, several threads kept the node from becoming idle."""
 REQUEST_EVERY_S = 0.02
