@@ -9,7 +9,8 @@ the benchmark prints how often each of these statements is true:
 
 - first: the first failed check names the cause and a line that must change;
 - at all: any failed check names the cause in this way;
-- false: a failed check names a wrong cause. A diagnosis that only repeats what was observed does not count.
+- false: a failed check names a wrong cause, or a false detail of a mistake. A diagnosis that only repeats what was
+  observed does not count.
 
 Each statement is checked in two ways: against the diagnoses that the operators expect, and against facts that do not
 depend on diagnoses (the difference between the two packages, the source and the recording;

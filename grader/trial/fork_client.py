@@ -1,4 +1,4 @@
-"""Request conductors and nodes from the fork servers of this process (grader.trial.fork_server)."""
+"""Request conductors and nodes from the fork servers (grader.trial.fork_server)."""
 
 from __future__ import annotations
 

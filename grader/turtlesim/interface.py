@@ -42,7 +42,7 @@ class Hooks:
     when a client calls a service ("spawn"), sends a goal ("rotate_absolute") or sets a parameter ("set_background" if
     only colours are set, otherwise "set_parameters"). `on_call(service, type, request, response, waited_s)` is called
     before the response to a call is sent, `waited_s` (s) after the call arrived. `on_goal(event)` is called for each
-    event of an action goal. If `late` is not None, it delays the responses.
+    event of an action goal. If `late` is not None, it delays the calls and their responses.
     """
 
     on_command: Callable[[str, bytes, Any], object]

@@ -69,7 +69,7 @@ class TurtlesimNode(Node):
 
         `Hooks` describes the callbacks. Pose and colour are published every `pose_every` frames, but the pose of
         turtle1 is not published before `pose_from_s` (s). The real turtlesim publishes both in each frame. Services
-        delay each response by `answers_after_s` (s). The turtles draw on `canvas`.
+        execute each call and respond to it `answers_after_s` (s) after it arrived. The turtles draw on `canvas`.
         """
         self._pose_every, self._pose_from_s = pose_every, pose_from_s
         self._late = LateAnswers(answers_after_s) if answers_after_s else None
