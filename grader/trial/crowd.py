@@ -72,8 +72,9 @@ class Stalls:
         """Return the stall since the last call, or None if there was none.
 
         In a stall, threads waited for a processor for more than STALL_S, or the hypervisor gave the processor to
-        another virtual machine for more than STALL_S. A late frame alone is not a stall, because a node that keeps the
-        simulator busy could cause the delay.
+        another virtual machine for more than STALL_S. If the node kept a processor busy (OWN_DOING), the waits of the
+        threads do not count. A late frame alone is not a stall, because a node that keeps the simulator busy could
+        cause the delay.
         """
         passed_s = max(now_s - self._since_s, 1e-3)
         now = [_times(threads) for threads in self._parts]

@@ -83,7 +83,7 @@ def answer_text(evidence: Evidence, params: OneOf) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class AllOf:
-    """The strings that the student's list must contain, in any order. The list must not contain any other string."""
+    """The strings that the student's list must contain, in any order and with any capitals, and no other string."""
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
     items: tuple[str, ...] = strings(about="All items of the right answer, in any order.")
@@ -279,7 +279,7 @@ LIST = Kind(
     "The answers are right",
     AllOf,
     answer_list,
-    about="The answer is a list of exactly the given strings, in any order.",
+    about="The answer is a list of the given strings and no others, in any order. Upper and lower case do not matter.",
 )
 GRAPH = Kind(
     "answer_graph",
@@ -287,7 +287,8 @@ GRAPH = Kind(
     "The answer matches the ROS graph",
     GraphQuestion,
     answer_graph,
-    about="The answer matches the ROS graph during the trial.",
+    about="The answer matches the ROS graph during the trial. The topics /rosout, /parameter_events and /clock count "
+    "only if the question asks for nodes.",
 )
 RATE = Kind(
     "answer_rate",
