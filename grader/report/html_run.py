@@ -129,6 +129,9 @@ def _end(evidence: Evidence) -> str:
     end = evidence.recording.end
     # If a signal terminated the process, a shell reports 128 plus the signal's number as the exit code.
     code = end.exit_code if end.exit_code >= 0 else 128 - end.exit_code
+    if end.out_of is not None:
+        when = f" after {end.t_s:.1f} s" if end.by == "itself" else ""
+        return f"The node was killed{when}, because it used all the {end.out_of} that a node may use."
     if end.by == "itself":
         return f"The node exited on its own after {end.t_s:.1f} s, with exit code {code}."
     when = {"SIGINT": "on Ctrl-C", "SIGTERM": "only on SIGTERM", "SIGKILL": "only when it was killed (SIGKILL)"}[end.by]

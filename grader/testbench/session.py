@@ -174,7 +174,7 @@ def _new_cell(order: dict[str, Any]) -> Holder:
 
 
 def _run_tests(order: dict[str, Any], source: bytes, workspace: Path, asks: int, answers: int) -> NoReturn:
-    """Run the tests of the package as `colcon test` does: pytest, in the folder of the package."""
+    """Run the tests as `colcon test` does, with pytest in the folder of the package, but stop at the first failure."""
     code: int = 1
     try:
         os.setsid()

@@ -132,12 +132,12 @@ class Output:
 class ProcessEnd:
     """The end of the node's process.
 
-    `by` is what stopped the process: "itself" (before the scenario was over), or a signal that the grader sent to end
-    the scenario. `out_of` is set if the grader or the kernel stopped the process because it used more "memory",
-    "processes" or "files" than a node may use. `stop_s` is the time from SIGINT to the exit of the process (s of wall
-    time, without the time for which it waited for a processor), or None if the process exited on its own. `t_s` is the
-    time of SIGINT or, if the process exited on its own, the time of its exit (s on the trial's clock). `exit_code` is
-    negative for a signal, as in subprocess.
+    `by` is "itself" if the process ended before the scenario was over, on its own or because of `out_of`. Otherwise,
+    `by` is the last signal that the grader sent to end the scenario. `out_of` is set if the grader or the kernel
+    stopped the process because it used more "memory", "processes" or "files" than a node may use. `stop_s` is the time
+    from SIGINT to the exit of the process (s of wall time, without the time for which it waited for a processor), or
+    None if `by` is "itself". `t_s` is the time of SIGINT or, if `by` is "itself", the time of the exit (s on the
+    trial's clock). `exit_code` is negative for a signal, as in subprocess.
     """
 
     by: Literal["itself", "SIGINT", "SIGTERM", "SIGKILL"]
