@@ -12,7 +12,6 @@ import os
 import time
 from typing import TYPE_CHECKING
 
-from builtin_interfaces.msg import Time
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 from rosgraph_msgs.msg import Clock
@@ -36,8 +35,7 @@ QUIET_S = 0.02
 """The time without discovery traffic after which discovery counts as finished (s). The simulator and the node must
 leave gaps of this length, so it is less than half the time between two announcements (fastdds.xml)."""
 WAKE_S = 1.0
-"""The maximum time to wait until each node has reacted to /clock at time 0 (s). A node that uses create_rate never
-reacts."""
+"""The maximum time to wait until each node has reacted to /clock at time 0 (s)."""
 MOST_CPU = 2.0
 """If the CPU time of a node exceeds this multiple of the trial's duration, the node would also be too slow in wall
 time. Therefore, its result must come from a trial in wall time."""
@@ -77,6 +75,7 @@ class SimulatedTrial(Simulation):
         super().__init__(node, start, prefixes, inputs, judged)
         qos = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
         self._clock = self.recorder.create_publisher(Clock, "/clock", qos)
+        self._time = Clock()
 
     def now(self) -> float:
         """Return the current time on /clock (s)."""
@@ -98,7 +97,7 @@ class SimulatedTrial(Simulation):
                 self._settle()
                 self._await_leaver()
                 if frame % OWN_EVERY == 0:
-                    self._take_in()
+                    self._take_in(requests=False)
                 if frame % GRAPH_EVERY == 0:
                     self.spin()
                     self.follow_graph()
@@ -132,8 +131,9 @@ class SimulatedTrial(Simulation):
         self._publish_clock(now_s)
 
     def _publish_clock(self, now_s: float) -> None:
-        sec, nanosec = divmod(round(now_s * 1e9), 1_000_000_000)
-        self._clock.publish(Clock(clock=Time(sec=sec, nanosec=nanosec)))
+        stamp = self._time.clock
+        stamp.sec, stamp.nanosec = divmod(round(now_s * 1e9), 1_000_000_000)
+        self._clock.publish(self._time)
 
     # --- rest -------------------------------------------------------------------------------------------------
 
@@ -194,11 +194,11 @@ class SimulatedTrial(Simulation):
             if not self._take_in():
                 return
 
-    def _take_in(self) -> bool:
-        """Handle everything that has arrived. Return whether the node may react to anything that arrived."""
+    def _take_in(self, *, requests: bool = True) -> bool:
+        """Handle everything that has arrived, or all but requests. Return whether the node may react to any of it."""
         # Plain messages and acknowledgements get no response, so the node stays idle.
         if not self.may_act():
-            return self.take_in() > 0
+            return self.take_in(requests=requests) > 0
         return not all(isinstance(source, Subscription) for source in self.spin())
 
     # --- handshake --------------------------------------------------------------------------------------------

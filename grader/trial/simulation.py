@@ -191,14 +191,14 @@ class Simulation:
         count = self.turtlesim.handle.get_count_clients
         return any(count(name) for name in self._actions)
 
-    def take_in(self) -> int:
-        """Handle the messages and the requests that have arrived. Return the number of requests that were handled."""
+    def take_in(self, *, requests: bool = True) -> int:
+        """Handle the messages and, with `requests`, the requests that have arrived. Return the number of requests."""
         answered = 0
         while answered < MOST_AT_ONCE:
-            for node in self._nodes:
-                for subscription in list(node.subscriptions):
-                    take_messages(subscription)
-            more = sum(take_requests(service) for node in self._nodes for service in list(node.services))
+            for subscription in [each for node in self._nodes for each in node.subscriptions]:
+                take_messages(subscription)
+            services = [service for node in self._nodes for service in node.services] if requests else []
+            more = sum(map(take_requests, services))
             if not more:
                 break
             # While the simulator answers a request, it may log something that the recorder receives.

@@ -21,8 +21,8 @@ SILENT_S = 2.0
 ALSO_S = 0.05
 """Anything that arrives within this time (s) after a response may have been sent before the response."""
 SAME_GROUP = (
-    "Several threads do not help here. The executor never runs two callbacks of the same callback group at the same "
-    "time, so nothing receives the response: a deadlock. Use call_async, or give the client its own callback group."
+    "Several threads do not help here. By default, callbacks of the same callback group never run at the same time, "
+    "so nothing receives the response: a deadlock. Use call_async, or give the client its own callback group."
 )
 
 
