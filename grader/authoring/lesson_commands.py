@@ -1,7 +1,8 @@
 """Check the commands in the console and shell blocks of a lesson without running them.
 
 Each command line of `grader`, `ros2` or `colcon` is parsed by the parser of this command: the subcommand and the
-options must exist. If a command of `grader` contains the name of a step, this step must exist in the course.
+options must exist. If a command of `grader` contains the name of a step, this step must exist in the course. If a
+command is `ros2 run`, the step's solution or the course's turtlesim must have the executable.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from typer.exceptions import TyperException
 
 from grader.authoring.console_blocks import blocks
 from grader.authoring.parse_colcon import colcon_faults
+from grader.authoring.solution_programs import Programs, programs_of, why_not_started
 from grader.common.words import a_list
 from grader.errors import GraderError
 from grader.exercise.model import catalogue
@@ -37,11 +39,13 @@ _SET = re.compile(r"[A-Za-z_]\w*=.*", re.DOTALL)
 _HELP = ("-h", "--help")
 
 
-def command_problems(markdown: str, course: Path, app: typer.Typer) -> Iterator[str]:
+def command_problems(markdown: str, course: Path, app: typer.Typer, step: str | None = None) -> Iterator[str]:
     """Yield a sentence for each invalid command in the console and shell blocks.
 
-    `course` is the folder course/, and `app` is the command `grader`.
+    `course` is the folder course/, and `app` is the command `grader`. `step` is the step of a lesson; without it,
+    `ros2 run` may start the executables of all steps.
     """
+    programs = programs_of(course, step)
     of_colcon: list[tuple[str, list[str]]] = []
     for line in _lines(markdown):
         try:
@@ -52,7 +56,7 @@ def command_problems(markdown: str, course: Path, app: typer.Typer) -> Iterator[
         for name, *words in commands:
             if name == "colcon":
                 of_colcon.append((line, words))
-            fault = _grader_fault(words, course, app) if name == "grader" else _ros2_fault(words, name)
+            fault = _grader_fault(words, course, app) if name == "grader" else _ros2_fault(words, name, programs)
             if fault:
                 yield _sentence(line, fault)
     faults = colcon_faults([words for _, words in of_colcon]) if of_colcon else []
@@ -144,11 +148,14 @@ def _brief(message: str) -> str:
     return " ".join(text.split())
 
 
-def _ros2_fault(words: Sequence[str], name: str) -> str:
+def _ros2_fault(words: Sequence[str], name: str, programs: Programs) -> str:
     if name != "ros2" or set(words) & set(_HELP):
         return ""
     try:
         parsed = make_parser(words, _Strict).parse_args(words)
     except ValueError as error:
         return "" if "does not exist" in str(error) else str(error)  # a lesson's bag exists only after its commands
-    return "the course's ros2 does not support it." if parsed.run is unsupported.run else ""
+    if parsed.run is unsupported.run:
+        return "the course's ros2 does not support it."
+    executable = getattr(parsed, "executable_name", None)
+    return why_not_started(parsed.package_name, executable, programs) if executable else ""

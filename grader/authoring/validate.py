@@ -169,7 +169,7 @@ def lesson_problems(file: Path, app: typer.Typer) -> Iterator[str]:
             and not (file.parent / target.partition("#")[0]).exists()
         ):
             yield f"{file} links to {target}, which does not exist."
-    yield from (f"{file}: {problem}" for problem in command_problems(text, file.parent.parent, app))
+    yield from (f"{file}: {problem}" for problem in command_problems(text, file.parent.parent, app, file.parent.name))
 
 
 def _notebook(solution: Path) -> Iterator[str]:

@@ -82,6 +82,7 @@ OURS = {
     ("session", "main"): "a request of the lane, in a cell",
     ("results", "load"): "our own result",
     ("build_store", "_unpacked"): "a build that we stored",
+    ("solution_programs", "_packages"): "a solution",
     ("source", "refreshed"): "a notebook of the course",
     ("trial", "_answer"): "the output of the conductor",
     ("runner", "_pack"): "a stream that we write",

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import pytest
 
 from grader.authoring.lesson_commands import command_problems, simple_commands
+from grader.authoring.solution_programs import TURTLESIM, programs_of
 from grader.cli import app
 from grader.exercise.model import course_folder
+from grader.ros.index import executables_in
+from grader.ros.installation import find_ros
+from grader.ros.underlay import with_turtlesim
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 def problems(*lines: str, language: str = "console") -> list[str]:
@@ -29,6 +38,18 @@ def problems(*lines: str, language: str = "console") -> list[str]:
         ("ros2 topic lst", "there is no lst. Did you mean 'list'?"),
         ("ros2 topic echo /a --onec", "unrecognized arguments: --onec."),
         ("ros2 topic echo", "the following arguments are required: topic_name."),
+        (
+            "ros2 run turtlesim turtlesim",
+            "the package turtlesim has no executable 'turtlesim'. Did you mean 'turtlesim_node'?",
+        ),
+        (
+            "ros2 run turtlesm mimic",
+            "the package 'turtlesm' is not my_robot_controller or turtlesim. Did you mean 'turtlesim'?",
+        ),
+        (
+            "ros2 run --prefix nice my_robot_controller catchr",
+            "the package my_robot_controller has no executable 'catchr'. Did you mean 'catcher'?",
+        ),
         ("ros2 launch x y", "the course's ros2 does not support it."),
         ("colcon biuld", "there is no biuld. Did you mean 'build'?"),
         ("cd src && colcon build --symlnk", "unrecognized arguments: --symlnk."),
@@ -49,6 +70,27 @@ def test_right_commands_are_not_reported() -> None:
         'ros2 topic pub -r 10 /turtle1/cmd_vel geometry_msgs/msg/Twist "{linear: {x: 1.0}, angular: {z: 0.7}}"',
     ]
     assert problems(*(f"$ {line}" for line in lines), "grader chekc") == []  # the last line is output
+
+
+def test_a_lesson_starts_only_what_its_own_solution_has() -> None:
+    lesson = "```console\n$ ros2 run my_robot_controller catcher\n```\n```bash\nros2 run turtlesim mimic\n```\n"
+    assert list(command_problems(lesson, course_folder(), app, "13-catch-them-all")) == []
+    (problem,) = command_problems(lesson, course_folder(), app, "05-build-and-run")
+    assert "the package my_robot_controller has no executable 'catcher'." in problem
+    assert list(command_problems(lesson, course_folder(), app, "02-discover-topics")) == []  # it has no package
+
+
+def test_without_solutions_executables_are_not_checked(tmp_path: Path) -> None:
+    assert programs_of(tmp_path / "course", "05-build-and-run") == {}
+    assert list(command_problems("```console\n$ ros2 run a b\n```\n", tmp_path / "course", app)) == []
+
+
+def test_the_executables_of_turtlesim_are_those_of_the_course() -> None:
+    built = course_folder().parent / "grader/turtlesim/package/CMakeLists.txt"
+    assert all(name in built.read_text() for name in TURTLESIM)
+    ros = with_turtlesim(find_ros(), lambda _: None)
+    folders = [prefix / "lib/turtlesim" for prefix in ros.all_prefixes]
+    assert {file.name for folder in folders if folder.is_dir() for file in executables_in(folder)} == TURTLESIM
 
 
 def test_only_blocks_for_a_shell_contain_commands() -> None:

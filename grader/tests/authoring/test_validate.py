@@ -154,6 +154,16 @@ def test_a_starting_point_that_fails_nothing_is_reported(root: Path) -> None:
     assert problems(root) == [reported]
 
 
+def test_an_executable_that_the_solution_does_not_have_is_reported(root: Path) -> None:
+    lesson = root / "course" / NEW / "lesson.md"
+    good = lesson.read_text()
+    lesson.write_text(good + "\n```console\n$ ros2 run my_robot_controller straight_on\n```\n")
+    assert list(lesson_problems(lesson, app)) == []
+    lesson.write_text(good + "\n```console\n$ ros2 run my_robot_controller draw_circle\n```\n")
+    (problem,) = lesson_problems(lesson, app)
+    assert problem.endswith("is not a valid command: the package my_robot_controller has no executable 'draw_circle'.")
+
+
 def test_a_lesson_of_one_word_has_1_word(tmp_path: Path) -> None:
     (tmp_path / "lesson.md").write_text("Short.\n")
     (problem,) = lesson_problems(tmp_path / "lesson.md", app)
