@@ -105,7 +105,7 @@ class Bridge:
 
 
 def main() -> None:
-    """Start the kernel and forward its messages until the kernel exits."""
+    """Start the kernel and forward its messages until the kernel exits or standard input ends."""
     folder, workspace = sys.argv[1:]
     unpacker, orders = Unpacker(), list[tuple[int, list[bytes]]]()
     while not orders:

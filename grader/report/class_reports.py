@@ -53,7 +53,7 @@ class Entry:
     name: str
     link: str
     attention: str = ""
-    """The reason why an instructor should check the submission."""
+    """The reason why an instructor should check the submission, or an empty string."""
 
     @property
     def share(self) -> float:

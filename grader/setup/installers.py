@@ -65,6 +65,6 @@ def configuration_files(env: Mapping[str, str], root: Path = Path("/")) -> List[
     shared = (env.get("XDG_CONFIG_DIRS") or "/etc/xdg").split(os.pathsep)
     own = Path(env.get("XDG_CONFIG_HOME") or home / ".config")
     files = [*(root / place[1:] / "pip/pip.conf" for place in shared), root / "etc/pip.conf"]
-    if not (chosen and Path(chosen).exists()):
+    if not (chosen and os.path.exists(chosen)):  # noqa: PTH110 - like pip, without an error for a closed folder
         files += [home / ".pip/pip.conf", own / "pip/pip.conf"]
     return files + ([Path(chosen)] if chosen else [])
