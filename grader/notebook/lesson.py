@@ -1,4 +1,4 @@
-"""`%lesson`: show the lesson of the notebook's step below the cell."""
+"""`%lesson`: show the lesson of the notebook's step, or of the named step, below the cell."""
 
 from __future__ import annotations
 
