@@ -1,26 +1,33 @@
-"""Unpack a student's archive into a temporary folder.
+"""Copy a student's archive, and unpack the copy into a temporary folder.
 
-The archive is read in the process that reads students' files (unpack.py). This module writes the result to the folder.
+The student can replace the archive at any time, so the copy is hashed while it is made: the hash is always that of the
+files that are graded. The copy is read in the process that reads students' files (unpack.py). This module writes the
+result to the folder.
 """
 
 from __future__ import annotations
 
 import errno
+import hashlib
 import os
 import tempfile
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
 from grader.classroom.unpack import (
+    MOST_PACKED,
     ArchiveFormatError,
     DamagedArchiveError,
     LargeArchiveError,
     Member,
+    not_opened,
     read_archive,
+    too_large,
 )
 from grader.errors import DiskError, TooLargeError
-from grader.submission import reader
+from grader.submission import reader, tree
 from grader.submission.tree import shown
 
 if TYPE_CHECKING:
@@ -30,6 +37,7 @@ ENDINGS = (".zip", ".tar.gz", ".tgz", ".tar")
 OTHER_ENDINGS = (".7z", ".rar", ".tar.xz", ".tar.bz2", ".tar.zst", ".gz", ".xz", ".bz2")
 """Formats of archives that students sometimes hand in, although these formats are not supported."""
 EVERY_ENDING = (*ENDINGS, *OTHER_ENDINGS)
+_CHUNK = 1024 * 1024
 OF_THE_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS)
 
 
@@ -37,6 +45,105 @@ def stem(name: str) -> str | None:
     """Return the name of an archive without its extension, or None if the file is not an archive."""
     ending = next((each for each in EVERY_ENDING if name.lower().endswith(each)), None)
     return name[: -len(ending)] or None if ending else None
+
+
+@dataclass(frozen=True)
+class Copy:
+    """A copy of an archive in a folder of the grader. `sha256` is the hash of its name and its content.
+
+    If the archive could not be read, `error` is the reason. Then `sha256` is the hash of the reason, or of the first
+    part of an archive that is too large to be unpacked.
+    """
+
+    file: Path
+    name: str
+    """The name of the archive. The name of the copy is our own, since the disk for temporary files may not accept any
+    name."""
+    sha256: str
+    error: Exception | None
+
+    @contextmanager
+    def unpacked(self) -> Iterator[Path]:
+        """Yield a temporary folder with the content of the archive. Raises the same errors as `unpacked`."""
+        if self.error is not None:
+            raise not_opened(self.error, self.name) from self.error
+        with unpacked(self.file) as folder:
+            yield folder
+
+
+@contextmanager
+def copied(archive: Path) -> Iterator[Copy]:
+    """Yield a copy of the archive. The absolute path of the archive must not contain a link.
+
+    Raises:
+        DiskError: the disk for temporary files failed.
+    """
+    with _temporary_folder() as folder:
+        ending = next((each for each in ENDINGS if archive.name.lower().endswith(each)), "")
+        file = folder / f"archive{ending}"
+        with _file_of_ours(file) as target:
+            sha256, error = _hashed(archive, target if ending else None)
+        yield Copy(file, archive.name, sha256, error)
+
+
+def sha256_of(archive: Path) -> str:
+    """Return the hash that a copy of the archive would have now, without making one."""
+    return _hashed(archive)[0]
+
+
+def _hashed(archive: Path, target: IO[bytes] | None = None) -> tuple[str, Exception | None]:
+    """Return the hash of an archive, and why it cannot be unpacked. Write what is hashed to `target`."""
+    whole = hashlib.sha256(archive.name.encode("utf-8", "surrogateescape") + b"\0")
+    size = 0
+    try:
+        with tree.open_file(archive, at=archive) as file:
+            # If the archive is too large to be unpacked, hashing this part of it is enough.
+            while size <= MOST_PACKED and (data := file.read(_CHUNK)):
+                size += len(data)
+                whole.update(data)
+                if target is not None:
+                    _write_to(target, data)
+    except (OSError, ValueError) as error:
+        whole.update(f"cannot be read: {error}".encode())
+        return whole.hexdigest(), error
+    return whole.hexdigest(), too_large() if size > MOST_PACKED else None
+
+
+@contextmanager
+def _temporary_folder() -> Iterator[Path]:
+    try:
+        made = tempfile.TemporaryDirectory(prefix="grader-unpacked-")
+    except OSError as error:
+        raise _disk_error(error) from error
+    with made as named:
+        yield Path(os.path.realpath(named))
+
+
+@contextmanager
+def _file_of_ours(file: Path) -> Iterator[IO[bytes]]:
+    try:
+        opened = file.open("xb", buffering=0)
+    except OSError as error:
+        raise _disk_error(error) from error
+    with opened:
+        yield opened
+
+
+def _write_to(target: IO[bytes], data: bytes) -> None:
+    """Write all data. Raises DiskError, and not the error of the archive that is being read."""
+    view = memoryview(data)
+    try:
+        while view:
+            view = view[target.write(view) :]
+    except OSError as error:
+        raise _disk_error(error) from error
+
+
+def _disk_error(error: OSError) -> DiskError:
+    return DiskError(
+        f"A submission could not be unpacked: {error.strerror}. Free some space in {tempfile.gettempdir()}, or set "
+        "another folder with TMPDIR, and try again."
+    )
 
 
 @contextmanager
@@ -53,8 +160,7 @@ def unpacked(archive: Path) -> Iterator[Path]:
         message = "is not a supported archive: hand in a .zip or a .tar.gz"
         raise ArchiveFormatError(message)
     members = _read(archive)
-    with tempfile.TemporaryDirectory(prefix="grader-unpacked-") as named:
-        folder = Path(os.path.realpath(named))
+    with _temporary_folder() as folder:
         _write_all(members, folder)
         del members
         yield folder
@@ -74,11 +180,7 @@ def _write_all(members: Iterable[Member], folder: Path) -> None:
             _write(member, folder)
     except OSError as error:
         if error.errno in OF_THE_DISK:
-            message = (
-                f"A submission could not be unpacked: {error.strerror}. Free some space in {tempfile.gettempdir()}, or "
-                "set another folder with TMPDIR, and try again."
-            )
-            raise DiskError(message) from error
+            raise _disk_error(error) from error
         message = f"is damaged, or contains a file name that the disk does not accept ({error.strerror})"
         raise DamagedArchiveError(message) from error
     except ValueError as error:  # a NUL in a name

@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import hashlib
-from contextlib import contextmanager
-from dataclasses import replace
+from contextlib import nullcontext
+from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TYPE_CHECKING
 
 from grader.classroom import archives, unpack
 from grader.classroom.refused import Refused
 from grader.errors import DiskError, MachineError, TooLargeError, UsageError
-from grader.submission import reader, tree
+from grader.submission import reader
 from grader.submission.handed_in import open_handed_in
 from grader.submission.package import ANSWERS, Submission
 from grader.submission.search import NoPackageError, SeveralPackagesError
 from grader.submission.tree import shown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from contextlib import AbstractContextManager
     from pathlib import Path
 
     from grader.checks.diagnosis import Diagnosis
@@ -30,16 +30,44 @@ MOST_DEEP = 4
 """answers.toml may be inside up to this many nested folders, if each of them contains nothing but the next one."""
 
 
+@dataclass(frozen=True)
+class Content:
+    """The submission to grade, or why it cannot be graded. `archive` is the sha256 of the archive that was read."""
+
+    handed_in: Submission | Refused
+    archive: str = ""
+
+
 def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused:
     """Return the submission to grade, or why it cannot be graded. `student` is the id of the student.
 
     Raises:
         DiskError: the disk for temporary files failed.
     """
+    return content_of(found, exercise, student).handed_in
+
+
+def content_of(found: Found, exercise: Exercise, student: str) -> Content:
+    """Return what `read` returns, together with the hash of the archive if it was read from an archive.
+
+    Raises:
+        DiskError: the disk for temporary files failed.
+    """
     if found.refused:
-        return found.refused
+        return Content(found.refused)
+    archive = _archive(found.path)
+    if archive is None:
+        return Content(_handed_in(found, exercise, student, nullcontext(found.path)))
+    with archives.copied(archive) as copy:
+        return Content(_handed_in(found, exercise, student, copy.unpacked()), copy.sha256)
+
+
+def _handed_in(
+    found: Found, exercise: Exercise, student: str, place: AbstractContextManager[Path]
+) -> Submission | Refused:
+    """Read the submission in a folder."""
     try:
-        with _folder(found) as folder:
+        with place as folder:
             try:
                 opened = reader.read(_open, folder, exercise)
             except UsageError as error:
@@ -69,18 +97,18 @@ def _diagnosis(error: UsageError, exercise: Exercise) -> Diagnosis:
 def fingerprint(found: Found, exercise: Exercise, task: Task | None = None) -> str:
     """Return the sha256 of all relevant files of a submission, or of the reason why they cannot be read.
 
-    An archive is hashed without unpacking it. For a folder with a `task`, the files in the task are hashed, because the
-    student may have changed the folder before or after the task was made.
+    With a `task`, the files or the archive that the task contains are hashed, because the student may have changed them
+    before or after the task was made. Without a task, an archive is hashed without unpacking it.
 
     Raises:
         DiskError: the disk for temporary files failed.
     """
-    archive = None if found.refused else _archive(found.path)
     also = (found.alike,) if found.alike else ()
-    if archive is not None:
-        return _sha256(_of_archive(archive), *also)
     if task is not None:
         return _sha256(*_parts_of_task(task), *also)
+    archive = None if found.refused else _archive(found.path)
+    if archive is not None:
+        return _sha256(archives.sha256_of(archive), *also)
     content = read(found, exercise, "")
     if isinstance(content, Refused):
         return _sha256(f"refused {content.reason}", *also)
@@ -90,6 +118,8 @@ def fingerprint(found: Found, exercise: Exercise, task: Task | None = None) -> s
 
 def _parts_of_task(task: Task) -> tuple[str, ...]:
     """Return the strings that `fingerprint` hashes for a task."""
+    if task.archive:
+        return (task.archive,)
     if isinstance(task.content, Refused):
         return (f"refused {task.content.reason}",)
     return (task.digest, task.package, task.remark, *task.rejected, *sorted(task.executable))
@@ -97,28 +127,6 @@ def _parts_of_task(task: Task) -> tuple[str, ...]:
 
 def _sha256(*parts: str) -> str:
     return hashlib.sha256("\0".join(parts).encode("utf-8", "surrogateescape")).hexdigest()
-
-
-def _of_archive(archive: Path) -> str:
-    whole = hashlib.sha256(archive.name.encode("utf-8", "surrogateescape") + b"\0")
-    try:
-        with tree.open_file(archive, at=archive) as file:
-            # If the archive is too large to be unpacked, hashing this part of it is enough.
-            while file.tell() <= unpack.MOST_PACKED and (data := file.read(1024 * 1024)):
-                whole.update(data)
-    except (OSError, ValueError) as error:
-        whole.update(f"cannot be read: {error}".encode())  # `read` reports this error
-    return whole.hexdigest()
-
-
-@contextmanager
-def _folder(found: Found) -> Iterator[Path]:
-    archive = _archive(found.path)
-    if archive is None:
-        yield found.path
-    else:
-        with archives.unpacked(archive) as folder:
-            yield folder
 
 
 def _archive(path: Path) -> Path | None:

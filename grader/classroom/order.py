@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.exercises import exercise_from
 from grader.checks.outcome import Status
-from grader.classroom.content import fingerprint, read
+from grader.classroom.content import content_of, fingerprint
 from grader.classroom.key import Key, changed, grader_key
 from grader.classroom.refused import Refused
 from grader.classroom.task import Task
@@ -64,13 +64,15 @@ class Order:
     def task(self, found: Found) -> Task:
         """Read the submission and return its task. Raises DiskError, as `content.read` does."""
         owner = self._owner(found)
-        content = read(found, self.exercises[found.exercise], owner)
+        whole = content_of(found, self.exercises[found.exercise], owner)
+        content = whole.handed_in
         if isinstance(content, Refused):
-            return self._task(found, owner, content)
+            return self._task(found, owner, content, archive=whole.archive)
         return self._task(
             found,
             owner,
             dict(content.files),
+            archive=whole.archive,
             package=content.package_dir.name,
             rejected=content.rejected,
             digest=content.digest,
@@ -84,6 +86,7 @@ class Order:
         owner: str,
         content: dict[str, bytes] | Refused,
         *,
+        archive: str = "",
         package: str = "",
         rejected: tuple[str, ...] = (),
         digest: str = "",
@@ -95,6 +98,7 @@ class Order:
             owner=owner,
             sources=self.sources[found.exercise],
             content=content,
+            archive=archive,
             package=package,
             rejected=rejected,
             digest=digest,

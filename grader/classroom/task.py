@@ -50,6 +50,8 @@ class Task:
     """The student id whose individual numbers the submission must use."""
     sources: Sources
     content: dict[str, bytes] | Refused
+    archive: str = ""
+    """The sha256 of the archive from which `content` was read, or an empty string if it was read from a folder."""
     package: str = ""
     rejected: tuple[str, ...] = ()
     digest: str = ""

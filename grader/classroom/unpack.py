@@ -127,16 +127,30 @@ def read_archive(archive: Path) -> tuple[Member, ...]:
 def _open(archive: Path) -> IO[bytes]:
     try:
         file = tree.open_file(archive, at=archive)
-    except OSError as error:
-        raise NotUnpackedError(tree.reason(error, archive.name)) from error
-    except ValueError as error:
-        message = f"could not be read ({_shown(str(error))})"
-        raise NotUnpackedError(message) from error
+    except (OSError, ValueError) as error:
+        raise not_opened(error, archive.name) from error
     if os.fstat(file.fileno()).st_size <= MOST_PACKED:
         return file
     file.close()
-    message = f"is larger than {MOST_PACKED // 1024 // 1024} MiB"
-    raise LargeArchiveError(message)
+    raise too_large()
+
+
+def too_large() -> LargeArchiveError:
+    """Return the error for an archive that is too large."""
+    return LargeArchiveError(f"is larger than {MOST_PACKED // 1024 // 1024} MiB")
+
+
+def not_opened(error: Exception, name: str) -> NotUnpackedError:
+    """Return the error for an archive with this name that could not be opened or read.
+
+    Raises:
+        MachineError: the machine is at fault.
+    """
+    if isinstance(error, NotUnpackedError):
+        return error
+    if isinstance(error, OSError):
+        return NotUnpackedError(tree.reason(error, name))
+    return NotUnpackedError(f"could not be read ({_shown(str(error))})")
 
 
 def _members(file: IO[bytes]) -> Iterator[Member]:

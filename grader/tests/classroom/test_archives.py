@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import platform
 import stat
 import tarfile
+import tempfile
 import zipfile
 from contextlib import suppress
-from typing import TYPE_CHECKING, NoReturn
+from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
-from grader.classroom import unpack
-from grader.classroom.archives import stem, unpacked
+from grader.classroom import archives, unpack
+from grader.classroom.archives import copied, sha256_of, stem, unpacked
 from grader.classroom.unpack import NotUnpackedError
+from grader.errors import DiskError
 from grader.submission import reader
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 MANY = b"0" * 1024 * 1024
 
@@ -206,6 +207,37 @@ def test_a_hole_in_unpacking_reaches_no_other_file(tmp_path: Path, monkeypatch: 
     monkeypatch.setattr(unpack, "_parts", attack)
     assert files(zipped(tmp_path / "a.zip", ("a", b"1"))) == {"failed": b"1"}
     assert not (tmp_path / "owned").exists()
+
+
+@pytest.mark.parametrize("fails", ["folder", "file"])
+def test_a_full_disk_is_not_the_fault_of_the_archive(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: str
+) -> None:
+    archive = zipped(tmp_path / "a.zip", ("a", b"1"))
+
+    def full(*_: object, **__: object) -> NoReturn:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    if fails == "folder":
+        monkeypatch.setattr(tempfile, "TemporaryDirectory", full)
+    else:
+        monkeypatch.setattr(archives, "_file_of_ours", lambda _: Path("/dev/full").open("wb", buffering=0))  # noqa: SIM115
+    with pytest.raises(DiskError, match="No space left on device"), copied(archive):
+        pass
+
+
+def test_the_copy_of_an_archive_is_unpacked_and_has_the_hash_of_the_archive(tmp_path: Path) -> None:
+    for name in ("a.zip", "b.TAR.GZ", "c.rar", "\udcff.zip"):
+        archive = zipped(tmp_path / name, ("a", b"1"))
+        with copied(archive) as copy:
+            assert copy.sha256 == sha256_of(archive)
+            archive.unlink()
+            if name.endswith(".rar"):
+                with pytest.raises(NotUnpackedError, match=r"hand in a \.zip"), copy.unpacked():
+                    pass
+            else:
+                with copy.unpacked() as folder:
+                    assert [path.name for path in folder.iterdir()] == ["a"]
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -16,6 +16,7 @@ from grader.classroom.order import Order, sort_out, sources_for
 from grader.classroom.progress_display import Lines
 from grader.classroom.refused import Refused
 from grader.classroom.results import opened
+from grader.submission import reader
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import zipped
 from grader.tests.classroom.test_again import Scripted
@@ -113,3 +114,49 @@ def test_files_that_change_before_they_are_read_and_change_back_are_graded_again
     hand_in("own")
     assert left_to_do(swapped=False) == 1
     assert left_to_do(swapped=False) == 0
+
+
+@pytest.mark.parametrize("damaged", [False, True])
+def test_an_archive_that_changes_while_it_is_read_and_changes_back_has_the_key_of_what_was_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, damaged: bool
+) -> None:
+    copy_solution(STEP, tmp_path / "made/ben")
+    for text in ("own", "another"):
+        (tmp_path / "made/ben/setup.cfg").write_text(f"# {text}")
+        zipped(tmp_path / "made/ben", tmp_path / f"{text}.zip", "my_robot_controller")
+    if damaged:
+        (tmp_path / "another.zip").write_bytes(b"PK and no more")
+    archive = tmp_path / "class" / "ben.zip"
+    archive.parent.mkdir()
+    exercise = find_exercise(STEP)
+
+    def hand_in(text: str) -> None:
+        shutil.copyfile(tmp_path / f"{text}.zip", archive)
+
+    prints = {}
+    for text in ("another", "own"):
+        hand_in(text)
+        each = find_submissions([tmp_path / "class"], STEP, tmp_path / "grades")
+        prints[text] = fingerprint(each[0], exercise)
+    order = Order(found=each, roster={}, sources=sources_for(each, None), ros="none")
+    read_in_child = reader.read
+
+    def swapping(*given: Any) -> Any:  # noqa: ANN401
+        hand_in("another")  # from here on, until the archive has been read
+        try:
+            return read_in_child(*given)
+        finally:
+            hand_in("own")
+
+    for when in ("while it is unpacked", "before the task"):
+        with monkeypatch.context() as patch:
+            if when == "while it is unpacked":
+                patch.setattr(reader, "read", swapping)
+            else:
+                hand_in("another")
+            task = order.task(each[0])
+        hand_in("own")
+        graded = "another"
+        if isinstance(task.content, dict):
+            graded = task.content["setup.cfg"].decode().removeprefix("# ")
+        assert order.key(each[0], task).submission == prints[graded], when
