@@ -14,6 +14,8 @@ from grader.submission.where import Where
 if TYPE_CHECKING:
     from grader.submission.setup_py import EntryPoint
 
+BRACES = re.compile(rb"[\"']console_scripts[\"']\s*:\s*\{")
+"""Matches console_scripts with a dictionary."""
 JOINED = re.compile(r"=[^=]*:[^=]*=")
 """Matches an equals sign, a colon and another equals sign, in this order, as in a string with two entry points."""
 
@@ -47,6 +49,17 @@ def bad_entry_point(point: EntryPoint) -> Finding:
         text = "A module name cannot contain a hyphen. Use underscores in the names of Python files and folders."
         why = Cause("entry-point-format", text).fixed_by(at(where, module, module.replace("-", "_")))
     return failed(observed, expected, why.at(where))
+
+
+def scripts_in_braces(source: bytes) -> Finding | None:
+    """Return a failed finding if console_scripts in this setup.py is a dictionary, else None."""
+    found = BRACES.search(source)
+    if found is None:
+        return None
+    expected = "console_scripts is a list of strings of the form NAME = PACKAGE.MODULE:FUNCTION."
+    text = "Here, console_scripts is a dictionary. Write square brackets, and one string for each entry point."
+    where = Where("setup.py", source[: found.start()].count(b"\n") + 1)
+    return failed("setuptools cannot read console_scripts.", expected, Cause("entry-point-format", text, where))
 
 
 def is_joined(point: EntryPoint) -> bool:

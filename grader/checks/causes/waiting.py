@@ -63,6 +63,12 @@ class Wait:
     @property
     def cause(self) -> Cause:
         """The reason why a callback must not wait in this way, and the alternative."""
+        if self.name in SPINS[:2]:
+            text = (
+                f"{self._subject} waits inside a callback, but the executor calls no other callback until this one "
+                "returns: a deadlock. Remove the call. rclpy.spin in main calls every callback."
+            )
+            return Cause("waits-in-callback", text, self.where)
         if self.deadlock:
             text = (
                 f"{self._subject} waits inside a callback, so rclpy.spin receives no response: a deadlock. "
@@ -99,9 +105,9 @@ def waits_in_callbacks(evidence: Evidence) -> list[Wait]:
     modules = evidence.code.modules
     aliases = _aliases(modules)
     own = {node.name for module in modules for node in module.nodes if isinstance(node, ast.FunctionDef)} & set(WAITS)
-    clients = _clients(modules)
+    clients = clients_of(modules)
     found: list[Wait] = []
-    for module, function in _in_callbacks(modules):
+    for module, function in functions_in_callbacks(modules):
         looped = {id(each) for node in inside(function) if isinstance(node, ast.While) for each in ast.walk(node.test)}
         for node in inside(function):
             where = Where(module.file, getattr(node, "lineno", None))
@@ -151,7 +157,7 @@ def _of_client(call: ast.Call, clients: frozenset[str]) -> bool:
     return isinstance(owner, ast.expr) and dotted(owner) in clients
 
 
-def _clients(modules: Iterable[Module]) -> frozenset[str]:
+def clients_of(modules: Iterable[Module]) -> frozenset[str]:
     """Return the names of the variables that hold a client of a service or of an action."""
     return frozenset(
         dotted(target) or ""
@@ -196,7 +202,7 @@ def _function_named(value: ast.expr, module: Module) -> str:
     return ""
 
 
-def _in_callbacks(modules: Iterable[Module]) -> Iterator[tuple[Module, Function]]:
+def functions_in_callbacks(modules: Iterable[Module]) -> Iterator[tuple[Module, Function]]:
     """Yield the lambdas and functions that are stored or passed on (not to a thread), and the functions they call."""
     functions: dict[str, list[tuple[Module, Function]]] = {}
     waiting: list[tuple[Module, Function]] = []

@@ -26,6 +26,7 @@ from grader.checks.causes.why_rate import callbacks_of
 from grader.checks.causes.why_rclpy_refused import why_rclpy_refused
 from grader.checks.causes.why_response import why_response
 from grader.checks.causes.why_transition import why_no_transition
+from grader.checks.causes.why_wrong_object import why_wrong_object
 from grader.checks.outcome import Finding, failed
 from grader.common.words import a_list, shorten
 
@@ -185,7 +186,7 @@ def why_crashed(evidence: Evidence, crash: Crash) -> Cause:
     explain = EXPLANATIONS.get(crash.error)
     scene = CrashScene(evidence, crash)
     special = trailing_comma(scene) or why_main(scene) or why_response(scene) or why_interface(scene)
-    special = special or why_rclpy_refused(scene) or why_passed(scene)
+    special = special or why_rclpy_refused(scene) or why_wrong_object(scene) or why_passed(scene)
     cause = special or (explain(scene) if explain is not None else None)
     return cause or Cause("crash", crash.meaning)
 

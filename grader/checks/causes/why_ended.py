@@ -25,6 +25,9 @@ def why_ended(evidence: Evidence) -> Cause:
     bare = named_only(evidence, "rclpy.init", "rclpy.spin", "main")
     if bare is not None:
         return bare
+    threaded = spins_in_a_thread(evidence)
+    if threaded is not None:
+        return threaded
     if not any(code.calls(name) for name in SPINS):
         return Cause("no-spin", "rclpy.spin keeps a node running, but it is never called.", evidence.place("init"))
     if not code.calls("spin") and code.calls("spin_once") and not loops(evidence):
@@ -38,6 +41,22 @@ def why_ended(evidence: Evidence) -> Cause:
     if stop is not None:
         return Cause(ended, "This line may end the program.", stop)
     return Cause(ended, "", evidence.place("spin", "init"))
+
+
+def spins_in_a_thread(evidence: Evidence) -> Cause | None:
+    """Return the cause if only another thread calls rclpy.spin, and main does not wait for that thread, else None."""
+    code = evidence.code
+    if code.calls("join") or any(code.calls(name) for name in SPINS) or loops(evidence):
+        return None
+    for call in code.calls("Thread"):
+        target = call.argument(1, "target")
+        if target is not None and (dotted(target) or "").rpartition(".")[2] in SPINS:
+            text = (
+                "rclpy.spin runs in this thread. The main thread does not wait for it, so the program goes on to the "
+                "lines that end it. Call rclpy.spin in main, without a thread."
+            )
+            return Cause("ends-at-once", text, call.where)
+    return None
 
 
 def _returns_before_spin(evidence: Evidence) -> Cause | None:

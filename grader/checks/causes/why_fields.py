@@ -25,6 +25,12 @@ ELEMENT = re.compile(r"each value of type '(?P<type>\w+)'")
 FLOAT = ("float", "double")
 KINDS = {"int": "a whole number", "str": "a string", "bool": "True or False"}
 """Maps the Python type of a field to a phrase for the values of the field."""
+COLLECTIONS: dict[object, str] = {
+    ast.Tuple: "a comma makes a tuple. Write a dot, not a comma, in decimal numbers.",
+    ast.List: "the value is a list. Assign one number.",
+    ast.Dict: "the value is a dictionary. Assign one number.",
+}
+"""Maps a kind of expression to the end of the sentence about its value."""
 READS = ("input", "str", "format", "getenv")
 """Functions that return a string."""
 
@@ -95,9 +101,8 @@ def why_no_float(field: str, value: ast.expr | None) -> Cause | None:
         known = _why_constant(field, value, shown)
         if known is not None:
             return known
-    if isinstance(value, ast.Tuple):
-        text = f"The field {field} is a float, but a comma makes a tuple. Write a dot, not a comma, in decimal numbers."
-        return Cause("field-type", text)
+    if type(value) in COLLECTIONS:
+        return Cause("field-type", f"The field {field} is a float, but {COLLECTIONS[type(value)]}")
     names = [dotted(call.func) or "" for call in ast.walk(value) if isinstance(call, ast.Call)] if value else []
     if any(name.startswith(("np.", "numpy.")) for name in names):
         return Cause(

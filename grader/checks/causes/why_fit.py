@@ -98,13 +98,15 @@ def why_fit(fit: Fit) -> Cause:
         )
     if fit.is_like((0.5, 0.5)):
         return Cause("wrong-fit", "You get this result if the right side of the equations is x + y instead of x² + y².")
+    if all(value == round(value) for value in fit.values) and fit.is_like(fit.truth, 0.5):
+        return Cause("wrong-fit", "The values are rounded to whole numbers. Return them without rounding.")
     found = _why_radius(fit) if fit.centre_right else _why_centre(fit)
     return Cause(*found) if found is not None else Cause("wrong-fit", _FIRST_TRY)
 
 
 RADIUS_OF_C: tuple[Diagnosis, str] = (
     "radius-without-centre",
-    "The third unknown is c = r² - a² - b², not r²: the squares of the centre are missing.",
+    "The third unknown is c = r² - a² - b², not r². To compute r², add both squares of the centre to c.",
 )
 """The diagnosis and text if the centre is right, but the radius was computed from c without the squares of the centre.
 

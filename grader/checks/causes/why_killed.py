@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.common.words import shorten
+from grader.submission.constants import evaluate
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
+    from grader.submission.code import Call
     from grader.submission.where import Where
     from grader.trial.observed import Track
 
@@ -23,6 +25,9 @@ LONGEST_S = 1.0
 def why_killed(evidence: Evidence, track: Track, service: str) -> Cause:
     """Return the cause for a target that was removed before `service`, which catches targets, was called for it."""
     name = shorten(track.turtle)
+    same = _same_name(evidence)
+    if same is not None:
+        return same
     text = f"Remove a target only in the callback of {service}."
     gone_s = track.gone_s or 0.0
     for call in evidence.recording.calls:
@@ -44,3 +49,20 @@ def _place(evidence: Evidence) -> Where | None:
         if isinstance(call.node.func, ast.Attribute) and ast.unparse(call.node.func.value) == "Kill":
             return call.where
     return evidence.place("call_async", "create_client")
+
+
+def _same_name(evidence: Evidence) -> Cause | None:
+    """Return the cause if this node and the node beside it have the same name in the source, else None."""
+    others = [spec for spec in evidence.exercise.trials if spec.id == evidence.trial.beside]
+    for other in others:
+        theirs = {_name(call) for call in evidence.from_trial(other.id).code.calls("__init__")} - {None}
+        for call in evidence.code.calls("__init__"):
+            if _name(call) in theirs:
+                text = f"Both nodes have the name {_name(call)}, so their calls cannot be told apart."
+                return Cause("node-name", text, call.where)
+    return None
+
+
+def _name(call: Call) -> str | None:
+    value = evaluate(call.argument(0, "node_name"), call.module.names)
+    return shorten(value) if isinstance(value, str) else None

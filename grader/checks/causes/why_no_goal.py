@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.waiting import waits_in_callback
+from grader.checks.causes.why_blocked import why_blocked
 from grader.checks.causes.why_silent import why_nothing
 from grader.common.words import shorten
 
@@ -29,7 +29,7 @@ def why_no_goal(evidence: Evidence, action: str, type_name: str) -> Cause:
         return Cause("goal-not-sent", "The node has no ActionClient.", code.start)
     return (
         _other_client(evidence, action, type_name)
-        or waits_in_callback(evidence)
+        or why_blocked(evidence)
         or why_nothing(evidence, SENDS)
         or (
             Cause("goal-not-sent", "", evidence.place(*SENDS))

@@ -6,9 +6,9 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.waiting import waits_in_callback
+from grader.checks.causes.why_blocked import ANSWERS, why_blocked
 from grader.checks.causes.why_not_reached import why_not_reached, wrong_turn
-from grader.checks.causes.why_silent import ANSWERS, why_nothing
+from grader.checks.causes.why_silent import why_nothing
 from grader.checks.causes.why_unasked import why_unasked
 from grader.common.lazy import np
 from grader.common.words import a_list, shorten
@@ -39,7 +39,7 @@ def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
         text = f"{ended[0].executable} exited before all targets were caught, so the trial ended."
         other = next((spec for spec in evidence.exercise.beside(evidence.trial.id)), evidence.trial)
         return Cause("other-node-ended", text, evidence.from_trial(other.id).place("spin"))
-    waiting = waits_in_callback(evidence)
+    waiting = _no_target(evidence) or why_blocked(evidence)
     if waiting is not None:
         return waiting
     late = loop_variable(evidence)
@@ -64,6 +64,15 @@ def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
             return known
         text += f" The turtle came within {near_m:.1f} m of {shorten(name)}." if np.isfinite(near_m) else ""
     return Cause("too-slow", text, evidence.place("publish"))
+
+
+def _no_target(evidence: Evidence) -> Cause | None:
+    """Return the cause if the student's spawner, which runs in this trial, created no target, else None."""
+    spawner = next(iter(evidence.exercise.beside(evidence.trial.id)), None)
+    if evidence.recording.tracks or spawner is None:
+        return None
+    text = "The spawner created no target in this trial. A request is lost if it is sent before /spawn exists."
+    return Cause("service-not-ready", text, evidence.from_trial(spawner.id).place("call_async"))
 
 
 def _wrong_name(evidence: Evidence) -> Cause | None:

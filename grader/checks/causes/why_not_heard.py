@@ -93,6 +93,9 @@ def _moves_the_wrong_clock(events: NodeEvents, code: TestCode) -> bool:
 
 def _not_called(events: NodeEvents, run: NodeRun, code: TestCode, right: Behaviour) -> Cause:
     """Return the reason why the callback of the timer has never run."""
+    if events.clock_s is None and not any(_uses(code, name) for name in SPINS):
+        text = "No test spins the node, so no callback of the node runs. Call spin_once in the tests."
+        return Cause("bench-not-spun", text, place_of(run, code))
     if events.clock_s is None:
         return Cause("bench-not-spun", NOT_SPUN, _place(code, run, "add_node"))
     if events.clock_s >= LATEST_S:
@@ -110,6 +113,7 @@ def _not_called(events: NodeEvents, run: NodeRun, code: TestCode, right: Behavio
     return Cause("bench-clock-stands", text, _place(code, run, OVERRIDE))
 
 
+SPINS = ("spin", "spin_once", "spin_until_future_complete")
 OVERRIDE = "set_ros_time_override"
 NOT_SPUN = (
     "The node has received no pose, and the callback of its timer has not run. Is the node in the executor, and "

@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.why_silent import never_called
 from grader.checks.own_values import drawn_numbers
 from grader.common.lazy import np
 from grader.common.words import shorten
@@ -39,12 +40,23 @@ def why_not_reached(evidence: Evidence, name: str, near_m: float) -> Cause | Non
     reach_m = _own_reach_m(evidence)
     asked = any(call.service == CATCH and call.request["name"] == name for call in evidence.recording.calls)
     if reach_m is not None and near_m < reach_m and not asked:
+        unasked = _no_client(evidence) or never_called(evidence, ("call_async", "call"))
+        if unasked is not None:
+            return unasked
         text = (
             f"The turtle came within {near_m:.2f} m of {shorten(name)}, and your reach is {reach_m:g} m, but the "
             f"node did not call {CATCH} for this target. Which distance does the node compare with your reach?"
         )
         return Cause("reach-too-small", text, _constant(evidence, "REACH") or evidence.place("call_async"))
     return _farthest(evidence) or wrong_turn(evidence)
+
+
+def _no_client(evidence: Evidence) -> Cause | None:
+    """Return the cause if the node creates no client at all, else None."""
+    if evidence.code.calls("create_client"):
+        return None
+    text = f"The node has no client, so it calls no service. {CATCH} is a service, not a topic."
+    return Cause("service-not-called", text, evidence.code.start)
 
 
 def _own_reach_m(evidence: Evidence) -> float | None:

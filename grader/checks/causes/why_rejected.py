@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from typing import TYPE_CHECKING
 
@@ -30,6 +31,8 @@ OF_THE_NODE = re.compile(r"cannot import name '(?P<name>[A-Z][A-Z0-9_]*)' from '
 """Matches pytest's message about a constant that cannot be imported from the module of the node."""
 STYLE = re.compile(r"No module named '(?P<name>ament_(?:copyright|flake8|pep257|mypy|xmllint))")
 """Matches the message about a missing package that checks code style. Test files of `ros2 pkg create` import it."""
+IDENTITY = re.compile(r"(?:E\s+)?(?:AssertionError: )?assert (?P<left>\S+) is (?!not\b)(?P<right>\S+)")
+"""Matches pytest's message about an assert with `is`."""
 ERROR = re.compile(r"^E\s+(?P<text>\w*(?:Error|Exception|Interrupt)\b.*)$", re.MULTILINE)
 
 
@@ -66,6 +69,28 @@ def why_rejected(run: NodeRun, code: TestCode, numbers: str = "") -> Cause:
     if numbers:
         text = f"Compare the test with the promises, and with your numbers: {numbers}. Does the node get enough time?"
     return Cause("rejects-right", text, where)
+
+
+def why_wrong_tests(run: NodeRun, code: TestCode, name: str) -> Cause | None:
+    """Return the cause if the tests compare objects with `is`, or define the class `name` of the node, else None."""
+    own = own_copy(code, name)
+    if own is not None:
+        return own
+    compared = IDENTITY.match(run.message)
+    if compared is not None and compared["right"] not in ("None", "True", "False"):
+        text = "is compares two objects, not their values. Write == instead."
+        return Cause("rejects-right", text, place_of(run, code))
+    return None
+
+
+def own_copy(code: TestCode, name: str) -> Cause | None:
+    """Return the cause if the test files define the class of the node instead of importing it, else None."""
+    for module in code.modules:
+        for node in module.nodes:
+            if isinstance(node, ast.ClassDef) and node.name == name:
+                text = f"The tests define their own class {name}, so they do not test the node. Import the class."
+                return Cause("rejects-right", text, Where(module.file, node.lineno))
+    return None
 
 
 def _known(message: str, where: Where | None) -> Cause | None:
@@ -107,6 +132,9 @@ def _of_ros(message: str, where: Where | None) -> Cause | None:
     if OUTSIDE.search(last_error(message)):
         text = "A test must also run without a display and without a network."
         return Cause("needs-the-outside", text, where)
+    if "Failed to create subscription" in message:
+        text = "A topic has one type. Does the test subscribe with the type with which the node publishes?"
+        return Cause("second-type", text, where)
     style = STYLE.search(message)
     if style is not None:
         text = (

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.timers import timer_fault
-from grader.checks.causes.waiting import inside, waits_in_callback
+from grader.checks.causes.waiting import inside
+from grader.checks.causes.why_blocked import not_spun, only_waits, why_blocked
 from grader.checks.causes.why_ended import SPINS, named_only
 from grader.checks.causes.why_inactive import never_activated
 from grader.checks.causes.why_never_set import never_set
@@ -26,8 +27,6 @@ INCOMPATIBLE = "incompatible QoS"
 """rclpy logs a message with these words if a publisher and a subscription cannot communicate."""
 WAKES = ("create_timer", "create_subscription", "create_service", "create_client", "ActionServer", "ActionClient")
 """Functions that give a node something to do in spin_once."""
-ANSWERS = ("wait_for_service", "service_is_ready", "wait_for_server", "server_is_ready")
-"""Methods of clients that return True as soon as the server exists."""
 CATCH = "/catch"
 ALWAYS = ("True", "1", "rclpy.ok()")
 
@@ -54,8 +53,9 @@ def why_nothing(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
         never_activated(evidence)
         or named_only(evidence, "rclpy.spin")
         or _stuck(evidence)
-        or _never_called(evidence, sends)
+        or never_called(evidence, sends)
         or _no_spin(evidence)
+        or not_spun(evidence)
         or _nothing_to_spin(evidence)
         or never_set(evidence, sends)
     )
@@ -64,6 +64,10 @@ def why_nothing(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
 def _no_spin(evidence: Evidence) -> Cause | None:
     if any(evidence.code.calls(name) for name in SPINS):
         return None
+    rates = evidence.code.calls("create_rate")
+    if rates and evidence.code.calls("sleep") and not evidence.code.calls("create_timer"):
+        text = "The method sleep of a rate waits for ever, because nothing spins the node. Use a timer and rclpy.spin."
+        return Cause("no-spin", text, rates[0].where)
     return Cause("no-spin", "Without rclpy.spin, no timer callback is ever called.", evidence.code.start)
 
 
@@ -97,10 +101,10 @@ def _stuck(evidence: Evidence) -> Cause | None:
             if method.name == "__init__" and isinstance(node, ast.Call) and dotted(node.func) == "rclpy.spin":
                 text = "rclpy.spin returns only after Ctrl-C, so the lines after it in __init__ do not run until then."
                 return Cause("blocks-in-init", text, where)
-            if method.name == "__init__" and isinstance(node, ast.While) and _only_waits(node):
+            if method.name == "__init__" and isinstance(node, ast.While) and only_waits(node):
                 text = "If this loop in __init__ does not end, rclpy.spin is never reached."
                 return Cause("blocks-in-init", text, where)
-    return waits_in_callback(evidence)
+    return why_blocked(evidence)
 
 
 def _waits(evidence: Evidence, node: ast.AST, module: Module) -> Cause | None:
@@ -160,23 +164,7 @@ def _ends(loop: ast.While) -> bool:
     return any(isinstance(each, ast.Break | ast.Return | ast.Raise) for each in ast.walk(loop))
 
 
-def _only_waits(loop: ast.While) -> bool:
-    """Return whether a loop does nothing but wait, and waits for something other than a server.
-
-    The condition for which it waits can also be in an if statement with a break.
-    """
-    breaks = [each for each in loop.body if isinstance(each, ast.If) and isinstance(each.body[0], ast.Break)]
-    tests = [loop.test, *(each.test for each in breaks)]
-    if any(isinstance(each, ast.Attribute) and each.attr in ANSWERS for test in tests for each in ast.walk(test)):
-        return False
-    others = [each for each in loop.body if each not in breaks]
-    calls = [each.value for each in others if isinstance(each, ast.Expr)]
-    return all(isinstance(each, ast.Pass | ast.Expr) for each in others) and all(
-        isinstance(call, ast.Call) and getattr(call.func, "attr", "") == "sleep" for call in calls
-    )
-
-
-def _never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
+def never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
     """Return the cause if a method that sends something is never called and is not a callback, else None."""
     for module, method in methods_of(evidence):
         called = [

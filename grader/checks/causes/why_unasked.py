@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
-from grader.checks.causes.waiting import waits_in_callback
-from grader.checks.causes.why_silent import not_there, why_nothing
+from grader.checks.causes.why_blocked import why_blocked
+from grader.checks.causes.why_silent import methods_of, not_there, why_nothing
 from grader.common.words import nearest, shorten
 from grader.submission.constants import dotted, evaluate
 from grader.submission.where import Where
@@ -21,10 +21,11 @@ if TYPE_CHECKING:
 def why_unasked(evidence: Evidence, service: str) -> Cause:
     """Return the most likely cause if no call arrives at this service."""
     return (
-        waits_in_callback(evidence)
+        why_blocked(evidence)
         or _wrong_name(evidence, service)
         or _never_ready(evidence)
         or why_nothing(evidence, ("call_async", "call"))
+        or _too_early(evidence)
         or _never_called(evidence)
     )
 
@@ -64,6 +65,21 @@ def _asks_whether_ready(made: ast.Call, module: Module) -> bool:
         isinstance(node, ast.Attribute) and node.attr == "service_is_ready" and dotted(node.value) in clients
         for node in module.nodes
     )
+
+
+def _too_early(evidence: Evidence) -> Cause | None:
+    """Return the cause if __init__, or a method that it calls, sends a request without waiting for the service."""
+    for _, method in methods_of(evidence):
+        if method.name != "__init__":
+            continue
+        own = {each.name: each for _, each in methods_of(evidence)}
+        called = [node for node in ast.walk(method) if isinstance(node, ast.Call)]
+        names = {getattr(node.func, "attr", "") for node in called}
+        sends = "call_async" in names or any("call_async" in ast.unparse(own[name]) for name in names & own.keys())
+        if sends and not names & {"wait_for_service", "service_is_ready"}:
+            text = "__init__ sends a request. The request is lost if the service does not exist yet."
+            return Cause("service-not-ready", text, evidence.place("call_async"))
+    return None
 
 
 def _never_called(evidence: Evidence) -> Cause:

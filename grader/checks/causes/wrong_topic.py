@@ -6,6 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.why_node_name import remapping_rule
 from grader.checks.edit import at
 from grader.common.words import nearest
 from grader.submission.constants import evaluate, written
@@ -27,6 +28,9 @@ def why_topic(wanted: str, topic: str, evidence: Evidence, maker: str = "create_
 
 def _why(wanted: str, topic: str, evidence: Evidence, maker: str) -> Cause:
     last = wanted.rpartition("/")[2]
+    rule = remapping_rule(evidence, f"{last}:=")
+    if rule is not None and _has_name(evidence, maker, wanted):
+        return Cause("wrong-topic", "This remapping rule gives the topic another name.", rule)
     if topic == f"/{last}":
         return Cause(
             "topic-without-turtle", "Each turtle has its own topic, so the topic name contains the name of the turtle."
@@ -41,10 +45,18 @@ def _why(wanted: str, topic: str, evidence: Evidence, maker: str) -> Cause:
     of_turtles = wanted.count("/") == topic.count("/") == 2 and topic.endswith(f"/{last}")
     if of_turtles and nearest(topic, [wanted]) and not _has_turtle(evidence, topic):
         return Cause("topic-other-turtle", "There is no turtle with that name.")
-    return Cause(
-        "wrong-topic",
-        f"The topic name is the second argument of {maker}. Check the topic name letter by letter.",
-    )
+    text = f"The topic name is the second argument of {maker}."
+    if _has_turtle(evidence, topic):
+        return Cause("wrong-topic", f"{text} turtlesim uses this topic for something else.")
+    if nearest(topic, [wanted]):
+        text = f"{text} Check the topic name letter by letter."
+    return Cause("wrong-topic", text)
+
+
+def _has_name(evidence: Evidence, maker: str, topic: str) -> bool:
+    """Return whether a call in the source has this topic name."""
+    names = (evaluate(call.argument(1, "topic"), call.module.names) for call in evidence.code.calls(maker))
+    return any(isinstance(name, str) and topic.endswith(f"/{name.strip('/')}") for name in names)
 
 
 def _has_turtle(evidence: Evidence, topic: str) -> bool:

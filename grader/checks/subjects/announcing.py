@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
-from grader.checks.causes.waiting import waits_in_callback
+from grader.checks.causes.why_blocked import why_blocked
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_silent import why_nothing
@@ -82,7 +82,7 @@ def announces(evidence: Evidence, params: Announces) -> Finding:
             observed, cause = f"{observed} {end_observed(evidence)}", why_ended(evidence)
         elif not with_targets:
             cause = Cause("silent-when-empty", EMPTY, where)
-        finding = failed(observed, expected, waits_in_callback(evidence) or cause, near_edge=most.near(longest_s))
+        finding = failed(observed, expected, why_blocked(evidence) or cause, near_edge=most.near(longest_s))
         return unless_starved(finding, evidence.recording, off=longest_s - 1.4 * params.period_s, per_s=1.0)
     often = OFTEN * (times_s[-1] - times_s[0]) / params.period_s
     if len(heard) > max(often, OFTEN):
@@ -130,7 +130,7 @@ def _wrong_names(evidence: Evidence, message: Announcement, heard: list[Announce
     missing = sorted(throughout - called - set(message.names))
     if missing:
         observed = f"{at} does not contain {a_list([shorten(name) for name in missing])}."
-        stuck = waits_in_callback(evidence)
+        stuck = why_blocked(evidence)
         text = "Add the name of a turtle to the list in the callback that receives the response from /spawn."
         if any(missing[0] in each.names for each in heard if each.t_s < message.t_s):
             text = (

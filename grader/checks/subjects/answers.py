@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.why_answer import KEEP_LOOKING, why_list, why_name, why_unreadable
 from grader.checks.kind import Kind, NoParams, choice, number, string, strings
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.tolerance import Band
@@ -29,7 +30,6 @@ LIST_OF_STRINGS = "a list of strings in quotation marks"
 NUMBER = "a number without quotation marks"
 EXAMPLES = {STRING: '"answer"', LIST_OF_STRINGS: '["first", "second"]', NUMBER: "12.5"}
 """Maps each form of an answer to an example."""
-KEEP_LOOKING = "Run the `ros2` command again and compare letter by letter."
 
 
 def answers(evidence: Evidence, _: NoParams) -> Finding:
@@ -39,8 +39,8 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
     if found is None:
         return failed(f"There is no {FILE}.", expected, Cause("no-answers"))
     if found.problem is not None:
-        cause = 'Write a string in "quotation marks", a list in [brackets], and a number without either.'
-        why = Cause("answers-unreadable", cause, Where(FILE, found.line))
+        source = evidence.submission.files.get(FILE, b"")
+        why = Cause("answers-unreadable", why_unreadable(source, found.line), Where(FILE, found.line))
         return failed(f"{FILE} cannot be read: {found.problem}.", expected, why)
     questions = {str(check.params["answer"]) for check in evidence.exercise.checks if "answer" in check.params}
     named = set(found.given) | found.unusable
@@ -140,7 +140,7 @@ def answer_graph(evidence: Evidence, params: GraphQuestion) -> Finding:
         text = f"Not judged, because during the trial no {params.find} matched the description in the question."
         return Finding(Status.SKIPPED, text)
     expected = f"{params.answer} is the {params.find} that the question asks for, spelled as `ros2` prints it."
-    why = _why(answer, params.find, truth, _all(evidence.recording, params.find))
+    why = why_name(answer, params.find, truth, _all(evidence.recording, params.find))
     return _wrong(evidence, params.answer, answer, expected, why)
 
 
@@ -166,21 +166,6 @@ def _counts(end: Endpoint, params: GraphQuestion) -> bool:
         and end.type.startswith(params.type_starts)
         and end.type.endswith(params.type_ends)
     )
-
-
-def _why(answer: str, find: str, truth: Collection[str], others: Collection[str]) -> Cause:
-    if find in ("topic", "node") and f"/{answer}" in truth:
-        return Cause("no-slash", f"The full name of a {find} starts with a slash.")
-    if find == "type" and any(each.replace("/msg/", "/") == answer for each in truth):
-        return Cause("type-without-msg", "In ROS 2 a type has three parts: the package, the word msg, and the name.")
-    if find == "type" and any(each.endswith(f"/{answer}") for each in truth):
-        text = "The full name of a type starts with its package, as in std_msgs/msg/String."
-        return Cause("type-without-package", text)
-    if any(each.lower() == answer.lower() for each in truth):
-        return Cause("capitals", "Upper and lower case matter.")
-    if answer in others:
-        return Cause("answer-another", f"This {find} exists, but it is not the one that the question asks for.")
-    return Cause("wrong-answer", KEEP_LOOKING)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -242,7 +227,8 @@ def _compare(evidence: Evidence, name: str, given: Answer, truth: Collection[str
     observed = f"{name} is {shown_answer(given)}: {difference}."
     diagnosis: Diagnosis = "wrong-list" if surplus and missing else "list-too-long" if surplus else "list-incomplete"
     expected = "The list contains all correct items, and no other items."
-    return failed(observed, expected, Cause(diagnosis, cause.strip(), where))
+    why = why_list(given, truth) or Cause(diagnosis, cause.strip())
+    return failed(observed, expected, why.at(where))
 
 
 def _wrong(evidence: Evidence, name: str, given: Answer, expected: str, why: Cause) -> Finding:
@@ -257,7 +243,8 @@ def _plain(answer: str) -> str:
 def shown_answer(answer: Answer) -> str:
     """Return an answer as text for a finding."""
     if isinstance(answer, tuple):
-        return f"[{', '.join(shorten(each, 30) for each in answer[:8])}]"
+        shown = [f'"{shorten(each, 30)}"' if "," in each else shorten(each, 30) for each in answer[:8]]
+        return f"[{', '.join(shown)}]"
     return f'"{shorten(answer)}"' if isinstance(answer, str) else f"{answer:g}"
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.sign_for_sum import sign_for_sum
-from grader.checks.causes.waiting import waits_in_callback
+from grader.checks.causes.why_blocked import why_blocked
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_path import radius_of_commands
 from grader.checks.kind import Kind, choice, number
@@ -230,7 +230,7 @@ def _nothing(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> F
         color = ", ".join(map(str, params.color))
         amount = "Almost nothing" if chosen.any() else "Nothing"
         return failed(f"{amount} was drawn in the colour {color}.", expected, Cause("not-in-colour", text, where))
-    cause = waits_in_callback(evidence) or Cause("not-moving", where=where)
+    cause = why_blocked(evidence) or Cause("not-moving", where=where)
     drove = "hardly drove" if chosen.any() else "did not drive"
     return failed(f"The turtle {drove} in the time that this check judges.", expected, cause)
 

@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.bad_entry_point import bad_entry_point
+from grader.checks.causes.bad_entry_point import bad_entry_point, scripts_in_braces
 from grader.checks.causes.bad_setup_cfg import why_setup_cfg_unreadable
 from grader.checks.causes.crash import read_tracebacks
 from grader.checks.causes.manifest_unread import why_not_read
@@ -33,6 +33,7 @@ UNREAD_SETUP = "return ast.literal_eval(output)"
 """The line in colcon's source that reads the arguments of setup()."""
 UNNAMED = re.compile(r"And (?P<files>\d+) more\.")
 """Matches the last entry of `rejected` if this entry counts the files that are not listed by name."""
+NO_FOLDER = re.compile(r"package directory '(?P<path>[^']+)' does not exist")
 NO_FILE = re.compile(r"can't copy '?(?P<file>[^':]*)'?: doesn't exist")
 IGNORE_MARKERS = (IGNORE_MARKER, "AMENT_IGNORE", "CATKIN_IGNORE")
 """Files with these names make colcon ignore a ROS 2 package."""
@@ -110,7 +111,7 @@ def _broken(evidence: Evidence) -> Finding:
     bad = next((point for point in setup.entry_points or () if point.target is None), None)
     if bad is not None:
         return bad_entry_point(bad)
-    raised = _raised(evidence)
+    raised = scripts_in_braces(evidence.submission.files["setup.py"]) or _raised(evidence)
     if raised is not None:
         return raised
     where = Where("setup.py", _setup_line(evidence))
@@ -139,6 +140,11 @@ def _broken(evidence: Evidence) -> Finding:
         marker = missing["file"].startswith("resource/")
         named = _line_of(evidence, r"['\"]resource/" if marker else rf"['\"/]{re.escape(last)}['\"]")
         return failed(f"`colcon build` failed{message}.", EXPECTED, Cause(diagnosis, cause, named or where))
+    folder = NO_FOLDER.search(words[-1]) if words else None
+    if folder is not None:
+        cause = f"packages or package_dir in setup.py names the folder {shorten(folder['path'])}, which does not exist."
+        named = _line_of(evidence, r"\bpackage_dir\b", r"\bpackages\b") or where
+        return failed(f"`colcon build` failed{message}.", EXPECTED, Cause("build-failed", cause, named))
     other = _other_type(evidence)
     why = Cause("build-failed", OTHER_TYPE, other) if other is not None else Cause("build-failed", where=where)
     return failed(f"`colcon build` failed{message}.", EXPECTED, why)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
-from grader.checks.causes.waiting import waits_in_callback
+from grader.checks.causes.why_blocked import why_blocked
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_no_goal import why_aborted
 from grader.checks.kind import Kind, number, string
@@ -88,7 +88,7 @@ def _goes_on(evidence: Evidence, params: CancelsGoal, goal: Goal, took_s: float,
             near_edge=Band.at_most(params.within_s).near(took_s),
         )
     text = "cancel_goal_async of the goal handle requests the cancellation."
-    cause = waits_in_callback(evidence) or Cause("goal-goes-on", text, where)
+    cause = why_blocked(evidence) or Cause("goal-goes-on", text, where)
     observed = f"After the call to {params.service}, the turtle continued to turn towards its goal."
     return failed(observed, expected, cause)
 
@@ -111,6 +111,9 @@ def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
             "A cancelled goal also has a result, and the callback for the result is called. Check the status of the "
             "result."
         )
+        nodes = (node for module in evidence.code.modules for node in module.nodes)
+        if any(isinstance(node, ast.Attribute) and node.attr == "status" for node in nodes):
+            text = "Which callback sends this goal? After a call to the service, no callback may send one."
         return failed(observed, expected, Cause("goal-after-cancel", text, evidence.place("get_result_async")))
     return passed("No goal arrived after the call.")
 

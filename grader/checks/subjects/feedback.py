@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.log_place import log_place
-from grader.checks.causes.waiting import waits_in_callback
+from grader.checks.causes.why_blocked import why_blocked
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.goals import goals_of, no_goal
@@ -109,7 +109,7 @@ def _none_in_format(evidence: Evidence, params: LogFeedback, goals: list[Goal], 
     )
     seen = evidence.with_run(replace(evidence.run, recording=replace(recording, log=during)))
     logged = student_log.students(seen.recording)
-    cause = _unheard(evidence) or (None if logged else waits_in_callback(evidence))
+    cause = _unheard(evidence) or (None if logged else why_blocked(evidence))
     if cause is not None:
         return failed("The log has no line with the feedback.", expected, cause)
     return lines_in(seen, LogFormat(format=params.format), " during the goals")

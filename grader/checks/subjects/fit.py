@@ -179,8 +179,8 @@ def _late(evidence: Evidence, called: Called, expected: str, name: str) -> Findi
 def _why_raised(evidence: Evidence, crash: Crash, id_: str) -> Cause | None:
     """Return the cause of an exception that is typical of circle fitting, or None."""
     if any(each.id == id_ and each.lists for each in evidence.trial.calls.points):
-        others = [each for each in evidence.run.called or () if each.id != id_ and each.values is not None]
-        if others:
+        arcs = {each.id for each in evidence.trial.calls.points if each.arc and each.id != id_}
+        if any(each.id in arcs and each.values is not None for each in evidence.run.called or ()):
             cause = "The function works with numpy arrays, but not with lists. `np.asarray` accepts arrays and lists."
             return Cause("lists-refused", cause)
     if crash.error == "LinAlgError" and evidence.code.calls("solve"):

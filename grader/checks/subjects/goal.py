@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_steering import compared_exactly, why_steering
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.requested import Requested
@@ -56,6 +57,9 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
     if still is not None:
         if still.diagnosis != "not-moving" or trajectory.turned_rad < math.tau:
             return still
+        steering = why_steering(evidence)
+        if steering is not None:
+            return still.because(steering)
         turns = count(round(trajectory.turned_rad / math.tau), "full turn")
         text = (
             f"The turtle only turned on the spot, by {turns} in total. "
@@ -71,7 +75,8 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
     if not close.holds(end):
         return replace(_not_there(evidence, params, expected, where), near_edge=near)
     if moving is not None:
-        return moving
+        exact = compared_exactly(evidence)
+        return moving if exact is None else moving.because(exact)
     start = math.dist((float(trajectory.x[0]), float(trajectory.y[0])), (params.x_m, params.y_m))
     return passed(f"The turtle drove to its goal, {start:.1f} m away, and stopped.", near_edge=near)
 
@@ -91,7 +96,10 @@ def _not_there(evidence: Evidence, params: Goal, expected: str, where: Where | N
     if Band.at_most(params.tolerance_m).holds(nearest):
         observed += f" On the way, the turtle came within {nearest:.2f} m of the goal."
         cause = "The turtle does not stop at the goal. Near the goal, publish a command with all values 0."
-        return failed(observed, expected, Cause("goes-on", cause, where))
+        return failed(observed, expected, compared_exactly(evidence) or Cause("goes-on", cause, where))
+    steering = why_steering(evidence)
+    if steering is not None:
+        return failed(observed, expected, steering)
     last = evidence.commands[-1] if evidence.commands else None
     if last is not None and no_standstill(evidence, expected) is None and not (last.linear[0] or last.angular[2]):
         cause = (

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
-from grader.checks.causes.waiting import waits_in_callback
+from grader.checks.causes.why_blocked import why_blocked
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_no_goal import SENDS, why_aborted, why_no_goal
 from grader.checks.causes.why_unread import why_unread
@@ -31,6 +31,8 @@ HALF_TURN_S = 3.2
 STILL_DRIVES_S = 0.5
 """If the node drives the turtle within this time (s) before the end of the trial, its drive has not ended."""
 CONVERTED_RAD = 1e-4
+TURNS_RAD = 20.0 * math.pi
+"""A goal that is larger than this (rad), ten full turns, is an angle in degrees."""
 LARGE_RAD = 7.0
 """A larger angle than this (rad) is more than a full turn, so it may be in degrees."""
 
@@ -127,7 +129,7 @@ def _no_more(evidence: Evidence, goals: list[Goal], expected: str) -> Finding:
     if crash is not None:
         return crash_finding(evidence, crash, f"{observed} {end_observed(evidence)}", expected)
     if goals[-1].result_asked_s is None:
-        return failed(observed, expected, waits_in_callback(evidence) or _no_result(evidence))
+        return failed(observed, expected, why_blocked(evidence) or _no_result(evidence))
     text = "The callback that receives the result must send the next goal."
     drove_s = _drove_until_s(evidence, goals[-1])
     if drove_s is not None:
@@ -135,7 +137,7 @@ def _no_more(evidence: Evidence, goals: list[Goal], expected: str) -> Finding:
         if drove_s > activity.end_s(evidence.recording) - STILL_DRIVES_S:
             text = "After this goal, the node drove until the end of the trial. Which condition ends the drive?"
     cause = (
-        waits_in_callback(evidence)
+        why_blocked(evidence)
         or why_unread(evidence)
         or Cause("goal-not-sent", text, evidence.place("get_result_async", *SENDS))
     )
@@ -194,6 +196,9 @@ def _other_heading(
     if abs(theta) > LARGE_RAD and abs(theta - heading) < 1.0:
         text = "The field theta is in radians. math.radians converts degrees to radians."
         return failed(observed, expected, Cause("degrees", text, where), near_edge=near_edge)
+    if TURNS_RAD < abs(theta) < math.inf:
+        text = "theta is in radians, and this is more than ten full turns. math.radians converts degrees to radians."
+        return failed(observed, expected, Cause("degrees", text, where), near_edge=near_edge)
     if abs(theta - math.radians(math.radians(heading))) <= CONVERTED_RAD:
         text = "This is the heading converted from degrees to radians twice. math.radians must be called only once."
         return failed(observed, expected, Cause("degrees", text, where), near_edge=near_edge)
@@ -217,7 +222,7 @@ def awaits_result(evidence: Evidence, _: NoParams) -> Finding:
     without = [goal for goal in judged if goal.result_asked_s is None]
     if without:
         observed = f"The node never asked for the result of the goal sent at {without[0].t_s:.1f} s."
-        return failed(observed, expected, waits_in_callback(evidence) or _no_result(evidence))
+        return failed(observed, expected, why_blocked(evidence) or _no_result(evidence))
     return passed(f"The node asked for the result of {count(len(judged), 'goal')}.")
 
 

@@ -14,6 +14,7 @@ from grader.checks.causes.log_place import LEVELS, log_place
 from grader.checks.causes.sign_for_sum import sign_for_sum
 from grader.checks.causes.timers import timer_fault
 from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_not_set import compared_condition
 from grader.checks.causes.why_silent import why_nothing, why_qos
 from grader.checks.edit import at
@@ -97,7 +98,11 @@ def _silent(evidence: Evidence, expected: str, when: str) -> Finding:
     code = evidence.code
     if not any(code.calls(level) for level in LEVELS):
         cause = "get_logger().info(...) is never called."
+        if code.calls("debug"):
+            cause = "Messages of the level debug are not shown. Use get_logger().info(...)."
         return failed(observed, expected, timer_fault(evidence) or Cause("no-log", cause, code.start))
+    if evidence.recording.end.by == "itself":
+        return failed(observed, expected, why_ended(evidence))
     why = why_nothing(evidence, LEVELS) or compared_condition(evidence)
     if why is not None:
         return failed(observed, expected, why)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.log_place import log_place
+from grader.checks.causes.why_steering import rounded_steps
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.starved import too_busy
@@ -165,7 +166,8 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
     )
     if holds(np.cumsum(np.abs(np.diff(x)) + np.abs(np.diff(y))), lambda line: line.numbers["distance"]):
         cause = "This is the sum of abs(dx) + abs(dy). A step is the square root of dx * dx + dy * dy."
-    return failed(observed, expected, Cause("wrong-distance", cause, where))
+        return failed(observed, expected, Cause("wrong-distance", cause, where))
+    return failed(observed, expected, rounded_steps(evidence) or Cause("wrong-distance", cause, where))
 
 
 def _assigned_again(evidence: Evidence) -> Where | None:

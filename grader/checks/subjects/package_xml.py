@@ -162,6 +162,15 @@ def _why_not_declared(
         cause = "The line is inside a comment, between <!-- and -->, so it does not count."
         line = _text(evidence)[: comment.end()].count("\n") + 1
         return Cause("depend-commented-out", cause, Where(FILE, line))
+    module = next((each for each in manifest.run_depends if each.startswith(f"{name}.")), None)
+    if module is not None:
+        cause = f"{shorten(module)} is a module of the package {name}. Declare the package."
+        return Cause("depend-on-class", cause, _line(evidence, re.escape(module)))
+    exported = re.search(rf"<export>(?:(?!</export>).)*depend>\s*{re.escape(name)}\s*<", _text(evidence), re.DOTALL)
+    if exported is not None:
+        cause = "The line is inside <export>, which does not declare dependencies. Move the line above <export>."
+        line = _text(evidence)[: exported.end()].count("\n") + 1
+        return Cause("missing-depend", cause, Where(FILE, line))
     where = _line(evidence, r"<\w*depend\b", "</license>")
     setup = evidence.setup_py
     if setup is not None and name in setup.required:

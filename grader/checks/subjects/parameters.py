@@ -119,6 +119,10 @@ def sets_parameter(evidence: Evidence, params: SetsParameter) -> Finding:
             "for this value, whichever parameter is set."
         )
         observed = f"The node accepted {name} = {value}."
+        late = evidence.code.calls("add_post_set_parameters_callback")
+        if late and not evidence.code.calls("add_on_set_parameters_callback"):
+            text = "This callback is called after the change, so it cannot refuse a value."
+            return failed(observed, expected, Cause("parameter-accepted", text, late[0].where))
         return failed(observed, expected, Cause("parameter-accepted", text, where))
     if params.answer == "refused" and not reason:
         text = "Set the field reason of the SetParametersResult to a sentence for the user."

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.why_blocked import idle_loop
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_not_set import compared_condition
 from grader.checks.kind import Kind, number
@@ -97,7 +98,8 @@ def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *,
         return failed(observed, expected, cause, near_edge=near_edge)
     observed = f"The turtle took {stop_s:.1f} s to stop after the call."
     text = "Without a new command, a turtle continues for one second. While the node is paused, publish zeros."
-    return failed(observed, expected, Cause("no-stop-command", text, where), near_edge=near_edge)
+    cause = idle_loop(evidence) or Cause("no-stop-command", text, where)
+    return failed(observed, expected, cause, near_edge=near_edge)
 
 
 def _drives_again_s(evidence: Evidence, params: Pause) -> float | None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
-from grader.checks.causes.waiting import waits_in_callback
+from grader.checks.causes.why_blocked import not_spun, why_blocked
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_unasked import why_unasked
@@ -159,8 +159,10 @@ def no_response(evidence: Evidence, service: str, type_: str, call: Call | None,
         observed = f"The node did not respond to the call to {service}. {ended}"
         return failed(observed, expected, why_ended(evidence))
     if not call.missing:
-        cause = waits_in_callback(evidence) or Cause(
-            "no-response", "Does something in the node block its callbacks?", where
+        cause = (
+            why_blocked(evidence)
+            or not_spun(evidence)
+            or Cause("no-response", "Does something in the node block its callbacks?", where)
         )
         return failed(f"The node offers {service}, but it did not respond to the call.", expected, cause)
     return _missing(evidence, service, type_, expected)
@@ -188,7 +190,7 @@ def _missing(evidence: Evidence, service: str, type_: str, expected: str) -> Fin
                 "of the node."
             )
         return failed(observed, expected, Cause("service-name", text, where))
-    stuck = waits_in_callback(evidence)
+    stuck = why_blocked(evidence)
     text = "create_service offers a service." if not evidence.code.calls("create_service") else ""
     return failed("The node offers no service.", expected, stuck or Cause("service-missing", text, where))
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
-from grader.checks.causes.waiting import waits_in_callback
+from grader.checks.causes.why_blocked import why_blocked
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_killed import why_killed
@@ -96,6 +97,8 @@ def spawns(evidence: Evidence, params: Spawns) -> Finding:
             text = "turtlesim refused a name because another turtle already has it."
         elif len(there) > len(wanted):
             text = "Count the requests when you send them, because the responses arrive later."
+            if len(there) == len(wanted) + 1 and len(set(there)) == len(there):
+                text = "There is one request too many. Compare the limit in the condition, and < with <=."
         return failed(observed, expected, Cause("target-count", text, where))
     placed = [call for call, name in zip(calls, names, strict=True) if name]
     return _places(evidence, params, placed, expected) or passed(f"The node spawned {count(len(there), 'turtle')}.")
@@ -188,7 +191,7 @@ def _not_killed(
     where = _callback(evidence) or evidence.place("create_service")
     if track.gone_s is not None:
         observed = f"{name} was removed too late: {track.gone_s - caught_s:.1f} s after it was caught."
-        return failed(observed, expected, waits_in_callback(evidence) or Cause("not-killed", "", where))
+        return failed(observed, expected, why_blocked(evidence) or Cause("not-killed", "", where))
     others = [str(kill.request["name"]) for kill in kills if kill.request["name"] != name]
     if others:
         other = shorten(others[0])
@@ -200,6 +203,9 @@ def _not_killed(
         text = f"{name} was never announced. Perhaps {name} is not in the list of the remaining turtles."
         return failed(f"{name} was caught, but it still exists.", expected, Cause("target-unannounced", text, where))
     before = [message for message in heard if message.t_s < caught_s]
+    if not any(call.service == "/kill" for call in calls_of(evidence)) and not _creates_kill(evidence):
+        text = "The callback of the service must send a request to /kill."
+        return failed(f"{name} was caught, but it still exists.", expected, Cause("not-killed", text, where))
     if before and name not in before[-1].names:
         text = f"The message before the call did not contain {name}. Was {name} removed from the list too early?"
         return failed(f"{name} was caught, but it still exists.", expected, Cause("target-unannounced", text, where))
@@ -210,10 +216,15 @@ def _not_killed(
             "still in the list of the remaining turtles?"
         )
         return failed(f"{name} was caught, but it still exists.", expected, Cause("target-unannounced", text, where))
-    why = waits_in_callback(evidence) or why_unasked(evidence, "/kill")
-    if why.diagnosis == "service-not-called":
+    why = why_blocked(evidence) or why_unasked(evidence, "/kill")
+    if why.diagnosis in ("service-not-called", "service-not-ready"):
         why = Cause("not-killed", "The callback of the service must send a request to /kill.", where)
     return failed(f"{name} was caught, but it still exists.", expected, why)
+
+
+def _creates_kill(evidence: Evidence) -> bool:
+    """Return whether the code creates a request for /kill."""
+    return any(ast.unparse(call.node.func) == "Kill.Request" for call in evidence.code.calls("Request"))
 
 
 def _callback(evidence: Evidence) -> Where | None:

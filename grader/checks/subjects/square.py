@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.sign_for_sum import sign_for_sum
 from grader.checks.causes.too_soon import too_soon
+from grader.checks.causes.why_rate import why_timers_grow
+from grader.checks.causes.why_steering import why_steering
 from grader.checks.kind import Kind, choice, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.requested import Requested, first_heading
@@ -120,7 +122,8 @@ def square(evidence: Evidence, params: Square) -> Finding:
             "Four sides and the turns between them must fit into the duration of the trial. "
             "After each turn, the node must switch back to driving."
         )
-        return failed(observed, expected, Cause("too-few-sides", cause, where))
+        known = why_steering(evidence) or why_timers_grow(evidence)
+        return failed(observed, expected, known or Cause("too-few-sides", cause, where))
     return _measured(evidence, params, sides, expected)
 
 

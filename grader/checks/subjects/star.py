@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
-from grader.checks.causes.waiting import waits_in_callback
+from grader.checks.causes.why_blocked import why_blocked
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, failed, passed
@@ -59,7 +59,7 @@ def star(evidence: Evidence, params: Star) -> Finding:
         crash = crash_of(evidence)
         if crash is not None:
             return crash_finding(evidence, crash, end_observed(evidence), expected)
-        cause = waits_in_callback(evidence) or Cause("not-moving", where=where)
+        cause = why_blocked(evidence) or Cause("not-moving", where=where)
         return failed("The turtle did not drive.", expected, cause)
     if trajectory.wall.any():
         text = "A side is too long, a heading is wrong, or the turtle does not stop after the last side."

@@ -10,7 +10,7 @@ from grader.checks.causes.vacuous_asserts import vacuous_assert, value_as_messag
 from grader.checks.causes.weak_tests import in_a_loop, named_twice, swallowed, why_without_assert, without_assert
 from grader.checks.causes.why_no_test import why_no_test
 from grader.checks.causes.why_not_heard import why_not_called, why_not_heard
-from grader.checks.causes.why_rejected import last_error, why_rejected
+from grader.checks.causes.why_rejected import last_error, own_copy, why_rejected, why_wrong_tests
 from grader.checks.kind import Kind, NoParams, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.own_values import drawn_numbers
@@ -64,7 +64,8 @@ def pass_(evidence: Evidence, _: NoParams) -> Finding:
         cause = Cause("unsteady-tests", UNSTEADY, why_rejected(rejected[0], code).where)
         observed = f"The tests pass on the correct node in {len(runs) - len(rejected)} of {count(len(runs), 'run')}."
         return failed(observed, expected, cause)
-    cause = why_not_heard(rejected[0], code, spec.right) or why_rejected(rejected[0], code, _numbers(evidence))
+    known = why_wrong_tests(rejected[0], code, spec.name) or why_not_heard(rejected[0], code, spec.right)
+    cause = known or why_rejected(rejected[0], code, _numbers(evidence))
     return failed(_observed(rejected[0]), expected, cause)
 
 
@@ -130,7 +131,14 @@ def _why_accepted(evidence: Evidence, params: Catches, code: TestCode) -> Cause:
     empty = without_assert(code)
     if empty and len(empty) == len(code.tests):
         return why_without_assert(empty[0])
-    cause = named_twice(code) or swallowed(code) or _why_not_called(evidence, params.broken, code)
+    spec = evidence.trial.tests
+    assert spec is not None
+    cause = (
+        own_copy(code, spec.name)
+        or named_twice(code)
+        or swallowed(code)
+        or _why_not_called(evidence, params.broken, code)
+    )
     cause = cause or vacuous_assert(code) or value_as_message(code)
     if cause is None and _is_silent(evidence, params.broken):
         cause = in_a_loop(code)

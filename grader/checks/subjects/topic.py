@@ -204,6 +204,9 @@ def subscribes(evidence: Evidence, params: Topic) -> Finding:
     if crash is not None:
         return crash_finding(evidence, crash, end_observed(evidence), expected)
     cause = "" if evidence.code.calls("create_subscription") else "create_subscription is never called."
+    if once := evidence.code.calls("wait_for_message"):
+        cause = "wait_for_message listens only while it waits, and it blocks the node. Use create_subscription."
+        where = once[0].where
     return failed("The node has no subscription.", expected, Cause("no-subscription", cause, where))
 
 

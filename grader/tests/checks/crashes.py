@@ -55,12 +55,12 @@ def to_look_at(source: str) -> int | None:
     return line_with(LOOK, source) or line_with(CRASHED, source)
 
 
-def reported(source: str, error: str, files: dict[str, str] | None = None) -> Reported:
+def reported(source: str, error: str, files: dict[str, str] | None = None, caller: int | None = None) -> Reported:
     """Return the report of a node with this source that ended with this error.
 
-    `files` are the other files of the package.
+    `files` are the other files of the package. `caller` is the line of the call in which the exception was raised.
     """
-    finding = _finding(source, error, files)
+    finding = _finding(source, error, files, caller)
     return Reported(finding.diagnosis, None if finding.where is None else finding.where.line, finding.cause)
 
 
@@ -70,9 +70,10 @@ def fixed(source: str, error: str) -> str | None:
     return None if changed is None or changed[NODE_FILE] == source.encode() else changed[NODE_FILE].decode()
 
 
-def _finding(source: str, error: str, files: dict[str, str] | None) -> Finding:
+def _finding(source: str, error: str, files: dict[str, str] | None, caller: int | None = None) -> Finding:
     frame = f'  File "/ws/lib/python3.11/site-packages/{NODE_FILE}", line {line_with(CRASHED, source)}, in send\n'
-    text = f"{START}\n{frame if CRASHED in source else ''}    the line itself\n{error}\n"
+    outer = frame.replace(f"line {line_with(CRASHED, source)},", f"line {caller},") if caller is not None else ""
+    text = f"{START}\n{outer}{frame if CRASHED in source else ''}    the line itself\n{error}\n"
     trial = recording([], end=crashed(0.5), stderr=Output(text))
     given = evidence(trial, submission({NODE_FILE: source, **(files or {})}))
     crash = crash_of(given)

@@ -67,3 +67,12 @@ def test_the_fix_of_an_entry_point_is_the_right_one(point: str, right: str) -> N
     changed = applied(files, of("build", setup_py(POINT, point), FAILED).fix)
     assert changed is not None
     assert right in changed["setup.py"].decode()
+
+
+@pytest.mark.parametrize(("new", "told"), [('{"a": "b:main"}', True), ('["a = b:main"]', False)])
+def test_console_scripts_is_a_list(new: str, *, told: bool) -> None:
+    files = setup_py(f'[\n            "{POINT}",\n        ]', new)
+    given = of("build", files, replace(FAILED, log="RuntimeError: setup() was never called\n"))
+    assert ("setuptools cannot read console_scripts." in given.observed) == told
+    assert ("Here, console_scripts is a dictionary. Write square brackets, and one string" in given.cause) == told
+    assert ("console_scripts is a list of strings of the form NAME" in given.expected) == told

@@ -149,3 +149,20 @@ def test_a_loop_in_a_callback_is_described(step: str, *, found: bool) -> None:
     source = NODE.format(init="pass", callback="self.step", step=step, ask="pass", main="pass")
     (wait,) = waits_in_callbacks(evidence(package=submission({NODE_FILE: source})))
     assert wait.cause.text.startswith("A loop that checks done() waits inside a callback") == found
+
+
+@pytest.mark.parametrize(
+    ("step", "words"),
+    [
+        ("rclpy.spin_once(self)", "spin_once waits inside a callback, but the executor calls no other callback until"),
+        ("rclpy.spin(self)", "spin waits inside a callback, but the executor calls no other callback until this one"),
+        ("until(self, future)", "until, which is spin_until_future_complete, waits inside a callback, so rclpy.spin"),
+        ("self.pen.call(request)", "call waits inside a callback, so rclpy.spin receives no response: a deadlock."),
+    ],
+)
+def test_a_wait_for_anything_is_not_a_wait_for_a_response(step: str, words: str) -> None:
+    source = NODE.format(init="pass", callback="self.step", step=step, ask="pass", main="pass")
+    cause = waits_in_callback(evidence(package=submission({NODE_FILE: source})))
+    assert cause is not None
+    assert cause.text.startswith(words)
+    assert ("Remove the call." not in cause.text) == ("so rclpy.spin" in words or "no response" in words)

@@ -45,6 +45,16 @@ def ended(source: str, t_s: float = 3.0) -> tuple[str, str, int | None]:
             "",
         ),
         ("node = Driver()", "no-spin", "rclpy.spin keeps a node running, but it is never called."),
+        (
+            "Thread(target=rclpy.spin, args=(Driver(),)).start()  # look",
+            "ends-at-once",
+            "rclpy.spin runs in this thread. The main thread does not wait for it",
+        ),
+        (
+            "thread = Thread(target=rclpy.spin); thread.join()",
+            "no-spin",
+            "rclpy.spin keeps a node running, but it is never called.",
+        ),
         ("rclpy.spin_once(Driver())  # look", "spin-once", "rclpy.spin_once handles one event"),
         ("while True: rclpy.spin_once(Driver())", "ended-early", ""),
         ("for _ in range(3): rclpy.spin_once(Driver())", "ended-early", ""),

@@ -33,7 +33,7 @@ SENTENCES = (
     "You get this result if the right side of the equations is x + y instead of x² + y².",
     "This is the square of the radius. The equation of the circle contains r squared.",
     "This is the diameter, twice the radius.",
-    "The third unknown is c = r² - a² - b², not r²: the squares of the centre are missing.",
+    "The third unknown is c = r² - a² - b², not r². To compute r², add both squares of the centre to c.",
     "A radius that is computed only from the outermost points contains all the noise of these points.",
     "The centre is twice as far away as it should be: the equation contains 2·x·a and 2·y·b.",
     "The centre has the wrong sign. Check on which side of the equation each term is.",
@@ -59,8 +59,12 @@ def says(values: tuple[float, float, float]) -> str:
         ((0.5, 0.5, 0.7), (0.6, 0.5, 0.7), "You get this result if the right side of the equations is x + y instead"),
         ((X, Y, R * R), (X, Y, R * R + 0.2), "This is the square of the radius. The equation of the circle contains r"),
         ((X, Y, 2 * R), (X, Y, 2 * R + 0.1), "This is the diameter, twice the radius."),
-        ((X, Y, R * R - X * X - Y * Y), (X, Y, -20.0), "The third unknown is c = r² - a² - b², not r²: the squares of"),
-        ((X, Y, 6.557), (X, Y, 8.0), "The third unknown is c = r² - a² - b², not r²: the squares of"),
+        (
+            (X, Y, R * R - X * X - Y * Y),
+            (X, Y, -20.0),
+            "The third unknown is c = r² - a² - b², not r². To compute r², add",
+        ),
+        ((X, Y, 6.557), (X, Y, 8.0), "The third unknown is c = r² - a² - b², not r². To compute r², add"),
         ((X, Y, R + 0.03), (X, Y, R + 0.05), "A radius that is computed only from the outermost points contains all"),
         (
             (2 * X, 2 * Y, R),
@@ -103,3 +107,12 @@ def test_a_radius_of_2_does_not_tell_the_square_from_the_diameter() -> None:
     arc = Arc(6.0, 4.0, 2.0, 20.0, 140.0, 300, 0.01)
     said = why_fit(Fit(arc, (6.0, 4.0, 4.0), WITHIN)).text
     assert said == "This is the square of the radius, or twice the radius."
+
+
+@pytest.mark.parametrize(
+    ("values", "told"), [((6.0, 7.0, 2.0), True), ((6.0, 7.1, 2.0), False), ((9.0, 7.0, 2.0), False)]
+)
+def test_rounded_values_are_told(values: tuple[float, float, float], *, told: bool) -> None:
+    arc = Arc(5.5, 7.25, 1.75, 0.0, 356.4, 100, 0.0)
+    said = why_fit(Fit(arc, values, WITHIN)).text
+    assert ("The values are rounded to whole numbers. Return them without rounding." in said) == told

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from grader.checks.causes.why_killed import why_killed
+from grader.checks.exercises import find_exercise
+from grader.evidence.evidence import Evidence, Run
+from grader.submission.package import open_submission
+from grader.tests.case import ROOT
 from grader.tests.checks.made import evidence, recording
 from grader.trial.observed import Call, Track
 
@@ -37,3 +43,19 @@ def reset(t_s: float, *, by_trial: bool = False) -> Call:
 )
 def test_only_the_call_that_removed_the_target_is_told(call: Call, cause: str) -> None:
     assert why_killed(evidence(recording([], calls=(call,))), FAR, "/catch").text == cause
+
+
+SPAWNER = "class Spawner(Node):\n    def __init__(self):\n        super().__init__('{}')\n"
+CATCHER = "class Catcher(Node):\n    def __init__(self):\n        super().__init__('catcher')\n"
+
+
+@pytest.mark.parametrize(("name", "told"), [("catcher", True), ("spawner", False)])
+def test_two_nodes_of_one_name_are_told(name: str, *, told: bool) -> None:
+    files = {"my_robot_controller/spawner.py": SPAWNER.format(name), "my_robot_controller/catcher.py": CATCHER}
+    package = open_submission(ROOT / "solutions/13-catch-them-all")
+    package = replace(package, files={**package.files, **{path: text.encode() for path, text in files.items()}})
+    runs = {"referee": Run(recording=recording([], calls=(kill(4.9, "far"),)))}
+    given = Evidence(find_exercise("13-catch-them-all"), package, runs=runs).from_trial("referee")
+    found = why_killed(given, FAR, "/catch")
+    assert ("Both nodes have the name catcher, so their calls cannot be told apart." in found.text) == told
+    assert (found.diagnosis == "node-name") == told

@@ -8,6 +8,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from grader.checks.causes.why_not_caught import loop_variable, targets_were, why_not_caught
+from grader.checks.exercises import find_exercise
+from grader.evidence.evidence import Evidence, Run
+from grader.submission.package import open_submission
+from grader.tests.case import ROOT
 from grader.tests.checks.made import NODE, NODE_FILE, evidence, graph, recording, submission
 from grader.trial.observed import Call, Track
 from grader.trial.recording import Beside, Endpoint, Output, ProcessEnd
@@ -131,3 +135,15 @@ def test_a_key_in_a_loop_is_called_before_the_iteration_ends(made: str, *, found
     line = f"for name in self.names:\n            {made.format('lambda pose: name')}"
     code = CATCHER.replace("        self.timer", f"        {line}\n        self.timer")
     assert (loop_variable(evidence(recording([]), submission({NODE_FILE: code}))) is not None) == found
+
+
+@pytest.mark.parametrize(
+    ("trial", "tracks", "told"), [("game", (), True), ("game", (1,), False), ("catcher", (), False)]
+)
+def test_a_game_without_targets_is_the_spawners(trial: str, tracks: tuple[int, ...], *, told: bool) -> None:
+    package = open_submission(ROOT / "solutions/13-catch-them-all")
+    far = [Track("far", ((0.0, 9.0, 5.5, 0.0),), None) for _ in tracks]
+    runs = {trial: Run(recording=recording([], tracks=tuple(far)))}
+    given = Evidence(find_exercise("13-catch-them-all"), package, runs=runs).from_trial(trial)
+    words = "The spawner created no target in this trial. A request is lost if it is sent before /spawn exists."
+    assert (words in why_not_caught(given, far).text) == told

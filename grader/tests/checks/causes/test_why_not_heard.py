@@ -156,3 +156,9 @@ def test_a_run_in_which_no_timer_fired_says_nothing_about_the_tests(events: Node
     run = NodeRun("speed", 0, collected=3, passed=3, events=events)
     found = why_not_called(run, read_test_code({FILE: BENCH.encode()}, "my_package"), Behaviour())
     assert (None if found is None else found.diagnosis) == diagnosis
+
+
+@pytest.mark.parametrize(("source", "told"), [("def test_it():\n    assert guard\n", True), (BENCH, False)])
+def test_tests_that_never_spin_are_told_so(source: str, *, told: bool) -> None:
+    words = "No test spins the node, so no callback of the node runs. Call spin_once in the tests."
+    assert (words in cause(NONE, NOTHING, source)) == told

@@ -34,6 +34,10 @@ class CatcherNode:
             self.client.call_async(name)
         msg.angular.z = 4.0 * (math.atan2(dy, dx) - self.pose.theta)
         self.publisher.publish(msg)
+
+    def start(self):
+        self.client = self.create_client(Kill, "/catch")
+        self.timer = self.create_timer(0.1, self.step)
 """
 LEFT: list[Timed] = [(0.1 * number, 0.0, 0.01) for number in range(1, 60)]
 RIGHT_TURN: list[Timed] = [(0.1 * number, 0.0, -0.2) for number in range(1, 60)]
@@ -66,6 +70,16 @@ MOST = NODE.replace("min(", "max(")
     [
         ("reach-too-small my_robot_controller/draw_circle.py:3: ", cause(near_m=0.2), cause(near_m=REACH_M + 0.1)),
         (f"The turtle came within 0.20 m of far, and your reach is {REACH_M:g} m, but the", cause(near_m=0.2), ""),
+        (
+            "The node has no client, so it calls no service. /catch is a service, not a topic.",
+            cause(NODE.replace("create_client", "create_publisher"), near_m=0.2),
+            cause(near_m=0.2),
+        ),
+        (
+            "Nothing calls step.",
+            cause(NODE.replace("create_timer(0.1, self.step)", "create_timer(0.1, print)"), near_m=0.2),
+            cause(near_m=0.2),
+        ),
         ("Which distance does the node compare with your reach?", cause(near_m=0.2), cause(near_m=0.2, calls=ASKED)),
         ("atan2-swapped my_robot_controller/draw_circle.py:11: ", cause(SWAPPED), cause()),
         ("math.atan2 takes the difference in y first, and then the difference in x.", cause(SWAPPED), cause(DEGREES)),

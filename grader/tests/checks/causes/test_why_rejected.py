@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.checks.causes.why_rejected import why_rejected
+from grader.checks.causes.why_rejected import own_copy, why_rejected, why_wrong_tests
 from grader.submission.pytest_files import read_test_code
 from grader.testbench.result import NodeRun
 
@@ -46,6 +46,11 @@ def cause(message: str, *, over: bool = False) -> str:
             "The file needs ament_flake8, which the grader does not have. `ros2 pkg create` writes such files;",
         ),
         (
+            "E   rclpy._rclpy_pybind11.RCLError: Failed to create subscription: invalid allocator",
+            "E   rclpy._rclpy_pybind11.RCLError: Failed to create timer",
+            "A topic has one type. Does the test subscribe with the type with which the node publishes?",
+        ),
+        (
             "E   fixture 'bench' not found",
             "E   AssertionError: not found",
             "No fixture is named bench. Does a function with this name have the decorator pytest.fixture?",
@@ -67,3 +72,28 @@ def test_the_message_of_pytest_decides(message: str, near: str, words: str) -> N
 def test_only_tests_that_did_not_end_need_a_deadline(*, over: bool) -> None:
     words = "If a loop in a test waits for a message, give the loop a deadline. Do not call rclpy.spin in a test,"
     assert over == cause("", over=over).startswith(words)
+
+
+@pytest.mark.parametrize(
+    ("message", "told"),
+    [
+        ("assert [] is []", True),
+        ("E   AssertionError: assert 1.1 is 1.1", True),
+        ("assert 1.1 is None", False),
+        ("assert 1.1 is not 1.1", False),
+        ("assert 1.1 == 1.1", False),
+    ],
+)
+def test_is_compares_objects(message: str, *, told: bool) -> None:
+    run = NodeRun("", 1, over=False, test=f"{FILE}::test_it", outcome="failed", message=message)
+    found = why_wrong_tests(run, CODE, "WallGuard")
+    assert (found is not None and found.text == "is compares two objects, not their values. Write == instead.") == told
+
+
+@pytest.mark.parametrize(("name", "told"), [("WallGuard", True), ("Bench", False)])
+def test_a_class_of_the_tests_is_not_the_node(name: str, *, told: bool) -> None:
+    code = read_test_code({FILE: f"class {name}:\n    pass\n\ndef test_it():\n    assert {name}\n".encode()}, "a")
+    run = NodeRun("", 1, over=False, test=f"{FILE}::test_it", outcome="failed", message="assert 1 == 2")
+    words = "The tests define their own class WallGuard, so they do not test the node. Import the class."
+    for found in (own_copy(code, "WallGuard"), why_wrong_tests(run, code, "WallGuard")):
+        assert (found is not None and found.text == words) == told

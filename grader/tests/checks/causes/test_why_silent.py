@@ -267,3 +267,19 @@ def test_a_return_before_the_message_is_found(sent: str, *, found: bool) -> None
 @pytest.mark.parametrize("body", ["self.send()", "self.send() or self.send", "(self.send, None)"])
 def test_a_lambda_that_calls_something_is_not_blamed(body: str) -> None:
     assert silence(NODE.format(made=f"self.create_timer(0.5, lambda: {body})", sent="pass")) is None
+
+
+@pytest.mark.parametrize(
+    ("made", "words", "line"),
+    [
+        ("rate = self.create_rate(2); rate.sleep()", "The method sleep of a rate waits for ever, because nothing", 5),
+        ("self.create_timer(0.5, self.send)", "Without rclpy.spin, no timer callback is ever called.", None),
+        ("time.sleep(0.5)", "Without rclpy.spin, no timer callback is ever called.", None),
+    ],
+)
+def test_a_rate_needs_somebody_who_spins(made: str, words: str, line: int | None) -> None:
+    source = NODE.format(made=made, sent="pass").replace("rclpy.spin(Driver())", "Driver().send()")
+    cause = why_nothing(given(source), ("publish",))
+    assert cause is not None
+    assert cause.where is not None
+    assert (cause.text.startswith(words), cause.where.line) == (True, line)

@@ -10,6 +10,7 @@ from grader.tests.checks.made import NODE, NODE_FILE, evidence, recording, submi
 CLIENT = NODE.replace(
     "        self.timer", '        self.client = self.create_client(SetPen, "{name}")\n        {line}self.timer'
 )
+IN_SEND = "def send(self):\n        self.client.call_async(SetPen.Request())"
 CALLS = "self.client.call_async(SetPen.Request())\n        "
 PEN = "/turtle1/set_pen"
 
@@ -22,12 +23,22 @@ PEN = "/turtle1/set_pen"
             CLIENT.format(name=PEN, line=""),
             "Creating a client sends nothing. The client's method call_async sends a request.",
         ),
-        (CLIENT.format(name=PEN, line=CALLS), ""),
+        (
+            CLIENT.format(name=PEN, line=CALLS),
+            "__init__ sends a request. The request is lost if the service does not exist yet.",
+        ),
+        (CLIENT.format(name=PEN, line=f"self.client.wait_for_service()\n        {CALLS}"), ""),
+        (CLIENT.format(name=PEN, line="").replace("def send(self):", IN_SEND), ""),
         (
             CLIENT.format(name="/set_pen", line=CALLS),
             "The client uses the name /set_pen. The name of the service is /turtle1/set_pen.",
         ),
-        (CLIENT.format(name="/stop", line=CALLS), ""),
+        (
+            CLIENT.format(name="/stop", line="").replace(
+                "def send(self):", f"def send(self):\n        {CALLS.strip()}"
+            ),
+            "",
+        ),
     ],
 )
 def test_what_the_source_lacks_is_told(code: str, words: str) -> None:

@@ -92,6 +92,16 @@ def test_a_folder_in_data_files_is_told_from_a_missing_file(files: Files, cause:
     assert (found.diagnosis, found.cause) == ("data-file-missing", cause)
 
 
+@pytest.mark.parametrize(
+    ("log", "told"),
+    [("error: package directory 'src/x' does not exist\n", True), ("error: package directory 'src/x' is bad\n", False)],
+)
+def test_a_folder_of_packages_that_does_not_exist_is_told(log: str, *, told: bool) -> None:
+    found = of("build", build=replace(NOTHING, exit_code=1, log=log))
+    words = "packages or package_dir in setup.py names the folder src/x, which does not exist."
+    assert (words in found.cause, found.diagnosis) == (told, "build-failed")
+
+
 def test_the_last_words_of_a_failed_build_are_shown() -> None:
     found = of("build", build=replace(NOTHING, exit_code=1, log="warning: x\nerror: no such option\nfailed\n"))
     assert found.observed == "`colcon build` failed: error: no such option."

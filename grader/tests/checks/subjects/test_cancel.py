@@ -174,3 +174,12 @@ def test_a_goal_that_has_ended_and_still_counts_is_told(value: str, ended_s: flo
 
 def success_of(made: Evidence) -> Finding:
     return found(SAYS_WHETHER_ACTIVE, made, service="/stop")
+
+
+@pytest.mark.parametrize(("line", "told"), [("print(future.result().status)", True), ("print(future.result())", False)])
+def test_a_node_that_looks_at_the_status_is_not_told_to_do_so(line: str, *, told: bool) -> None:
+    goals = (goal(1.0, 80.0, 3.1, "canceled", cancel_asked_s=3.0), goal(3.1, 0.0, 5.0))
+    trial = replace(given(*goals, calls=(stop(3.0),)), submission=submission({NODE_FILE: f"{CLIENT}\n{line}\n"}))
+    cause = found(NO_GOAL_AFTER, trial, service="/stop").cause
+    assert ("Which callback sends this goal? After a call to the service, no callback may send one." in cause) == told
+    assert ("Check the status of the result." not in cause) == told

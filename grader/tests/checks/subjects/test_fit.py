@@ -174,7 +174,12 @@ NO_LISTS = "The function works with numpy arrays, but not with lists. `np.asarra
 
 @pytest.mark.parametrize(
     ("others", "check", "is_told"),
-    [((RIGHT,), "lists", True), ((), "lists", False), ((RIGHT,), "elsewhere", False)],
+    [
+        ((RIGHT,), "lists", True),
+        ((), "lists", False),
+        ((RIGHT,), "elsewhere", False),
+        ((Called("straight", "exit 0", values=(3.0, 3.0, 2.0), kind="tuple"),), "lists", False),
+    ],
 )
 def test_lists_are_refused_only_if_arrays_are_not(others: tuple[Called, ...], check: str, *, is_told: bool) -> None:
     error = raised(check, "TypeError: can't multiply sequence by non-int of type 'float'")

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
         ([goal(1.0, 80.0, 2.4, result_asked_s=None)], {"nth": 2}, "result-not-awaited"),
         ([goal(1.0, 80.0, 2.4), goal(3.0, 224.0, 5.0)], {"total": 2, "turn_deg": 144.0}, None),
         ([goal(1.0, 80.0, 2.4), goal(3.0, 144.0, 5.0)], {"total": 2, "turn_deg": 144.0}, "wrong-goal"),
+        ([goal(1.0, 80.0, 2.4), goal(3.0, math.degrees(144.0), 5.0)], {"total": 2, "turn_deg": 144.0}, "degrees"),
         ([goal(1.0, 80.0, 2.4), goal(3.0, math.nan, 5.0)], {"total": 2, "turn_deg": 144.0}, "wrong-goal"),
         ([goal(1.0, math.inf, 2.4)], {}, "wrong-goal"),
     ],
@@ -215,3 +216,11 @@ def test_a_second_goal_is_compared_with_the_first(words: str, true: float, near:
     for degrees, is_told in ((true, True), (near, False)):
         trial = given(goal(1.0, 80.0, 2.4), goal(3.0, degrees, 5.0))
         assert (words in told(found(SENDS_GOALS, trial, heading_deg=-75.0, nth=2))) == is_told
+
+
+@pytest.mark.parametrize(("theta", "told"), [(144.0, True), (7.0, False), (math.inf, False)])
+def test_a_heading_of_many_turns_is_in_degrees(theta: float, *, told: bool) -> None:
+    goals = (goal(1.0, 80.0, 2.4), goal(3.0, math.degrees(theta), 5.0))
+    finding = found(SENDS_GOALS, given(*goals), heading_deg=80.0, total=2, turn_deg=144.0)
+    words = "theta is in radians, and this is more than ten full turns. math.radians converts degrees to radians."
+    assert (words in finding.cause) == told

@@ -295,3 +295,15 @@ def test_a_counter_that_begins_at_1_is_told_from_one_that_is_increased_too_early
     trial = recording([], log=hello(1, 2, 3))
     finding = found(LOG_COUNTER, evidence(trial, package=changed), format=HELLO, counts="counter")
     assert finding.cause == cause
+
+
+@pytest.mark.parametrize(
+    ("level", "words"),
+    [
+        ("debug", "Messages of the level debug are not shown. Use get_logger().info(...)."),
+        ("inform", "get_logger().info(...) is never called."),
+    ],
+)
+def test_the_level_of_a_message_decides_whether_it_is_shown(level: str, words: str) -> None:
+    finding = in_format((), node=LOGS.replace(".info(", f".{level}("))
+    assert (finding.cause, finding.diagnosis) == (words, "no-log")

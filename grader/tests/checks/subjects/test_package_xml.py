@@ -247,6 +247,12 @@ COMMENT = xml("  <depend>geometry_msgs</depend>\n", "  <!-- <depend>geometry_msg
 PROSE = xml("  <depend>geometry_msgs</depend>\n", "  <!-- The node sends geometry_msgs. -->\n")
 ONLY_TESTS = xml("depend>rclpy</depend", "test_depend>rclpy</test_depend")
 CMAKE = xml("ament_python", "ament_cmake")
+MODULE = xml("<depend>geometry_msgs</depend>", "<depend>geometry_msgs.msg</depend>")
+EXPORTED = {
+    "package.xml": PACKAGE_XML.replace("  <depend>geometry_msgs</depend>\n", "").replace(
+        "<export>\n", "<export>\n    <depend>geometry_msgs</depend>\n"
+    )
+}
 NAMED = xml("my_robot_controller", "my_robot")
 SETUP_NAMED = setup_py('"my_robot_controller"', '"my_robot"')
 FOR_PIP = {**MISSING, **setup_py("    packages=", "    install_requires=['geometry_msgs'],\n    packages=")}
@@ -272,6 +278,8 @@ FOR_PIP = {**MISSING, **setup_py("    packages=", "    install_requires=['geomet
         ("<build_depend> and <test_depend> do not count when the node runs.", "dependencies", ONLY_TESTS, MISSING),
         ("On another computer, rosdep installs only the packages that", "dependencies", MISSING, ONLY_TESTS),
         ("The line is inside a comment, between <!-- and -->", "dependencies", COMMENT, PROSE),
+        ("geometry_msgs.msg is a module of the package geometry_msgs. Declare", "dependencies", MODULE, MISSING),
+        ("The line is inside <export>, which does not declare", "dependencies", EXPORTED, MISSING),
         (
             "install_requires in setup.py is for pip packages. ROS 2 reads package.xml.",
             "dependencies",

@@ -292,3 +292,13 @@ def test_a_list_of_results_is_not_one_result(value: str, line: int) -> None:
     assert (words in finding.cause, finding.diagnosis) == (line == 7, "result-not-returned")
     assert finding.where is not None
     assert finding.where.line == line
+
+
+@pytest.mark.parametrize(
+    ("maker", "told"), [("add_post_set_parameters_callback", True), ("add_on_set_parameters_callback", False)]
+)
+def test_a_callback_after_the_change_cannot_refuse_it(maker: str, *, told: bool) -> None:
+    source = CHECKS.format(value="None").replace("add_on_set_parameters_callback", maker)
+    given = evidence(recording([], calls=(was_set(1.0, successful=True),)), submission({NODE_FILE: source}))
+    finding = found(SETS, given, parameter="radius", value=1.0, answer="refused")
+    assert ("This callback is called after the change, so it cannot refuse a value." in finding.cause) == told

@@ -9,8 +9,8 @@ import pytest
 
 from grader.checks.outcome import Status
 from grader.checks.subjects.spawning import PLACES_DIFFER, REMOVES, SPAWNS
-from grader.tests.checks.made import found
-from grader.tests.checks.spawner import CAUGHT_S, PLACES, catch, given, kill, said, spawn
+from grader.tests.checks.made import NODE_FILE, found, submission
+from grader.tests.checks.spawner import CAUGHT_S, PLACES, SPAWNER, catch, given, kill, said, spawn
 from grader.tests.checks.told import told
 from grader.trial.recording import ProcessEnd
 
@@ -116,7 +116,16 @@ UNANSWERED = spawn(9.9, "target3", 5.0, 5.0, response=None)
             [*ALL[:2], REFUSED],
             [*ALL[:2], UNANSWERED],
         ),
-        ("Count the requests when you send them", [*ALL, spawn(0.7, "target4", 5.0, 5.0)], ALL[:2]),
+        (
+            "Count the requests when you send them",
+            [*ALL, spawn(0.7, "target4", 5.0, 5.0), spawn(0.8, "target5", 5.0, 6.0)],
+            ALL[:2],
+        ),
+        (
+            "There is one request too many. Compare the limit in the condition, and < with <=.",
+            [*ALL, spawn(0.7, "target4", 5.0, 5.0)],
+            [*ALL, spawn(0.7, "target1", 5.0, 5.0)],
+        ),
         ("target2 is at x=7.50, y=10.50.", [ALL[0], spawn(0.5, "target2", 7.5, 10.5), ALL[2]], ALL),
         (
             "The field is about 11 m wide, and a turtle at the edge is hard to reach.",
@@ -223,3 +232,13 @@ def test_places_are_compared_with_those_of_another_trial() -> None:
         assert (reported.strip() == "Each time the node starts, the turtles are in different places.") != is_same
     none = replace(both, runs={same.trial.id: same.run, "other": given(calls=[]).run})
     assert "no turtle whose name begins with target was spawned." in told(found(PLACES_DIFFER, none, other="other"))
+
+
+@pytest.mark.parametrize(
+    ("source", "told"), [(SPAWNER, False), (SPAWNER.replace("self.killer.call_async(Kill.Request())", "pass"), True)]
+)
+def test_a_node_that_never_kills_is_told_so_first(source: str, *, told: bool) -> None:
+    calls = [spawn(0.5, name, *place) for name, place in PLACES.items()]
+    made = given(calls=[*calls, catch()], gone={}, messages=(said(0.6, "target2"), said(1.0, "target1")))
+    finding = of_removes(replace(made, submission=submission({NODE_FILE: source})))
+    assert ("The callback of the service must send a request to /kill." in finding.cause) == told

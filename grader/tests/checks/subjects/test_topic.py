@@ -243,6 +243,41 @@ def test_a_wrong_topic_of_a_subscription_is_explained_like_one_of_a_publisher(
         assert finding.cause.startswith("The topic name is the second argument of create_subscription.")
 
 
+RENAMED = 'rclpy.init(args=["--ros-args", "-r", "{}:=/other"])'
+
+
+@pytest.mark.parametrize(
+    ("topic", "rule", "words", "told"),
+    [
+        (TOPIC, TOPIC, "This remapping rule gives the topic another name.", True),
+        (TOPIC, "cmd_vel", "This remapping rule gives the topic another name.", True),
+        (TOPIC, "/chatter", "This remapping rule gives the topic another name.", False),
+        ("/other", TOPIC, "This remapping rule gives the topic another name.", False),
+    ],
+)
+def test_a_remapping_rule_is_told(topic: str, rule: str, words: str, *, told: bool) -> None:
+    changes = (("rclpy.init(args=args)", RENAMED.format(rule)), (f'"{TOPIC}"', f'"{topic}"'))
+    finding = found(
+        PUBLISHES, evidence(observed(("publisher", "/other", TWIST)), node(*changes)), topic=TOPIC, type=TWIST
+    )
+    assert (words in finding.cause, finding.diagnosis) == (told, "wrong-topic")
+
+
+@pytest.mark.parametrize(("topic", "told"), [("/turtle1/cmd_val", True), ("/odom", False)])
+def test_only_similar_names_are_compared_letter_by_letter(topic: str, *, told: bool) -> None:
+    finding = publishes(observed(("publisher", topic, TWIST)))
+    assert finding.cause.startswith("The topic name is the second argument of create_publisher.")
+    assert ("Check the topic name letter by letter." in finding.cause) == told
+
+
+@pytest.mark.parametrize(("line", "told"), [("wait_for_message(Pose, self, NAME)", True), ("wait(Pose, NAME)", False)])
+def test_a_wait_for_a_message_is_not_a_subscription(line: str, *, told: bool) -> None:
+    package = node(("self.timer = self.create_timer(0.5, self.send)", line))
+    finding = found(SUBSCRIBES, evidence(observed(), package), topic=POSE, type=TEXT)
+    assert ("wait_for_message listens only while it waits, and it blocks the node." in finding.cause) == told
+    assert ("create_subscription is never called." in finding.cause) != told
+
+
 def test_a_turtle_that_exists_is_not_denied() -> None:
     trial = observed(("publisher", "/turtle2/cmd_vel", TWIST))
     second = Endpoint("subscription", "/turtlesim", "/turtle2/cmd_vel", TWIST)
@@ -291,3 +326,15 @@ def test_a_single_type_is_no_second_type(types: tuple[str, ...], *, two: bool) -
     assert (finding.observed == f"{TOPIC} also has the type {TEXT}.") == two
     assert (finding.observed == f"{TOPIC} has the type {TEXT}.") != two
     assert finding.diagnosis == ("second-type" if two else "wrong-type")
+
+
+@pytest.mark.parametrize(("topic", "told"), [("/turtle1/color_sensor", True), ("/turtle1/colour", False)])
+def test_a_topic_of_turtlesim_for_something_else_is_told(topic: str, *, told: bool) -> None:
+    trial = observed(("publisher", topic, TWIST))
+    sensor = Endpoint("publisher", "/turtlesim", "/turtle1/color_sensor", COLOR)
+    graphs = (replace(trial.graphs[0], endpoints=(*trial.graphs[0].endpoints, sensor)),)
+    finding = publishes(replace(trial, graphs=graphs))
+    assert ("turtlesim uses this topic for something else." in finding.cause, finding.diagnosis) == (
+        told,
+        "wrong-topic",
+    )
