@@ -9,6 +9,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.why_blocked import ANSWERS, why_blocked
 from grader.checks.causes.why_not_reached import why_not_reached, wrong_turn
 from grader.checks.causes.why_silent import why_nothing
+from grader.checks.causes.why_steering import theta_forgotten
 from grader.checks.causes.why_unasked import why_unasked
 from grader.common.lazy import np
 from grader.common.words import a_list, shorten
@@ -104,7 +105,7 @@ def _never_drives(evidence: Evidence, left: list[Track]) -> Cause:
         if not any(any(command.linear) or any(command.angular) for command in evidence.commands):
             text = "All commands that arrived contained only zeros."
         elif not any(command.linear[0] for command in evidence.commands):
-            known = wrong_turn(evidence)
+            known = wrong_turn(evidence) or theta_forgotten(evidence)
             if known is not None:
                 return known
         if any(command.linear[0] for command in evidence.commands):

@@ -93,6 +93,16 @@ def _sideways(evidence: Evidence) -> Cause | None:
     return None
 
 
+def theta_forgotten(evidence: Evidence) -> Cause | None:
+    """Return the cause if the code computes a direction with atan2 but never reads theta, else None."""
+    directions = evidence.code.calls("atan2")
+    reads = any(isinstance(node, ast.Attribute) and node.attr == "theta" for _, node in _nodes(evidence))
+    if not directions or reads:
+        return None
+    text = "The code never reads theta. The angle to turn by is the direction to the target minus theta."
+    return Cause("turns-away", text, directions[0].where)
+
+
 def compared_exactly(evidence: Evidence) -> Cause | None:
     """Return the cause if a coordinate of the pose is compared with == or !=, else None."""
     for module, node in _nodes(evidence):

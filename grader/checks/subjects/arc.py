@@ -9,6 +9,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.sign_for_sum import sign_for_sum
 from grader.checks.causes.why_blocked import why_blocked
+from grader.checks.causes.why_condition import stored_before_refused
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_path import radius_of_commands
 from grader.checks.kind import Kind, choice, number
@@ -103,7 +104,7 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
     if not round_.holds(fitted.rms):
         off = f"it deviates by {max(fitted.rms, 0.01):.2f} m (RMS) from the best-fitting circle"
         text = "The command or the pen changes during this part of the path."
-        cause = Cause("not-round", text, where)
+        cause = stored_before_refused(evidence) or Cause("not-round", text, where)
         return failed(
             f"This part of the path is not a single arc: {off}.", expected, cause, near_edge=round_.near(fitted.rms)
         )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_again import why_again
+from grader.checks.causes.why_condition import why_from_afar
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_killed import SAME_TIME_S, why_killed
 from grader.checks.causes.why_not_caught import targets_were, why_not_caught
@@ -210,7 +211,8 @@ def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
         away_m = distance_m(recording, track, call.t_s)
         if not away_m <= params.reach_m + SLACK_M:
             observed = f"When the node called {params.service} for {track.turtle}, this turtle was {away_m:.2f} m away."
-            return failed(observed, expected, Cause("from-afar", "", where), near_edge=_near(away_m, params))
+            why = why_from_afar(evidence) or Cause("from-afar", "", where)
+            return failed(observed, expected, why, near_edge=_near(away_m, params))
     if often:
         observed = f"The node called {params.service} for {often[0]} repeatedly."
         return failed(observed, f"{expected} One call is enough.", why_again(evidence))

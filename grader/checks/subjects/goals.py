@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_blocked import why_blocked
+from grader.checks.causes.why_condition import field_and_string
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_no_goal import SENDS, why_aborted, why_no_goal
 from grader.checks.causes.why_unread import why_unread
@@ -139,6 +140,7 @@ def _no_more(evidence: Evidence, goals: list[Goal], expected: str) -> Finding:
     cause = (
         why_blocked(evidence)
         or why_unread(evidence)
+        or field_and_string(evidence, "status")
         or Cause("goal-not-sent", text, evidence.place("get_result_async", *SENDS))
     )
     return failed(observed, expected, cause)

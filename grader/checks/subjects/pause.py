@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_blocked import idle_loop
+from grader.checks.causes.why_condition import field_and_string
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_not_set import compared_condition
 from grader.checks.kind import Kind, number
@@ -94,7 +95,8 @@ def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *,
             "The commands still move the turtle during the pause. While the node is paused, publish a command with "
             "all values 0."
         )
-        cause = compared_condition(evidence) or Cause("pause-ignored", text, where)
+        known = compared_condition(evidence) or field_and_string(evidence, "data")
+        cause = known or Cause("pause-ignored", text, where)
         return failed(observed, expected, cause, near_edge=near_edge)
     observed = f"The turtle took {stop_s:.1f} s to stop after the call."
     text = "Without a new command, a turtle continues for one second. While the node is paused, publish zeros."

@@ -22,6 +22,7 @@ from grader.submission.where import Where
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
     from grader.exercise.call_inputs import BagInput
+    from grader.trial.called import Called
 
 POWERS = ("10 ** 9", "10 ** -9")
 """The number of nanoseconds in a second and its inverse, written as powers of ten."""
@@ -63,7 +64,7 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
         observed = f"{name} raised {crash.observed}."
         cause = "The program used a command as a pose. Read only the messages on the topic of the poses."
         return failed(observed, expected, Cause("all-messages", cause, crash.where))
-    broken = stopped(evidence, called, expected, name)
+    broken = _stopped(evidence, called, expected, name, bag)
     if broken is not None:
         return broken
     lines = [line.strip() for line in called.stdout.splitlines() if line.strip()]
@@ -91,6 +92,15 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
     return failed(
         f'{name} printed "{shorten(found[0], 80)}".', expected, _why(evidence, wrong[0], given, bag).at(where)
     )
+
+
+def _stopped(evidence: Evidence, called: Called, expected: str, name: str, bag: BagInput) -> Finding | None:
+    """Return a finding if the program did not end in time or did not end with exit code 0, else None."""
+    broken = stopped(evidence, called, expected, name)
+    if broken is not None and broken.diagnosis == "call-ended" and not broken.cause and called.stderr.strip():
+        text = f"The bag contains {bag.arc.count} poses. Does the program find all of them before it ends?"
+        return broken.because(Cause("call-ended", text, evidence.place("exit")))
+    return broken
 
 
 def ends_with_message(evidence: Evidence, params: OneRun) -> Finding:

@@ -195,3 +195,9 @@ def test_how_a_program_is_called_and_answers_is_told(called: Called, words: str,
     assert (words in finding.cause) == told
     observed = ("bag_report did not print the line.", "bag_report ended with an error of argparse.")
     assert (finding.observed in observed) == told
+
+
+@pytest.mark.parametrize(("stderr", "told"), [("the bag has too few messages: 1.\n", True), ("", False)])
+def test_a_message_of_the_program_is_compared_with_the_bag(stderr: str, *, told: bool) -> None:
+    cause = judged("report", Called("slow", "exit 1", stderr=stderr)).cause
+    assert ("The bag contains 21 poses. Does the program find all of them before it ends?" in cause) == told

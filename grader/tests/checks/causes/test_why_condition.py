@@ -1,0 +1,91 @@
+"""Conditions and callbacks that compare or store the wrong thing, each with a line that is nearly the same."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.checks.causes.why_condition import field_and_string, stored_before_refused, why_from_afar
+from grader.checks.causes.why_steering import theta_forgotten
+from grader.tests.checks.made import NODE_FILE, evidence, submission
+
+NODE = """\
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        self.add_on_set_parameters_callback(self.check)
+
+    def check(self, parameters):
+        {check}
+        return SetParametersResult(successful=False, reason="no")
+
+    def distance(self, place):
+        return {distance}
+
+    def step(self):
+        {step}
+            self.catch()
+"""
+
+
+def source(
+    check: str = "pass", distance: str = "math.hypot(dx, dy)", step: str = "if self.distance(place) < REACH:"
+) -> str:
+    return NODE.format(check=check, distance=distance, step=step)
+
+
+@pytest.mark.parametrize(
+    ("field", "line", "words"),
+    [
+        ("data", 'if request.data == "true":', "This line compares data with a string, but data is True or False."),
+        ("data", "if request.data == True:", ""),
+        ("data", 'if request.name == "true":', ""),
+        ("status", 'if result().status != "SUCCEEDED":', "but status is a number. GoalStatus has a constant for each"),
+        ("status", "if result().status != 4:", ""),
+    ],
+)
+def test_a_field_that_is_compared_with_a_string_is_told(field: str, line: str, words: str) -> None:
+    cause = field_and_string(evidence(package=submission({NODE_FILE: source(step=line)})), field)
+    assert (cause is None) == (not words)
+    assert cause is None or words in cause.text
+
+
+@pytest.mark.parametrize(
+    ("distance", "step", "words"),
+    [
+        ("dx ** 2 + dy ** 2", "if d < REACH:", "distance returns the square of the distance. The square root is"),
+        ("(dx ** 2 + dy ** 2) ** 0.5", "if d < REACH:", ""),
+        ("math.sqrt(dx ** 2 + dy ** 2)", "if d < REACH:", ""),
+        ("abs(dx) + abs(dy)", "if d < REACH:", ""),
+        ("0", "if self.distance(place) > REACH:", "With >, this condition holds while the target is farther away than"),
+        ("0", "if self.distance(place) >= REACH:", "With >=, this condition holds while the target is farther away"),
+        ("0", "if self.distance(place) > FAR:", ""),
+        ("0", "while self.distance(place) > REACH:", ""),
+    ],
+)
+def test_why_a_target_is_caught_from_afar_is_told(distance: str, step: str, words: str) -> None:
+    cause = why_from_afar(evidence(package=submission({NODE_FILE: source(distance=distance, step=step)})))
+    assert (cause is None) == (not words)
+    assert cause is None or cause.text.startswith(words)
+
+
+@pytest.mark.parametrize(
+    ("check", "told"), [("self.radius = 1.0", True), ("radius = 1.0", False), ("print(self.radius)", False)]
+)
+def test_values_that_are_stored_before_they_are_refused_are_told(check: str, *, told: bool) -> None:
+    cause = stored_before_refused(evidence(package=submission({NODE_FILE: source(check=check)})))
+    words = "check stores new values in self before it refuses them. Check all values first."
+    assert (cause is not None and cause.text == words) == told
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("if math.atan2(dy, dx) > 0:", True),
+        ("if math.atan2(dy, dx) - self.pose.theta > 0:", False),
+        ("if dy > 0:", False),
+    ],
+)
+def test_a_direction_without_theta_is_told(line: str, *, told: bool) -> None:
+    cause = theta_forgotten(evidence(package=submission({NODE_FILE: source(step=line)})))
+    words = "The code never reads theta. The angle to turn by is the direction to the target minus theta."
+    assert (cause is not None and cause.text == words) == told
