@@ -68,10 +68,11 @@ def _reversed(scene: CrashScene, holder: str) -> Cause | None:
 
 def _never_global(scene: CrashScene, holder: str) -> Cause | None:
     """Return the cause if each function that assigns the variable of the module makes a local variable, else None."""
-    functions = [node for node in scene.nodes if isinstance(node, Function)]
-    if any(isinstance(node, ast.Global) and holder in node.names for node in scene.nodes):
+    body = scene.module.body if scene.module is not None else []
+    at_top = any(isinstance(node, ast.Assign) and holder in map(dotted, node.targets) for node in body)
+    if not at_top or any(isinstance(node, ast.Global) and holder in node.names for node in scene.nodes):
         return None
-    for function in functions:
+    for function in (node for node in scene.nodes if isinstance(node, Function) and node is not scene.function):
         for node in ast.walk(function):
             if isinstance(node, ast.Name) and node.id == holder and isinstance(node.ctx, ast.Store):
                 text = (

@@ -22,7 +22,7 @@ def why_no_file(scene: CrashScene) -> Cause | None:
     if found is None or own is None or own.endswith(".py"):
         return None
     if "/share/" in found["path"]:
-        text = f"The build does not install {shorten(own)} there, because data_files in setup.py does not list it."
+        text = f"The build does not install {shorten(own)} there. data_files in setup.py lists what is installed."
         return Cause("crash", text)
     text = (
         f"The package contains {shorten(own)}, but a node does not run in the folder of its package. Install the file "

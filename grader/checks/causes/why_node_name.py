@@ -100,6 +100,8 @@ def _other_file(evidence: Evidence, call: Call, calls: list[Call]) -> Cause | No
     wanted, files = evidence.trial.node, evidence.submission.files
     if call.module.file != evidence.code.node_file or any(_name(each) == wanted for each in calls):
         return None
+    if call.module.file.endswith(f"/{evidence.trial.executable}.py"):
+        return None  # the entry point leads to the file with its name
     known = {module.file for module in evidence.code.modules}
     for path in sorted(files):
         if path in known or not path.endswith(".py") or path.startswith("test/"):

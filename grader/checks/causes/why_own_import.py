@@ -20,20 +20,16 @@ CIRCULAR = re.compile(r"cannot import name '(?P<name>\w+)' from partially initia
 def why_no_own_module(scene: CrashScene, name: str) -> Cause | None:
     """Return the cause if the module is in a folder of this package that the build does not install, else None."""
     files = scene.evidence.submission.files
-    folder = next((each for each in _folders(name) if _has_modules(each, files)), None)
-    if folder is None or folder == name.partition(".")[0]:
-        return None
-    path = folder.replace(".", "/")
-    if f"{path}/__init__.py" in {import_path(each) for each in files}:
+    path = name.replace(".", "/")
+    # Python names the first part that it cannot import. If this part is a folder, the folder is not installed.
+    if (
+        "." not in name
+        or not _has_modules(name, files)
+        or f"{path}/__init__.py" in {import_path(each) for each in files}
+    ):
         return None
     text = f"The folder {shorten(path)} has no file __init__.py, so the build does not install it."
     return Cause("missing-init", text)
-
-
-def _folders(name: str) -> list[str]:
-    """Return the dotted name and the names of the packages around it, the longest first."""
-    parts = name.split(".")
-    return [".".join(parts[:count]) for count in range(len(parts), 0, -1)]
 
 
 def _has_modules(folder: str, files: Collection[str]) -> bool:

@@ -85,3 +85,18 @@ def test_a_variable_of_the_module_is_set_only_with_global(line: str, *, told: bo
     found = reported(MODULE_VARIABLE.format(line=line), "AttributeError: 'NoneType' object has no attribute 'publish'")
     words = "main gives a value only to its own local variable publisher. To set the variable of the module, main needs"
     assert (words in found.cause, found.diagnosis) == (told, "local-name" if told else "none-before-message")
+
+
+LOCAL = """\
+def send():
+    publisher = None
+    publisher.publish(Twist())  # crashed
+
+def main():
+    publisher = 1
+"""
+
+
+def test_a_local_variable_is_not_the_modules() -> None:
+    found = reported(LOCAL, "AttributeError: 'NoneType' object has no attribute 'publish'")
+    assert (found.diagnosis, "global" not in found.cause) == ("none-before-message", True)

@@ -43,3 +43,9 @@ def test_two_modules_that_import_each_other_are_named(module: str, error: str, w
     found = reported(CIRCLE.format(module), error.format(module), {f"{PACKAGE}/other.py": ""})
     told = "import each other" in found.cause or "imports itself" in found.cause
     assert (found.cause.startswith(words), told) == (True, bool(words))
+
+
+def test_a_module_that_does_not_exist_in_a_folder_is_not_the_folder() -> None:
+    error = f"ModuleNotFoundError: No module named '{PACKAGE}.nodes.conter'"
+    files = {f"{PACKAGE}/nodes/counter.py": ""}
+    assert reported(f"import {PACKAGE}.nodes.conter  # crashed\n", error, files).diagnosis != "missing-init"

@@ -70,8 +70,8 @@ RUNS = "def main():\n    node = {}()\n"
         (
             NAMED.format("Circle", "Node", f'"{NAME}"'),
             NAMED.format("Other", "Node", '"draw_circle"'),
-            "The entry point draw_circle leads to draw_circle.py. The node named draw_circle is in other.py.",
-            14,
+            "The node name is the first argument of super().__init__.",
+            3,
         ),
         (
             NAMED.format("Circle", "Node", f'"{NAME}"'),
@@ -92,3 +92,16 @@ def test_a_module_that_imports_the_right_one_can_be_the_right_one() -> None:
     build = replace(BUILD, entry_points={"draw_circle": "my_robot_controller.nodes:main"})
     given = finding("node-name", evidence(SHAPES["other name"](), submission(files), build=build))
     assert "the package also has a file draw_circle.py" not in given.cause
+
+
+@pytest.mark.parametrize(("other", "told"), [("draw_circle", True), ("draw_square", False)])
+def test_the_right_node_can_be_in_another_file(other: str, *, told: bool) -> None:
+    files = {
+        NODE_FILE: None,
+        "my_robot_controller/first.py": NAMED.format("Circle", "Node", f'"{NAME}"'),
+        "my_robot_controller/second.py": NAMED.format("Other", "Node", f'"{other}"'),
+    }
+    build = replace(BUILD, entry_points={"draw_circle": "my_robot_controller.first:main"})
+    given = finding("node-name", evidence(SHAPES["other name"](), submission(files), build=build))
+    words = "The entry point draw_circle leads to first.py. The node named draw_circle is in second.py."
+    assert (given.cause == words) == told
