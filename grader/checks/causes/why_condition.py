@@ -50,6 +50,10 @@ def field_and_string(evidence: Evidence, field: str) -> Cause | None:
 def why_from_afar(evidence: Evidence) -> Cause | None:
     """Return the cause if the distance is not a square root, or the comparison with the reach is reversed."""
     for module, method in methods_of(evidence):
+        read = {node.attr for node in ast.walk(method) if isinstance(node, ast.Attribute)}
+        if method.name == "distance" and "x" in read and "y" not in read:
+            text = "The method distance uses x, but not y."
+            return Cause("from-afar", text, Where(module.file, method.lineno))
         for node in ast.walk(method):
             value = node.value if isinstance(node, ast.Return) else None
             if "distance" in method.name and value is not None and _is_sum_of_squares(value):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from grader.checks.diagnosis import Diagnosis
     from grader.evidence.evidence import Evidence
 
-EXITS = ("exit", "quit", "sys.exit", "os._exit", "SystemExit")
+EXITS = ("exit", "quit", "sys.exit", "os._exit", "SystemExit", "rclpy.shutdown", "rclpy.try_shutdown")
 SPINS = ("spin", "spin_once", "spin_until_future_complete")
 
 
@@ -93,7 +93,7 @@ def _spins_only_as_script(evidence: Evidence) -> Cause | None:
 
 
 def _exits(evidence: Evidence) -> Where | None:
-    """Return the place where a method calls exit or raises SystemExit, or None."""
+    """Return the place where a method calls exit or shutdown, or raises SystemExit, or None."""
     for module in evidence.code.modules:
         for own in (node for node in module.nodes if isinstance(node, ast.ClassDef)):
             for node in ast.walk(own):

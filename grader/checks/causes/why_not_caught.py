@@ -30,6 +30,7 @@ NEAR_M = 1.0
 """A turtle that stands still within this distance (m) of a target is considered to have reached it."""
 CATCH = "/catch"
 OWN_POSE = "/turtle1/pose"
+COMMANDS = "/turtle1/cmd_vel"
 
 
 def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
@@ -49,7 +50,7 @@ def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
     if not evidence.commands:
         silent = Cause("no-publish", "publish is never called.", evidence.place("create_publisher"))
         why = why_nothing(evidence, ("publish",)) or (None if evidence.code.calls("publish") else silent)
-        return why or Cause("never-drives", "No command arrived.", evidence.place("publish"))
+        return why or Cause("never-drives", _where_sent(evidence), evidence.place("create_publisher"))
     wrong = _wrong_name(evidence)
     if wrong is not None:
         return wrong
@@ -65,6 +66,15 @@ def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
             return known
         text += f" The turtle came within {near_m:.1f} m of {shorten(name)}." if np.isfinite(near_m) else ""
     return Cause("too-slow", text, evidence.place("publish"))
+
+
+def _where_sent(evidence: Evidence) -> str:
+    """Return a sentence about a node whose commands did not arrive, with another topic if it publishes on one."""
+    found = activity.endpoints(evidence.recording, "publisher")
+    topics = sorted({each.topic for each in found if each.topic.endswith("/cmd_vel")} - {COMMANDS})
+    if not topics:
+        return "No command arrived."
+    return f"The node publishes on {shorten(topics[0])}, but turtle1 listens to {COMMANDS}."
 
 
 def _no_target(evidence: Evidence) -> Cause | None:

@@ -23,6 +23,11 @@ OF_A_RESPONSE = re.compile(r"'\w+_Response' object has no attribute")
 def why_response(scene: CrashScene) -> Cause | None:
     """Return the cause if a service callback does not return its response or mixes up its parameters, else None."""
     servers = {name for _, name in callbacks_of(scene.evidence, "create_service")}
+    if not servers and scene.crash.error == "TypeError" and not scene.crash.message:
+        for call in scene.evidence.code.calls("create_service"):
+            if isinstance(call.argument(2, "callback"), ast.Lambda):
+                text = "This lambda returns no response. The callback of a service must return its response."
+                return Cause("response-not-returned", text, call.where)
     for module, method in methods_of(scene.evidence):
         where = Where(module.file, method.lineno)
         if method.name not in servers:

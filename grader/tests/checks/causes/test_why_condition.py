@@ -56,6 +56,8 @@ def test_a_field_that_is_compared_with_a_string_is_told(field: str, line: str, w
         ("(dx ** 2 + dy ** 2) ** 0.5", "if d < REACH:", ""),
         ("math.sqrt(dx ** 2 + dy ** 2)", "if d < REACH:", ""),
         ("abs(dx) + abs(dy)", "if d < REACH:", ""),
+        ("abs(place.x - self.pose.x)", "if d < REACH:", "The method distance uses x, but not y."),
+        ("abs(place.x - self.pose.x) + abs(place.y - self.pose.y)", "if d < REACH:", ""),
         ("0", "if self.distance(place) > REACH:", "With >, this condition holds while the target is farther away than"),
         ("0", "if self.distance(place) >= REACH:", "With >=, this condition holds while the target is farther away"),
         ("0", "if self.distance(place) > FAR:", ""),

@@ -133,3 +133,20 @@ def test_a_program_without_a_node_is_explained_by_the_source(
     stored = "This line stores the class Driver, not an object. Add parentheses after the class name"
     assert (cause.text == words) == (diagnosis == "node-not-made" and body != "node = Driver")
     assert cause.text.startswith(stored) == (body == "node = Driver")
+
+
+SENDS = """\
+class Driver(Node):
+    def send(self):
+        {line}  # look
+
+rclpy.spin(Driver())
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "told"), [("rclpy.shutdown()", True), ("rclpy.try_shutdown()", True), ("rclpy.ok()", False)]
+)
+def test_a_method_that_shuts_ros_down_may_end_the_program(line: str, *, told: bool) -> None:
+    diagnosis, text, where = ended(SENDS.format(line=line))
+    assert (diagnosis, text == "This line may end the program.", where == 3) == ("ended-early", told, told)

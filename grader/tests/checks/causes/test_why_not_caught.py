@@ -147,3 +147,11 @@ def test_a_game_without_targets_is_the_spawners(trial: str, tracks: tuple[int, .
     given = Evidence(find_exercise("13-catch-them-all"), package, runs=runs).from_trial(trial)
     words = "The spawner created no target in this trial. A request is lost if it is sent before /spawn exists."
     assert (words in why_not_caught(given, far).text) == told
+
+
+@pytest.mark.parametrize(("topic", "told"), [("/target1/cmd_vel", True), ("/turtle1/cmd_vel", False)])
+def test_commands_on_another_topic_are_told(topic: str, *, told: bool) -> None:
+    end = Endpoint("publisher", "/draw_circle", topic, "geometry_msgs/msg/Twist")
+    graphs = (replace(graph(), endpoints=(end,)),)
+    words = "The node publishes on /target1/cmd_vel, but turtle1 listens to /turtle1/cmd_vel."
+    assert (words in cause([], graphs=graphs)) == told

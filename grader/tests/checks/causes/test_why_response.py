@@ -55,3 +55,26 @@ def test_a_callback_of_a_service_is_blamed_only_for_its_own_error(
     found = reported(source, error)
     own = " gets the request first" in found.cause or MUST in found.cause
     assert (found.cause if own else "", found.line) == (words, to_look_at(source))
+
+
+LAMBDA = """\
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        self.create_service(SetBool, "/pause", {callback})
+
+rclpy.spin(Driver())  # crashed
+"""
+
+
+@pytest.mark.parametrize(
+    ("callback", "error", "told"),
+    [
+        ("lambda request, response: None", "TypeError", True),
+        ("lambda request, response: None", "TypeError: bad", False),
+        ("pause", "TypeError", False),
+    ],
+)
+def test_a_lambda_must_return_the_response(callback: str, error: str, *, told: bool) -> None:
+    found = reported(LAMBDA.format(callback=callback), error)
+    assert ("This lambda returns no response. The callback of a service must return" in found.cause) == told
