@@ -21,8 +21,8 @@ def programs_of(course: Path, step: str | None) -> Programs:
     """Return the executables of each package that a page of the course may start.
 
     `course` is the folder course/, next to which the solutions are. If `step` is None, or its solution has no package,
-    these are the executables of all solutions. The result is empty if there are no solutions, as in the students'
-    repository.
+    all solutions are used: for each package, the last one that contains it. The result is empty if there are no
+    solutions, as in the students' repository.
     """
     solutions = course.parent / "solutions"
     own = dict(_packages(solutions / step)) if step else {}

@@ -230,10 +230,10 @@ def _assignments(path: Path) -> list[str]:
 
 
 def misnamed(student: str, path: Path) -> Iterator[Found]:
-    """Yield the entries of a student's folder whose names are almost, but not exactly, the name of an exercise.
+    """Yield the entries of a student's folder that resemble the folder of an exercise, for example by their names.
 
-    These entries are not graded. Examples are a folder with capital letters in its name, and an archive. An entry is
-    not yielded if the folder of its exercise also exists.
+    These entries are not graded. Examples are a folder with capital letters in its name, an archive, and a symbolic
+    link. An entry is not yielded if the folder of its exercise also exists.
     """
     present = _assignments(path)
     try:

@@ -14,7 +14,7 @@ from grader.common.terminal_text import without_control
 
 
 class PlainText(io.TextIOWrapper):
-    """A text stream that writes text without control characters."""
+    """A text stream that replaces control characters as `without_control` does."""
 
     def write(self, text: str, /) -> int:
         """Write the text without control characters, and return the length of the text."""

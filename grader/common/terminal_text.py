@@ -33,7 +33,7 @@ def say(text: str, stream: Optional[TextIO] = None, style: str = "") -> None:
 
 
 def without_control(text: str) -> str:
-    r"""Return the text with a question mark in place of each control character.
+    r"""Return the text with a question mark in place of each control character except line feeds, tabs and colours.
 
     Example:
         >>> without_control("/a\x1b[2K\tb\n")

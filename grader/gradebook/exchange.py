@@ -41,7 +41,7 @@ class BoundedReleaseFeedback(ExchangeReleaseFeedback):  # type: ignore[misc, unu
 
 
 class BoundedList(ExchangeList):  # type: ignore[misc, unused-ignore]
-    """Lists the submissions of the exchange, except those whose files nbgrader could not read."""
+    """Lists the submissions of the exchange, except those that `inbound.why_not` or `require_listable` rejects."""
 
     assignments: list[str]
 

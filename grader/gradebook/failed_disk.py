@@ -26,7 +26,7 @@ def failed_disk(error: BaseException | None, written: str | os.PathLike[str] = "
 
 
 def _errno(error: OSError) -> int:
-    """Return the errno of an error of the disk, or 0. shutil.copytree raises an error that contains only its text."""
+    """Return the errno of an error of the disk, or 0. A shutil.Error has no errno, only the texts of other errors."""
     if isinstance(error, shutil.Error):
         reason = path_and_reason(error)[1]
         return next((number for number in sorted(OF_THE_DISK) if os.strerror(number) in reason), 0)

@@ -139,7 +139,7 @@ class Events:
     def _watch_one(self, folder: Path, watched: tuple[int, int], stop: Event) -> bool:
         """Watch the folder until the path leads to another folder, or folders are added or removed.
 
-        Return False if the folder could not be watched.
+        Return False if the folder could not be watched, or if `stop` is set.
         """
         begins = True
         self.watched = folders(folder)

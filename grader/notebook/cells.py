@@ -38,7 +38,7 @@ class Cells:
         try:
             written = cell_files.begin(self.exercise, Path.cwd(), alone=grading())
         except OSError as error:
-            message = f"{error.filename} could not be written: {error.strerror}."
+            message = f"{error.filename or Path.cwd()} could not be written: {error.strerror}."
             raise UsageError(message) from error
         if not grading():
             print(f"{self.exercise.id}: {self.exercise.title}")

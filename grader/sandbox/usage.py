@@ -210,7 +210,7 @@ def _ran_and_waited_s(pid: int) -> tuple[float, float]:
 def _disks(pid: int) -> dict[int, tuple[int, int]]:
     """Return the number of bytes and the number of files on each writable disk of the cell, by device.
 
-    The result is empty for a process outside the cell.
+    The result is empty for a process outside the cell, or if the process has exited.
     """
     root = Path(f"/proc/{pid}/root")
     found = {}

@@ -76,7 +76,7 @@ def read_plain_setup(setup_py: bytes, setup_cfg: bytes, paths: Collection[str]) 
 def only_calls_setup(setup_py: bytes, setup_cfg: bytes) -> bool:
     """Return whether setup.py only calls setup() with the usual arguments, and setup.cfg has the usual form.
 
-    The values of the arguments may be wrong.
+    Of the values of the arguments, only that of `name` is examined.
     """
     module = read_module("setup.py", setup_py)
     name = evaluate((_arguments(module) or {}).get("name"), module.names)

@@ -47,7 +47,7 @@ def why_indented(file: str, unreadable: Unreadable, data: bytes) -> Cause | None
 
 
 def _spaces(line: str) -> int | None:
-    """Return the number of spaces at the beginning of the line, or None if the line starts with a tab."""
+    """Return the number of spaces at the beginning of the line, or None if a tab is before or after them."""
     rest = line.lstrip(" ")
     return None if rest.startswith("\t") else len(line) - len(rest)
 

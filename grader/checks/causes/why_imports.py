@@ -22,7 +22,7 @@ NOT_HERE = {
 OWN_INTERFACES = ("_interfaces", "_msgs")
 """The usual endings of the name of a package that contains messages."""
 PART_OF_ROS_1 = re.compile(r"(?P<service>[A-Z][A-Za-z0-9]*)(?P<part>Request|Response)")
-"""Matches a class of rospy for the request or the response of a service, such as SetBoolResponse."""
+"""Matches the name of a class of ROS 1 for the request or the response of a service, such as SetBoolResponse."""
 NO_MODULE = re.compile(r"No module named '(?P<name>[\w.]+)'")
 NO_NAME = re.compile(r"cannot import name '(?P<name>\w+)' from '(?P<module>[\w.]+)'")
 

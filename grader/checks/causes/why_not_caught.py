@@ -99,7 +99,7 @@ def _wrong_name(evidence: Evidence) -> Cause | None:
 
 
 def targets_were(names: Collection[str]) -> str:
-    """Return a sentence with the names of all targets of the trial."""
+    """Return a sentence that names the targets, or says that there was none. It names at most 12 of them."""
     if not names:
         return "No target existed."
     listed = a_list([shorten(name) for name in sorted(names)])

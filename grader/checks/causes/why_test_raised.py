@@ -1,4 +1,4 @@
-"""Explain the exception that a student's test raises on the correct node, instead of an assert that fails."""
+"""Explain an exception, other than AssertionError, that a student's test raises on the correct node."""
 
 from __future__ import annotations
 

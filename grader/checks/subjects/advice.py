@@ -27,7 +27,7 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
     if evidence.code.calls("create_timer") and loop is None:
         return passed("The node uses a timer.")
     if evidence.code.node_file is None:
-        return Finding(Status.SKIPPED, "Not judged, because the file of the node is not known yet.")
+        return Finding(Status.SKIPPED, "Not judged, because the file of the node is unknown.")
     if evidence.code.node_file not in {module.file for module in evidence.code.modules if module.body}:
         return Finding(Status.SKIPPED, "Not judged, because the file of the node cannot be read, or contains no code.")
     cause = "A timer calls a method periodically, with a period that the node chooses."

@@ -121,7 +121,7 @@ def _found(node: Node, args: argparse.Namespace) -> str:
 
 
 def with_parameters(node: Node, *, all_of_them: bool) -> list[str]:
-    """Return the sorted names of the nodes that have parameters."""
+    """Return the sorted names of the nodes that have parameters, without hidden nodes unless `all_of_them` is true."""
     offered = {service for service, _ in node.get_service_names_and_types()}
     found = nodes(node, all_of_them=True)
     shown = [name for name in found if all_of_them or not hidden(name.rpartition("/")[2])]

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import errno
+import os
 from pathlib import Path
 
 import pytest
@@ -7,7 +9,9 @@ import pytest
 from grader.checks.exercises import find_exercise
 from grader.errors import UsageError
 from grader.exercise.starting_point import starting_point
+from grader.notebook import cell_files
 from grader.notebook.cell_files import begin
+from grader.notebook.cells import Cells
 from grader.submission.notebook_cells import Part, counts, part_path, parts_of
 
 CIRCLE = find_exercise("03")
@@ -91,3 +95,13 @@ def test_only_the_notebook_of_a_solution_keeps_the_numbers_of_the_starting_point
     numbers = Path(CHALLENGES.package, CHALLENGES.numbers.file)
     given = (starting_point(CHALLENGES) / numbers).read_bytes()
     assert ((folder / numbers).read_bytes() == given) is kept
+
+
+def test_the_message_about_a_full_disk_names_the_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object, **__: object) -> tuple[str, ...]:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))  # an error of write() has no file name
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(cell_files, "begin", fail)
+    with pytest.raises(UsageError, match=f"^{tmp_path} could not be written: No space left on device\\.$"):
+        Cells().step(CIRCLE.id)

@@ -58,7 +58,7 @@ class RqtPage:
         self._services: list[Service] = []
 
     async def serve(self, place: Place, *, stays: bool) -> bool:
-        """Serve until Ctrl-C. Return True.
+        """Serve until SIGINT, SIGTERM or SIGHUP arrives. Return True.
 
         Return False immediately if `stays` is false and the page cannot be opened in a browser.
         """

@@ -147,7 +147,7 @@ def test_a_node_with_a_rate_does_not_fail_for_a_lack_of_messages() -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (None, "the file of the node is not known yet"),
+        (None, "the file of the node is unknown."),
         ("def (:\n", "cannot be read"),
         ("", "contains no code"),
         ("# later\n", "contains no code"),
