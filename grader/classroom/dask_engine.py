@@ -39,7 +39,8 @@ _lock = Lock()
 def perform_here(packed: bytes) -> tuple[str, object]:
     """Grade a pickled task in a separate process. This function runs in a thread of a Dask worker.
 
-    Return ("done", Done), ("fails", text) if this machine cannot grade, or ("died", text) if the process died.
+    Return ("done", Done), ("fails", text) if this machine cannot grade, or ("died", text) if the process died or
+    needed more than TASK_S.
     """
     task = pickle.loads(packed)  # the instructor's command handles Ctrl-C
     with _lock:

@@ -1,4 +1,4 @@
-"""A sentence for each system error (full disk, no memory, too many open files or processes) that says what to do.
+"""A sentence for each system error, such as a full disk or too many open files, that says what to do.
 
 Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
 of Python 3.6.

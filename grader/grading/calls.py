@@ -34,7 +34,7 @@ def call(
     The random noise depends on `seed`.
 
     Raises:
-        MachineError: the sandbox does not work.
+        MachineError: no call could be made, for example because the sandbox does not work.
     """
     drawn = DEFAULT_SEED if seed is None else seed
     calls = spec.calls

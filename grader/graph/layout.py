@@ -37,14 +37,15 @@ def render(dot: str, kind: Format) -> bytes:
             )
         except subprocess.TimeoutExpired as error:
             message = (
-                f"Graphviz did not draw the graph within {_HANG_S:.0f} s; --output graph.dot works without Graphviz."
+                f"Graphviz did not draw the graph within {_HANG_S:.0f} s. `rqt_graph --output graph.dot` works without "
+                "Graphviz."
             )
             raise MachineError(message) from error
     if done.returncode != 0:
         last = done.stderr.decode(errors="replace").strip().rpartition("\n")[2] or "no message"
         message = (
             f"The graph could not be drawn ({last}). This needs pygraphviz, which `make demo` in the course's folder "
-            "installs. Without it, --text and --output graph.dot still work."
+            "installs. Without it, `rqt_graph --text` and `rqt_graph --output graph.dot` still work."
         )
         raise MachineError(message)
     if kind == "svg":

@@ -1,7 +1,8 @@
 """Charts over time as SVG: the intervals between commands, and the values in the commands.
 
-All charts have the same time axis. If there are more values than a chart can show, only the lowest and the highest
-value of each short period are drawn. Colour is never the only cue: a value that is not allowed is drawn as a cross.
+All charts of a trial have the same time axis. If there are more values than a chart can show, only the lowest and the
+highest value of each short period are drawn. Colour is never the only cue: a value that is not allowed is drawn as a
+cross.
 """
 
 from __future__ import annotations

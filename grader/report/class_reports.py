@@ -35,7 +35,7 @@ MB = 1_000_000
 LARGEST = 4 * MB
 """The maximum size of a report (bytes). The grader never writes a larger report."""
 MOST_BYTES = 100 * MB
-"""The maximum size of all reports (bytes). If they are larger, the largest are left out."""
+"""When the reports that were read have more than this size in total (bytes), all larger reports are left out."""
 MOST_AT_ONCE, MOST_BYTES_AT_ONCE = 500, 8 * MB
 """The maximum number and size of the files that one reading process reads."""
 MOST_FOUND = 100_000
@@ -188,8 +188,8 @@ def _all(folder: Path, files: Sequence[tuple[str, int]]) -> Iterator[_Found | _L
     total = 0
     for names in _batches(sorted(files, key=lambda each: each[1])):
         if total > MOST_BYTES:
-            reason = f"it has {sizes[names[0]] / MB:.1f} MB, and the smaller reports already have {MOST_BYTES // MB} MB"
-            yield from (_LeftOut(name, reason) for name in names)
+            reason = f"and the smaller reports already have more than {MOST_BYTES // MB} MB"
+            yield from (_LeftOut(name, f"it has {sizes[name] / MB:.1f} MB, {reason}") for name in names)
             continue
         for each in _batch(folder, names):
             total += sizes[each.name] if isinstance(each, _Found) else 0

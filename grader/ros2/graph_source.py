@@ -17,8 +17,7 @@ def look(args: argparse.Namespace) -> Look:
     If no daemon responds, start one for the next command (unless GRADER_ROS2_DAEMON=0). With `args.no_daemon`, do not
     use or start a daemon.
 
-    Raises:
-        Ros2Error: the node could not be created.
+    Raises the same exceptions as `cli_node`.
     """
     if not getattr(args, "no_daemon", False):
         answer = client.request("look")

@@ -85,7 +85,7 @@ def _call_before_spin(evidence: Evidence) -> Cause | None:
 
 
 def not_spun(evidence: Evidence) -> Cause | None:
-    """Return the cause if the program spins no node, or another node than the one with the callbacks, else None."""
+    """Return the cause if an executor spins without a node, or if nothing spins one of several nodes, else None."""
     return _empty_executor(evidence) or _second_node(evidence)
 
 

@@ -69,7 +69,7 @@ def why_from_afar(evidence: Evidence) -> Cause | None:
 
 
 def _is_sum_of_squares(value: ast.expr) -> bool:
-    """Return whether an expression adds two squares and takes no square root."""
+    """Return whether an expression adds powers, as in dx**2 + dy**2, and takes no square root."""
     powers = [each for each in ast.walk(value) if isinstance(each, ast.BinOp) and isinstance(each.op, ast.Pow)]
     halves = any(isinstance(each.right, ast.Constant) and each.right.value == 0.5 for each in powers)
     calls = [each.func for each in ast.walk(value) if isinstance(each, ast.Call)]

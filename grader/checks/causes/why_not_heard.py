@@ -107,7 +107,7 @@ def _not_called(events: NodeEvents, run: NodeRun, code: TestCode, right: Behavio
         return Cause("bench-clock-stands", text, _place(code, run, OVERRIDE))
     text = (
         f"A pose arrived when the node's clock showed {events.clock_s:g} s, but the callback of its timer has not run. "
-        f"The clock was not advanced by a whole period. Advance it in steps of {right.period_s:g} s, and spin after "
+        f"The callback is due after a whole period: advance the clock in steps of {right.period_s:g} s, and spin after "
         "each step."
     )
     return Cause("bench-clock-stands", text, _place(code, run, OVERRIDE))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 CHANGE = "The commands change. A circle needs the same command all the time."
 AT_ONCE_S = 0.05
-"""A command has no effect if another command follows within this time (s)."""
+"""A command that follows another one within this time (s) is considered to replace it at once."""
 
 
 def all_commands(evidence: Evidence) -> tuple[Command, ...]:

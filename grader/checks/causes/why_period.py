@@ -28,10 +28,7 @@ SAME = 0.1
 """A number in the source explains a measured interval if the two differ by at most this fraction of the interval."""
 
 FEWEST_CALLS, MOST_CALLS = 2, 20
-"""The range of n for a callback that counts its calls and sends a message only on every n-th call.
-
-A larger n cannot be measured.
-"""
+"""The range of n for a callback that counts its calls and sends a message only on every n-th call."""
 
 PERIOD = "The first argument of create_timer is the timer period in seconds."
 

@@ -96,7 +96,7 @@ def _other_module(evidence: Evidence) -> Cause | None:
 
 
 def _names_in_source(evidence: Evidence) -> tuple[str, ...]:
-    """Return the full names of the nodes that the source creates. Names that are not constants are left out."""
+    """Return the names of the nodes that the source creates, each after a slash. Only constant names are included."""
     calls = [call for function in ("__init__", "create_node", "Node") for call in evidence.code.calls(function)]
     values = [evaluate(call.argument(0, "node_name"), call.module.names) for call in calls]
     return tuple(f"/{value}" for value in values if isinstance(value, str))

@@ -35,7 +35,7 @@ class SplitWriter:
     of the messages in a file (bytes), and `most_s` is the maximum duration of a file (s). The value 0 means no limit.
 
     Raises:
-        Ros2Error: the folder cannot be created.
+        Ros2Error: the folder cannot be created, or a file cannot be completed.
     """
 
     def __init__(self, folder: Path, storage: str, compression: str, *, most_bytes: int, most_s: int) -> None:

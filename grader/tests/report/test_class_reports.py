@@ -53,9 +53,21 @@ def test_two_hundred_large_reports_do_not_prevent_the_page(folder: Path) -> None
     assert {"anna", "ben"} <= set(_names(reports))
     assert 30 < len(_names(reports)) < 60
     assert len(_names(reports)) + len(reports.left_out) == 202
-    assert reports.lines[0].endswith("it has 2.0 MB, and the smaller reports already have 100 MB.")
+    assert reports.lines[0].endswith("it has 2.0 MB, and the smaller reports already have more than 100 MB.")
     assert len(reports.lines) == MOST_LINES + 1
     assert reports.lines[-1] == f"Left out: {len(reports.left_out) - MOST_LINES} more, see the page."
+
+
+def test_the_size_of_each_report_that_is_left_out_is_named(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, value in (("MOST_BYTES", 0), ("MOST_AT_ONCE", 2)):
+        monkeypatch.setattr(class_reports, name, value)
+    _write(folder / "carl.json", "carl", 1_000_000)
+    _write(folder / "dora.json", "dora", 2_000_000)
+    of_others = "and the smaller reports already have more than 0 MB."
+    assert read_class(folder).lines == [
+        f"Left out: carl.json: it has 1.0 MB, {of_others}",
+        f"Left out: dora.json: it has 2.0 MB, {of_others}",
+    ]
 
 
 @pytest.mark.parametrize("harm", [os.abort, lambda: bytearray(4 * 1024**3)], ids=["crash", "memory"])

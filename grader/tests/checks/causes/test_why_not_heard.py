@@ -74,7 +74,7 @@ def cause(message: str, events: NodeEvents | None, source: str = BENCH) -> str:
             "bench-clock-stands test/test_it.py:8",
             "the node's clock showed 0.1 s, but the callback",
         ),
-        (NONE, STOOD, RIGHT, "bench-clock-stands", "Advance it in steps of 0.1 s, and spin after each step."),
+        (NONE, STOOD, RIGHT, "bench-clock-stands", "The callback is due after a whole period: advance the clock"),
         (NONE, NO_POSE, RIGHT, "bench-no-pose test/test_it.py:4", "but no pose had arrived on /turtle1/pose. Does"),
         (
             NONE,
