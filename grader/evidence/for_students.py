@@ -1,4 +1,4 @@
-"""The evidence that students may see: without hidden checks, and without trials that only hidden checks use."""
+"""The evidence that students may see."""
 
 from __future__ import annotations
 

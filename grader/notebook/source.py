@@ -29,7 +29,7 @@ def refreshed(data: bytes, exercise: Exercise, files: Mapping[str, bytes], name:
 
     Raises:
         UsageError: the data is not a notebook, or a cell writes a file that is not in the solution. The message
-            contains `name` and the number of the cell.
+            contains `name` and, if a cell is wrong, its number.
     """
     try:
         notebook: dict[str, Any] = json.loads(data)

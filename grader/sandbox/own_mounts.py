@@ -40,6 +40,9 @@ def keep_only(paths: Iterable[Path]) -> bool:
 
     A few files of /proc stay, too. Paths that do not exist are ignored. Return False if the system does not permit the
     removal.
+
+    Raises:
+        OSError: the removal has begun, and one of its steps failed.
     """
     c = ctypes.CDLL(None, use_errno=True)
     if platform.machine() not in _PIVOT_ROOT or not _unshared(c):

@@ -49,7 +49,7 @@ class Module:
 
     @cached_property
     def names(self) -> Names:
-        """The assigned names with their expressions."""
+        """The assigned names with their expressions, as `single_names` returns them."""
         return Names() if self.tree is None else single_names(self.tree)
 
     @property

@@ -289,7 +289,7 @@ class SimulatedTrial(Simulation):
     def _is_ending(self, limit_s: float = ENDING_S) -> bool:
         """Return whether the node exits within the time limit.
 
-        A sleeping thread may also belong to a node that is shutting down after an exception.
+        A node that shuts down after an exception may sleep for a moment, which does not mean that it needs wall time.
         """
         deadline = time.monotonic() + limit_s
         while time.monotonic() < deadline:

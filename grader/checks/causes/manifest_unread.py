@@ -78,7 +78,7 @@ def _malformed(data: bytes, problem: str, line: int | None) -> Cause:
     end = end_of_root(data)
     if end is not None and line is not None:
         last, at = end
-        cause = f"</{shorten(last, 30)}> on line {at} is the last tag. No text or tag may follow it"
+        cause = f"</{shorten(last, 30)}> on line {at} closes the first tag. No text or tag may follow it"
         more = text.strip() if line > at else ""
         cause += f', but line {line} contains "{shorten(more, 30)}".' if more else "."
     elif "mismatched tag" in problem:

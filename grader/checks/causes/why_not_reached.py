@@ -30,7 +30,8 @@ ASIDE_RAD = 0.3
 """A target within this angle (rad) is considered straight ahead or straight behind, so a turn in either direction is
 right."""
 MOST = 0.8
-"""The cause is reported only if in at least this fraction of its commands to turn, the turtle turned or faced away."""
+"""Of the commands that turn turtle1, at least this fraction must turn it away from the target or find it facing away.
+Otherwise, the node is considered to turn in the right direction."""
 FEWEST, FEWEST_AWAY = 10, 3
 """The minimum number of turns, and of turns away from the target, that are needed for a conclusion."""
 

@@ -32,6 +32,12 @@ def steady_command(evidence: Evidence) -> tuple[float, float] | None:
     return next(iter(found)) if len(found) == 1 else None
 
 
+def zeros_between(evidence: Evidence) -> bool:
+    """Return whether a command with only zeros arrived between two other commands."""
+    drives = "".join("01"[any(command.values)] for command in all_commands(evidence))
+    return "10" in drives.rstrip("0")
+
+
 def radius_of_commands(evidence: Evidence) -> str:
     """Return a sentence about the radius that follows from the commands, or "" if they change or are not finite."""
     speed = steady_command(evidence)

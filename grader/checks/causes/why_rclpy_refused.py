@@ -109,7 +109,7 @@ def _is_interface(scene: CrashScene, name: str) -> bool:
 
 
 def _value_of_parameter(scene: CrashScene) -> Cause | None:
-    """Return the cause if the default value of a declared parameter is a Parameter or an odd object, else None."""
+    """Return the cause if a parameter is declared twice, or its default value has no parameter type, else None."""
     if scene.crash.error == "ParameterAlreadyDeclaredException":
         return _declared_twice(scene)
     if "The given value is not one of the allowed types" not in scene.crash.message:

@@ -103,7 +103,7 @@ def _formatted(scene: CrashScene) -> Cause | None:
 
 
 def _key(scene: CrashScene) -> Cause | None:
-    """Return the cause if a message is a key of a dictionary, or is used as if it were a collection, else None."""
+    """Return the cause if an object cannot be the key of a dictionary, or is not a collection, else None."""
     hashed, looped = UNHASHABLE.search(scene.crash.message), NOT_ITERABLE.search(scene.crash.message)
     if hashed is not None and hashed["type"][:1].isupper():
         text = f"A {hashed['type']} cannot be the key of a dictionary or an item of a set. Use a name as the key."

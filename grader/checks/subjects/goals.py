@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 TYPE = "turtlesim/action/RotateAbsolute"
 SAME_RAD = 0.02
+SAME = "This heading is the same as in the previous goal. The heading must change before the next goal is sent."
 HALF_TURN_S = 3.2
 """The longest time (s) that the turtle needs to reach a goal: it turns by at most pi rad, at 1 rad/s."""
 STILL_DRIVES_S = 0.5
@@ -166,6 +167,8 @@ def _other_turn(before: Goal, goal: Goal, turn_deg: float) -> str:
     if abs(normalize(theta - math.radians(turn_deg))) <= SAME_RAD:
         return "A goal is an absolute heading, not a turn: 0 is to the right, whatever the heading was before."
     more = math.degrees(normalize(theta - float(before.request["theta"])))
+    if abs(more) < 0.5:  # shown as 0 degrees
+        return SAME
     return (
         f"This heading is {_degrees(abs(more))} further to the {'left' if more >= 0 else 'right'} than the previous "
         f"one. The exercise asks for {turn_deg:g} degrees to the left."
@@ -182,7 +185,7 @@ def _again(before: Goal, goal: Goal) -> str:
     """Return a sentence if the heading is that of the previous goal, or has the opposite sign, else ""."""
     theta, earlier = float(goal.request["theta"]), float(before.request["theta"])
     if abs(normalize(theta - earlier)) <= SAME_RAD:
-        return "This heading is the same as in the previous goal. The heading must change before the next goal is sent."
+        return SAME
     if abs(theta + earlier) <= SAME_RAD:
         return "This is the heading of the previous goal with the opposite sign."
     return ""

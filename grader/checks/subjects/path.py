@@ -18,6 +18,7 @@ from grader.checks.causes.why_path import (
     why_elsewhere,
     why_radius,
     why_replaced,
+    zeros_between,
 )
 from grader.checks.causes.why_stopped import cancelled
 from grader.checks.kind import Kind, NoParams, choice, number
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
     from grader.submission.where import Where
     from grader.trial.recording import Pose
 
+NO_COMMAND = "The turtle stops when no command arrives for 1 s."
+CHANGE = "The commands change. A circle needs the same command all the time."
 MOVED_M = 0.05
 """A turtle with a shorter trajectory than this (m) did not move."""
 TURNED_RAD = 0.1
@@ -212,7 +215,7 @@ def _not_round(
         cause = "For a circle, every command must move the turtle forward and turn it at the same time."
         return failed(observed, expected, Cause("polygon", cause, line_of_values(evidence)), near_edge=near_edge)
     changed = len({(command.linear, command.angular) for command in evidence.commands}) > 1
-    cause = "The commands change. A circle needs the same command all the time." if changed else ended_early(evidence)
+    cause = CHANGE if changed else ended_early(evidence)
     return failed(
         f"The trajectory is not round: {off}.",
         expected,
@@ -235,10 +238,10 @@ def _too_short(evidence: Evidence, trajectory: Trajectory, turns: float, expecte
         why = Cause("late-start", text, evidence.place("sleep", "publish"))
     elif trajectory.rests:
         observed = f"The turtle drove {turns:.2f} turns, with {count(trajectory.rests, 'stop')} on the way."
-        why = Cause("stops-and-goes", "The turtle stops when no command arrives for 1 s.")
+        why = Cause("stops-and-goes", CHANGE if zeros_between(evidence) else NO_COMMAND)
     elif activity.end_s(evidence.recording) - commands[-1].t_s > LIVES_S:
         observed = f"The turtle drove {turns:.2f} turns; the last command arrived at {commands[-1].t_s:.1f} s."
-        why = Cause("stopped-early", "The turtle stops when no command arrives for 1 s.", cancelled(evidence))
+        why = Cause("stopped-early", NO_COMMAND, cancelled(evidence))
     else:
         speed = steady_command(evidence)
         turn_s = 2.0 * math.pi / abs(speed[1]) if speed and speed[1] else 0.0

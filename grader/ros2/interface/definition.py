@@ -21,7 +21,7 @@ def lines(name: str, *, comments: bool = True, nested_comments: bool = False, de
     """Yield the lines of an interface. Without `comments`, empty lines are omitted, too.
 
     Raises:
-        Ros2Error: the interface is not installed.
+        Ros2Error: the interface, or the type of one of its fields, is not installed or cannot be read.
     """
     file = index.interface_file(name)
     try:
@@ -41,7 +41,7 @@ def lines(name: str, *, comments: bool = True, nested_comments: bool = False, de
 def _strip_comment(line: str) -> str:
     """Return the line as `--no-comments` prints it.
 
-    If a space follows the #, the real `ros2` prints the #, and so does this function.
+    After a field, if a space follows the #, the real `ros2` prints the #, and so does this function.
     """
     before = _without_comment(line)
     behind = line[len(before) :]

@@ -39,7 +39,7 @@ class _Topic:
 
 
 class Plotted:
-    """Subscribes to the topics of the wanted fields. All methods run in the thread of the node.
+    """Subscribes to the topics of the wanted fields. Once the node spins, all methods run in its thread.
 
     `flush` passes the new samples of each field and the problem of each wanted field ("" for none) to `tell`.
     """

@@ -132,6 +132,7 @@ UNASKED = goal(1.0, 80.0, 2.4, result_asked_s=None)
             [FIRST, goal(3.0, 81.0, 3.6)],
             [FIRST, goal(3.0, 82.0, 3.6)],
         ),
+        ("This heading is the same as", [FIRST, goal(3.0, 80.0, 3.6)], [FIRST, goal(3.0, 81.0, 3.6)]),
         ("A goal is an absolute heading, not a turn", [FIRST, goal(3.0, 30.0, 3.6)], [FIRST, goal(3.0, 120.0, 3.6)]),
     ],
 )

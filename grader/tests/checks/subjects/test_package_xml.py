@@ -144,19 +144,22 @@ def test_what_was_left_out_of_the_submission_is_reported(more: tuple[str, ...], 
             {"package.xml": f"{PACKAGE_XML}<more/>"},
             "xml-malformed",
             "package.xml:15",
-            '</package> on line 14 is the last tag. No text or tag may follow it, but line 15 contains "<more/>".',
+            '</package> on line 14 closes the first tag. No text or tag may follow it, but line 15 contains "<more/>".',
         ),
         (
             {"package.xml": f"{PACKAGE_XML}</package>\n"},
             "xml-malformed",
             "package.xml:15",
-            '</package> on line 14 is the last tag. No text or tag may follow it, but line 15 contains "</package>".',
+            (
+                "</package> on line 14 closes the first tag. "
+                'No text or tag may follow it, but line 15 contains "</package>".'
+            ),
         ),
         (
             {"package.xml": f"{PACKAGE_XML.rstrip()} end\n"},
             "xml-malformed",
             "package.xml:14",
-            "</package> on line 14 is the last tag. No text or tag may follow it.",
+            "</package> on line 14 closes the first tag. No text or tag may follow it.",
         ),
         (
             xml("</depend>\n  <depend>turtle", "</depends>\n  <depend>turtle"),

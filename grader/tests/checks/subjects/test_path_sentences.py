@@ -27,6 +27,7 @@ def test_the_cause_of_one_trajectory_is_not_told_for_another(shape: str, words: 
 
 LATE = every(0.5, 2.0, 1.0, first_s=5.0)
 SLOW = every(0.5, 1.0, 0.5)
+PULSES = [(t_s, *((2.0, 1.0) if round(2.0 * t_s) % 2 else (0.0, 0.0))) for t_s, _, _ in SLOW]
 UNSTEADY = [(t_s, 1.0, 0.5 + 0.0001 * t_s) for t_s, _, _ in SLOW]
 
 
@@ -35,6 +36,7 @@ UNSTEADY = [(t_s, 1.0, 0.5 + 0.0001 * t_s) for t_s, _, _ in SLOW]
     [
         ("A turtle that starts late has less time for the circle.", LATE, SLOW),
         ("turns; the first command arrived at 5.0 s.", LATE, SLOW),
+        ("The commands change. A circle needs the same command all the time.", PULSES, every(2.0, 2.0, 1.0)),
         ("With angular.z = 0.5 rad/s, one turn takes 12.6 s.", SLOW, UNSTEADY),
         ("linear.x is negative, so the turtle drives backwards.", every(0.5, -2.0, -1.0), every(0.5, 2.0, -1.0)),
     ],
