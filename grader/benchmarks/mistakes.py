@@ -2,12 +2,12 @@
 
     python -m grader.benchmarks.mistakes [--only NNN ...]
 
-F is the cost of the same work without the grader: a colcon build of the package, and one process with one rclpy node
-for each trial of the exercise (benchmarks/bare.py). For example, 04-package-files has two trials, and 07-challenges has
-four. Each part of F is the median of three measurements. The speed of a machine varies during the minutes that this
-benchmark takes, so F is measured again after every few cases. Cases that need wall time are left out. A case that
-exceeds the target in the first measurement is measured three more times, each time immediately after F. The median of
-these three measurements is used.
+F is the cost of similar work without the grader: a colcon build of the solution of step 03, and one process with one
+rclpy node for each trial of the exercise (benchmarks/bare.py). For example, 04-package-files has two trials, and
+07-challenges has four. Each part of F is the median of three measurements. The speed of a machine varies during the
+minutes that this benchmark takes, so F is measured again after every few cases. Cases that need wall time are left out.
+A case that exceeds the target in the first measurement is measured three more times, each time immediately after F. The
+median of these three measurements is used.
 """
 
 from __future__ import annotations

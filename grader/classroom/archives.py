@@ -92,7 +92,10 @@ def sha256_of(archive: Path) -> str:
 
 
 def _hashed(archive: Path, target: IO[bytes] | None = None) -> tuple[str, Exception | None]:
-    """Return the hash of an archive, and why it cannot be unpacked. Write what is hashed to `target`."""
+    """Return the hash of an archive's name and content, and the reason why it cannot be unpacked, or None.
+
+    The content is also written to `target`.
+    """
     whole = hashlib.sha256(archive.name.encode("utf-8", "surrogateescape") + b"\0")
     size = 0
     try:

@@ -6,7 +6,7 @@ and a folder with students' clones of the course, each of which contains exercis
 No student is omitted. Each folder, archive and symbolic link becomes a submission, except what programs create (such as
 .git). Links are included because a student may have replaced a folder with a link. If a submission cannot be graded,
 `Found.refused` contains the reason. This module uses os.path, because the functions of os.path return False for a path
-that cannot be accessed, while the methods of pathlib raise an exception.
+that cannot be accessed. Before Python 3.14, the methods of pathlib raise an exception.
 """
 
 # ruff: noqa: PTH100, PTH110, PTH112, PTH113, PTH114, PTH118
@@ -171,7 +171,7 @@ def _is_one_alone(folder: Path) -> bool:
 
 
 def _is_handed_in(entry: Path) -> bool:
-    """Return whether an entry next to the folder `exercises` is an archive, or a folder with a package in it."""
+    """Return whether an entry next to `exercises` is an archive, a submission, or a folder that contains a package."""
     return not os.path.isdir(entry) or _is_one(entry) or any(any(entry.glob(f"*/{name}")) for name in PACKAGE_FILES)
 
 

@@ -14,7 +14,7 @@ class EntryPoints:
     """`importlib.metadata.entry_points` with a cache.
 
     The original function reads the metadata of every package on each call, up to fifteen times per run of setup.py.
-    EntryPoints reads the metadata of the installed packages only once. On most calls, it reads only the metadata in
+    EntryPoints reads the metadata of the installed packages once. On most later calls, it reads only the metadata in
     other folders on sys.path, such as the folder of the submission.
     """
 

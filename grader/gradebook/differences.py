@@ -21,7 +21,7 @@ class Difference:
     """A check on which the kernel and the grader disagree, or whose score is not confirmed.
 
     `kernel` is None if the notebook has no score for the check. `grader` is None if the grader has not confirmed the
-    score. If `grader` is None, the check is worth 0 points, and `why` is the reason.
+    score. If `grader` is None, the student gets 0 points for the check, and `why` is the reason.
     """
 
     student: str

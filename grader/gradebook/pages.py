@@ -1,4 +1,6 @@
-"""Limit nbgrader's pages to the text and pictures of a student's notebook, without scripts or styles.
+"""Limit nbgrader's pages to the text of a student's notebook and the pictures in its outputs.
+
+The pages contain no scripts or styles from the notebook, and no pictures from its Markdown.
 
 nbgrader shows feedback and the formgrader in the browser of an instructor, who is logged in to Jupyter. nbgrader's
 templates insert HTML from Markdown and outputs into these pages without escaping the HTML.

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.evidence.evidence import Evidence
+    from grader.exercise.model import TrialSpec
     from grader.report.report import Report
 
 SIDE_PX = 640
@@ -60,13 +61,17 @@ def _png(evidence: Evidence, report: Report) -> bytes:
     return image.getvalue()
 
 
+def _is_drawn(trial: TrialSpec) -> bool:
+    return not trial.calls and trial.tests is None and not trial.beside
+
+
 def draw_picture(evidence: Evidence, report: Report) -> Image.Image:
     """Return one image with a picture of each trial, except trials without a simulator.
 
     A trial whose node runs in another trial (`beside`) has no picture of its own. If there is no trajectory
     to draw, the picture shows the reason.
     """
-    trials = [each for each in evidence.views() if not each.trial.calls and not each.trial.beside] or [evidence]
+    trials = [each for each in evidence.views() if _is_drawn(each.trial)] or [evidence]
     panels = _panels(len(trials))
     page = _page(panels)
     pen = ImageDraw.Draw(page)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 MOST_BYTES = 10_000_000
-"""The maximum size of a text file (bytes): a parameter file, options, or the metadata of a bag."""
+"""The maximum size of a text (bytes): a parameter file, options, the metadata of a bag, or standard input."""
 _OF_THE_SHELL = ("/dev/", "/proc/")
 """The folders of standard input and of the pipes in `<(COMMAND)`. Another program writes to these pipes."""
 _KINDS = {

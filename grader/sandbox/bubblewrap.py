@@ -71,7 +71,7 @@ def ros_view(ros: Ros, *more: Path) -> View:
 
 
 def program() -> str | None:
-    """Return the path of bwrap, or None if it is not installed."""
+    """Return the path of bwrap, or None if it is not in one of the system's folders."""
     return shutil.which("bwrap", path="/usr/local/bin:/usr/bin:/bin")
 
 

@@ -138,7 +138,10 @@ def _resolved(node: ast.expr | None, module: Module) -> ast.expr | None:
 
 
 def _groups(call: Call, module: Module) -> dict[str, ast.expr] | None:
-    """Return the groups in entry_points (empty if there are none), or None if they are not constant."""
+    """Return the groups in entry_points (empty if there are none), or None if entry_points is not a known dictionary.
+
+    Groups whose names are not constant are left out.
+    """
     given = call.argument(99, "entry_points")
     if given is None:
         return None if any(keyword.arg is None for keyword in call.node.keywords) else {}

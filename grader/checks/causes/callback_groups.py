@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 REGISTERS = {"create_timer": 2, "create_subscription": 4, "create_service": 3}
-"""Maps a method that registers a callback to the number of parameters before `callback_group`."""
+"""Maps a method that registers a callback to the maximum number of positional arguments without a callback group."""
 SELF = "self."
 
 

@@ -27,7 +27,7 @@ STILL_S = 3.0
 """A turtle that has not moved for this time (s) is considered to stand still."""
 STILL_M = 0.05
 NEAR_M = 1.0
-"""A turtle that stands still within this distance (m) of a target is considered to have reached it."""
+"""A turtle within this distance (m) of a target is considered to be near it."""
 CATCH = "/catch"
 OWN_POSE = "/turtle1/pose"
 COMMANDS = "/turtle1/cmd_vel"

@@ -32,7 +32,7 @@ def _nodes(evidence: Evidence) -> Iterator[tuple[Module, ast.AST]]:
 
 
 def _busy_loop(evidence: Evidence) -> Cause | None:
-    """Return the cause if a while loop in a callback publishes and reads an attribute, else None."""
+    """Return the cause if a while loop in a callback publishes and reads an attribute such as self.pose, else None."""
     if has_threads(evidence):
         return None
     for module, function in functions_in_callbacks(evidence.code.modules):

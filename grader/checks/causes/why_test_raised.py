@@ -54,11 +54,16 @@ def _without_self(message: str, code: TestCode) -> Cause | None:
     for module, node in _nodes(code):
         for method in node.body if isinstance(node, ast.ClassDef) and node.name == owner["owner"] else ():
             first = method.args.args[:1] if isinstance(method, ast.FunctionDef) else []
-            if first and first[0].arg != "self" and isinstance(method, ast.FunctionDef):
+            if first and first[0].arg != "self" and isinstance(method, ast.FunctionDef) and not _is_static(method):
                 name = shorten(method.name, 60)
                 text = f"{name} is a method, so its first parameter is self. Write (self, {shorten(first[0].arg)})."
                 return Cause("self-parameter", text, Where(module.file, method.lineno))
     return None
+
+
+def _is_static(method: ast.FunctionDef) -> bool:
+    """Return whether the method is a class method or a static method, so that its first parameter is not self."""
+    return any(ast.unparse(each) in ("classmethod", "staticmethod") for each in method.decorator_list)
 
 
 def _nodes(code: TestCode) -> Iterator[tuple[Module, ast.expr | ast.stmt]]:

@@ -21,7 +21,7 @@ NOT_ITERABLE = re.compile(r"'(?P<type>\w+)' object is not iterable")
 BRACES = re.compile(r"unknown substitution: (?P<name>\{\w+\})")
 PARTS = ("Request", "Goal")
 SENDERS = {"call_async": "create_client", "call": "create_client", "send_goal_async": "ActionClient"}
-"""Maps a method that sends a request or a goal to the function that creates its client."""
+"""Maps a method that sends a request or a goal to the function or class that creates its client."""
 PATHS = frozenset({"PosixPath", "Path", "WindowsPath"})
 
 

@@ -71,8 +71,8 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
     pattern = Format(params.format).pattern()
     logged = called.stderr.splitlines() if not any(map(pattern.fullmatch, lines)) else []
     if any(pattern.fullmatch(line.strip().rpartition("]: ")[2]) for line in logged):
-        cause = "The line is in the log, which goes to stderr. Write it with print, which goes to stdout."
-        log = evidence.place("info", "warning", "warn", "error", "debug")
+        cause = "The line is on stderr, where the log goes. Write it to stdout, as print does by default."
+        log = evidence.place("info", "warning", "warn", "error", "debug", "print")
         return failed(f"{name} did not print the line.", expected, Cause("prints-nothing", cause, log))
     if not lines:
         cause = "print writes a line. The function main of the entry point must reach the line with print."

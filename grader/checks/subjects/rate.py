@@ -136,7 +136,7 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
 
 
 def _follows_poses(evidence: Evidence, mean_hz: float) -> bool:
-    """Return whether the node seems to send one message per pose, at the same rate in simulated time and wall time."""
+    """Return whether the node seems to send one message per pose. Its rate is then the same with both clocks."""
     return abs(mean_hz - POSES_HZ) <= 0.5 and not evidence.code.calls("create_timer")
 
 

@@ -209,7 +209,7 @@ def _scaled(six: Six, wanted: Six, off: list[int]) -> tuple[Cause, str] | None:
 
 
 def requested_values(_: Evidence, params: Values) -> Requested:
-    """Return the six values of each command."""
+    """Return the six values that each command must have."""
     return Requested(values=params.wanted)
 
 

@@ -30,7 +30,7 @@ def add_bag(parser: argparse.ArgumentParser) -> None:
 
 
 def add_log_level(parser: argparse.ArgumentParser) -> None:
-    """Add the option that selects which messages are printed."""
+    """Add the option for the minimum level of the log messages that are printed."""
     parser.add_argument(
         "--log-level", default="info", choices=LEVELS, help="print messages of this level and above (default: info)"
     )

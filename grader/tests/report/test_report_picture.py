@@ -12,6 +12,8 @@ from PIL import Image
 
 from grader.errors import UsageError
 from grader.evidence.evidence import Run
+from grader.exercise.model import Scenario, TrialSpec
+from grader.exercise.node_under_test import Behaviour, TestsSpec
 from grader.report.picture import BOTTOM, HEADING, LEFT, RIGHT, SIDE_PX, SMALL_PX, TOP, draw_picture, save_picture
 from grader.report.shapes import LOOKS, SEA, SIDE_M
 from grader.tests.checks.made import every, evidence, good, recording
@@ -98,6 +100,14 @@ def test_a_title_of_any_length_and_script_fits() -> None:
     given = evidence(good())
     long = report_of(given, exercise_title="円を描く " * 80)
     assert draw_picture(given, long).size == draw_picture(given, report_of(given)).size
+
+
+def test_a_trial_with_tests_has_no_picture() -> None:
+    given = evidence(good())
+    tests = TrialSpec("tests", "a", "a", Scenario(0.0), tests=TestsSpec("guard", "Guard", 1, 1.0, Behaviour()))
+    exercise = replace(given.exercise, trials=(*given.exercise.trials, tests))
+    both = replace(given, exercise=exercise, runs={**given.runs, "tests": Run()})
+    assert draw_picture(both, report_of(given)).size == draw_picture(given, report_of(given)).size
 
 
 def test_an_exercise_without_a_circle_has_a_picture() -> None:

@@ -25,6 +25,8 @@ COMPARE = "Compare the test with the promises in wall_guard.py."
         (FIXTURE.format("yield Bench()"), MISSING, RAISES, 7),
         (CLASS.format("bench"), NO_RUN, "test_it is a method, so its first parameter is self. Write (self, bench).", 2),
         (CLASS.format("self, bench"), NO_RUN, RAISES, 7),
+        (f"{CLASS.format('self')}    @classmethod\n    def setup_class(cls):\n        pass\n", NO_RUN, RAISES, 7),
+        (f"{CLASS.format('self')}    @staticmethod\n    def wait(steps):\n        pass\n", NO_RUN, RAISES, 7),
         ("", "NameError: name 'Twst' is not defined", f"{RAISES} This name has no value here.", 7),
         ("", "AssertionError: assert 4 == 3", COMPARE, 7),
         ("", "assert 4 == 3", COMPARE, 7),

@@ -176,8 +176,9 @@ LOGGED = Called("slow", "exit 0", stdout="noise", stderr=f"[INFO] [1.5] [bag_rep
 @pytest.mark.parametrize(
     ("called", "words", "told"),
     [
-        (LOGGED, "The line is in the log, which goes to stderr. Write it with print", True),
-        (printed("noise"), "The line is in the log, which goes to stderr.", False),
+        (LOGGED, "The line is on stderr, where the log goes. Write it to stdout, as print does", True),
+        (Called("slow", "exit 0", stderr=LINE), "The line is on stderr, where the log goes.", True),
+        (printed("noise"), "The line is on stderr, where the log goes.", False),
         (
             Called("slow", "exit 2", stderr="bag_report: error: the following arguments are required: --bag"),
             "The program gets its argument without an option such as --bag.",
