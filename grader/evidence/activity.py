@@ -67,7 +67,7 @@ def spun(recording: Recording) -> bool:
 
 
 def commands(recording: Recording) -> tuple[Command, ...]:
-    """Return the commands that arrived before SIGINT, in the order of arrival.
+    """Return the commands that arrived before the end of the scenario (`end_s`), in the order of arrival.
 
     If all commands arrived in the initial period (START_S), return an empty tuple. A command that is published before
     the end of discovery is usually lost. Whether it arrives depends on the machine, but a report must not depend on the

@@ -79,14 +79,15 @@ class _Explaining:
     regrade: Regrade
     give_up: Callable[[], bool]
     made: list[Try] = field(default_factory=list)
-    behind: set[Key] = field(default_factory=set)
+    behind: set[tuple[str | None, str]] = field(default_factory=set)
+    """The causes that only appeared after a fix. A mistake often makes several checks fail with the same cause."""
 
     def run(self) -> Tries:
         begun = time.monotonic()
         longest = 0.0
         files: Mapping[str, bytes] = self.evidence.submission.files
         current = {outcome.id: outcome for outcome in self.outcomes}
-        known = {_key(outcome) for outcome in self.outcomes}
+        known = {_cause(outcome) for outcome in self.outcomes}
         tried: set[Key] = set()
         stopped = ""
         tests = 0
@@ -115,7 +116,7 @@ class _Explaining:
                 tried |= self._share(target, found, difference(files, changed))
                 files = changed
                 current |= found
-                self.behind |= {_key(each) for each in found.values() if _failed(each)} - known
+                self.behind |= {_cause(each) for each in found.values() if _failed(each)} - known
         return Tries(tuple(self.made), len(self.behind), stopped)
 
     def _share(self, target: Outcome, found: Mapping[str, Outcome], diff: str) -> set[Key]:

@@ -1,4 +1,4 @@
-"""The verb `topic info`: print the type of a topic, and its publishers and subscriptions."""
+"""The verb `topic info`: print the type of a topic, and count or list its publishers and subscriptions."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the type, the publishers and the subscriptions.
+    """Print the type, and the numbers of publishers and subscriptions. With --verbose, also describe each of them.
 
     Raises:
         Ros2Error: the topic does not exist.

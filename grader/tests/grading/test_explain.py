@@ -102,6 +102,19 @@ def test_mistakes_behind_a_mistake_are_counted_and_proved_in_turn() -> None:
     assert reported["start"].finding.tried == f"{FURTHER} After this fix, 2 more mistakes appeared."
 
 
+def test_a_mistake_behind_a_mistake_counts_once_if_several_checks_fail() -> None:
+    def judged(text: str) -> list[Outcome]:
+        first, second = (part == RIGHT for part in text.split())
+        if not first:
+            skipped = Finding(Status.SKIPPED, "Not judged.")
+            return [wrong("start"), *(Outcome(id_, "values", id_, 0.0, 5.0, skipped) for id_ in ("topic", "stop"))]
+        return [right("start"), *(right(id_) if second else wrong(id_, line=2) for id_ in ("topic", "stop"))]
+
+    found, reported = tries("a\na\n", judged)
+    assert [(each.check, each.result) for each in found.made] == [("start", "passes"), ("topic", "passes")]
+    assert reported["start"].finding.tried == f"{PASSES} After this fix, 1 more mistake appeared."
+
+
 def test_a_cause_of_several_checks_is_tried_once() -> None:
     def judged(text: str) -> list[Outcome]:
         return [right(id_) if RIGHT in text else wrong(id_) for id_ in ("topic", "stop")]
