@@ -98,7 +98,7 @@ def _formatted(scene: CrashScene) -> Cause | None:
     if kind == "NoneType":
         return Cause("none-before-message", "A value in this line is None, which cannot be written as a number.")
     what = "a feedback message" if kind.endswith("_Feedback") else f"an object of type {shorten(kind)}"
-    text = f"A value in this line is {what}, not a number. The number may be in one of its fields."
+    text = f"A value in this line is {what}, but its format needs a number, such as a field of a message."
     return Cause("message-field", text)
 
 

@@ -49,7 +49,7 @@ FORMAT = "TypeError: unsupported format string passed to {}.__format__"
             "print(f'{x:.2f}')",
             "pass",
             FORMAT.format("RotateAbsolute_Feedback"),
-            "A value in this line is a feedback message, not a number. The number may be in one of its fields.",
+            "A value in this line is a feedback message, but its format needs a number, such as a field of a message.",
             True,
         ),
         ("print(f'{x:.2f}')", "pass", FORMAT.format("Pose"), "A value in this line is an object of type Pose", True),
