@@ -227,7 +227,7 @@ def spin_until(
 
 
 def nap(duration_s: float) -> None:
-    """Sleep. Unlike a wait inside rclpy, the sleep is interrupted immediately by a signal."""
+    """Sleep. Unlike a wait inside rclpy, the sleep ends immediately when the user presses Ctrl-C."""
     if duration_s > 0:
         time.sleep(duration_s)
 

@@ -44,7 +44,8 @@ def run(args: argparse.Namespace) -> int:
     Return the exit code, which is negative if a signal terminated the program.
 
     Raises:
-        Ros2Error: the package, the executable or the command of the prefix does not exist, or cannot be started.
+        Ros2Error: the package, the executable or the command of the prefix does not exist or cannot be started, or
+            several executables of the package have this name.
     """
     from grader.ros2.child import run_child
 

@@ -36,7 +36,7 @@ READS = ("input", "str", "format", "getenv")
 
 
 def why_field(scene: CrashScene) -> Cause | None:
-    """Return the cause of a wrong value, such as an int or a string in a float field, or None for another error."""
+    """Return the cause of a wrong value, such as an int in a float field, or of an unknown field, else None."""
     match = FIELD.search(scene.crash.message)
     if match is None:
         limits = RANGE.search(scene.crash.message)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.common.words import shorten
-from grader.submission.code import import_path, module_file
+from grader.submission.code import import_path, imported_files, module_file
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -38,18 +38,20 @@ def _has_modules(folder: str, files: Collection[str]) -> bool:
 
 
 def why_circular(scene: CrashScene) -> Cause | None:
-    """Return the cause if two modules of this package import each other, else None."""
+    """Return the cause if two modules of this package import each other, or a module imports itself, else None."""
     found = CIRCULAR.search(scene.crash.message)
     file = module_file(found["module"], scene.evidence.submission.files) if found is not None else None
     if found is None or file is None:
         return None
     here = scene.module.file if scene.module is not None else ""
     name = file.rpartition("/")[2]
-    both = f"{here.rpartition('/')[2]} and {name} import each other" if here != file else f"{name} imports itself"
-    text = (
-        f"{both}, so {found['name']} does not exist yet when this line needs it. Remove one of the two imports, for "
-        f"example by moving {found['name']} to a third file."
-    )
     if here == file:
-        text = f"{both}. Remove this import: the names of a file can be used in it without an import."
+        text = f"{name} imports itself. Remove this import: the names of a file can be used in it without an import."
+        return Cause("name-too-early", text)
+    other, files = scene.module_of(file), scene.evidence.submission.files
+    how = "" if other is not None and here in imported_files(other, files) else " through other files"
+    text = (
+        f"{here.rpartition('/')[2]} and {name} import each other{how}, so {found['name']} does not exist yet when this "
+        f"line needs it. Remove one of these imports, for example by moving {found['name']} to a separate file."
+    )
     return Cause("name-too-early", text)

@@ -35,12 +35,15 @@ def test_a_folder_without_init_is_not_installed(files: dict[str, str], diagnosis
     [
         ("other", PARTIAL, "draw_circle.py and other.py import each other, so SPEED does not exist yet when this line"),
         ("draw_circle", PARTIAL, "draw_circle.py imports itself. Remove this import: the names of a file can be used"),
+        ("third", PARTIAL, "draw_circle.py and third.py import each other through other files, so SPEED does not"),
         ("elsewhere", PARTIAL, ""),
         ("other", "ImportError: cannot import name 'SPEED' from '{}'", ""),
     ],
 )
 def test_two_modules_that_import_each_other_are_named(module: str, error: str, words: str) -> None:
-    found = reported(CIRCLE.format(module), error.format(module), {f"{PACKAGE}/other.py": ""})
+    back = {"other": "draw_circle", "third": "other"}
+    files = {f"{PACKAGE}/{name}.py": f"from {PACKAGE} import {imported}\n" for name, imported in back.items()}
+    found = reported(CIRCLE.format(module), error.format(module), files)
     told = "import each other" in found.cause or "imports itself" in found.cause
     assert (found.cause.startswith(words), told) == (True, bool(words))
 
