@@ -1,7 +1,7 @@
 """The verdict as HTML for the output of a notebook cell: a table with reasons, and then the drawings of each run.
 
-The HTML has no script, and its style sheet affects nothing else on the page. Every id contains a key for this
-verdict, because one notebook can show many verdicts.
+The HTML has no script, and its style sheet affects nothing else on the page. Every id contains a key of the
+submission, because one notebook can show the verdicts of many submissions.
 """
 
 from __future__ import annotations
