@@ -32,7 +32,7 @@ OF_FUNCTIONS: dict[str, dict[Diagnosis, str]] = {
         "empty-error": "a function raises the right exception, but without a message",
         "call-too-long": "a function or a program does not end in time",
         "call-ended": "a function ends the whole program, or a program ends with an error but without a traceback",
-        "prints-nothing": "the program prints nothing",
+        "prints-nothing": "the program prints nothing, or prints the line on standard error",
         "print-format": "the printed line has the wrong format",
         "wrong-count": "the number of messages is wrong",
         "program-traceback": "the program ends with a traceback instead of a message",

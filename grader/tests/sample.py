@@ -1,9 +1,9 @@
 """The sample of mistakes that `make test` grades.
 
 The sample covers every group of diagnoses, and for each exercise a mistake that the files show and a mistake that only
-the behaviour shows. The sample also contains one diagnosis of each group that no other test covers. A test of the
-checks judges an invented recording, which takes milliseconds. A case takes one to three seconds, or at least ten
-seconds if it needs a trial in wall time. `make test-all` grades all cases.
+the behaviour shows. The sample also contains one diagnosis of each group that no other test covers, if there is one. A
+test of the checks judges an invented recording, which takes milliseconds. A case takes one to three seconds, or at
+least ten seconds if it needs a trial in wall time. `make test-all` grades all cases.
 """
 
 from __future__ import annotations

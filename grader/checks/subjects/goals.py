@@ -87,7 +87,7 @@ def sends_goals(evidence: Evidence, params: SendsGoals) -> Finding:
 
 
 def goals_of(evidence: Evidence) -> list[Goal]:
-    """Return the goals for turtle1 before SIGINT, in order."""
+    """Return the goals for turtle1 before the end of the scenario, in order."""
     until = activity.end_s(evidence.recording)
     return [goal for goal in evidence.recording.goals if goal.action == ROTATE and goal.t_s < until]
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def starts(evidence: Evidence, _: NoParams) -> Finding:
-    """A node of the submission appeared in the ROS graph and ran until the scenario began."""
+    """A node of the submission appeared in the ROS graph, or called a callback, and ran until the scenario began."""
     recording = evidence.recording
     executable = evidence.trial.executable
     expected = "The node starts and runs until Ctrl-C."
@@ -108,7 +108,8 @@ STARTS = Kind(
     "The node starts",
     NoParams,
     starts,
-    about="The executable starts, its node appears in the ROS graph, and it runs until the scenario begins.",
+    about="The executable starts, its node appears in the ROS graph or calls a callback, and it runs until the "
+    "scenario begins.",
 )
 NAME = Kind(
     "node_name",

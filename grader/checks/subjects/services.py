@@ -196,7 +196,7 @@ def _missing(evidence: Evidence, service: str, type_: str, expected: str) -> Fin
 
 
 def calls_of(evidence: Evidence) -> list[Call]:
-    """Return the service calls before SIGINT, in order."""
+    """Return the service calls before the end of the scenario, in order."""
     until = activity.end_s(evidence.recording)
     return [call for call in evidence.recording.calls if call.t_s < until]
 
