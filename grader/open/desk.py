@@ -28,7 +28,10 @@ OPEN = "open"
 
 @dataclass(frozen=True)
 class Verdict:
-    """The last verdict: its checks by id, its summary line and its tone, and the HTML of its details."""
+    """The last verdict: its checks by id, its summary line and its tone, and the HTML of its details.
+
+    Until the details are ready, `html` has those of the previous verdict.
+    """
 
     checks: dict[str, dict[str, object]]
     line: str
