@@ -103,12 +103,12 @@ def _not_there(evidence: Evidence, params: Goal, expected: str, where: Where | N
     last = evidence.commands[-1] if evidence.commands else None
     if last is not None and no_standstill(evidence, expected) is None and not (last.linear[0] or last.angular[2]):
         cause = (
-            "The last command has all values 0, as if the turtle had arrived. "
+            "The last command stops the turtle, as if it had arrived. "
             "Compare the position of the goal in the code with the position in the task."
         )
         if end <= NEARLY_M and _in_code(evidence, params.x_m, params.y_m):
             cause = (
-                "The last command has all values 0, as if the turtle had arrived. "
+                "The last command stops the turtle, as if it had arrived. "
                 f"At which distance from the goal does the node stop? The turtle ended {end:.1f} m from the goal."
             )
         return failed(observed, expected, Cause("not-there", cause, where))

@@ -54,7 +54,7 @@ class SendsGoals:
 
 
 def sends_goals(evidence: Evidence, params: SendsGoals) -> Finding:
-    """The goals arrive one after the other, with these headings, and each goal is reached."""
+    """The goals arrive one after the other, with these headings, and each is reached, or cancelled after a call."""
     goals = goals_of(evidence)
     first, amount = int(params.nth) - 1, int(params.total)
     headings = [params.heading_deg + each * params.turn_deg for each in range(amount)]
@@ -83,7 +83,9 @@ def sends_goals(evidence: Evidence, params: SendsGoals) -> Finding:
             return _not_reached(evidence, goal, expected)
     if len(goals) < first + amount:
         return _no_more(evidence, goals, expected)
-    return passed(f"The turtle reached {count(amount, 'goal')}.", near_edge=edge)
+    cancelled = any(goal.status == "canceled" for goal in goals[first : first + amount])
+    reached = "The goals were right, and one was cancelled after the trial's first call."
+    return passed(reached if cancelled else f"The turtle reached {count(amount, 'goal')}.", near_edge=edge)
 
 
 def goals_of(evidence: Evidence) -> list[Goal]:

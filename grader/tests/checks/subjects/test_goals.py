@@ -80,6 +80,7 @@ def about(*goals: Goal, **changes: Any) -> str:  # noqa: ANN401
 
 
 FIRST, SECOND = goal(1.0, 80.0, 2.4), goal(3.0, 110.0, 3.6)
+CANCELLED = goal(3.0, 110.0, 5.0, "canceled", cancel_asked_s=5.0)
 UNASKED = goal(1.0, 80.0, 2.4, result_asked_s=None)
 
 
@@ -87,6 +88,8 @@ UNASKED = goal(1.0, 80.0, 2.4, result_asked_s=None)
     ("words", "true", "near"),
     [
         ("The turtle reached 2 goals.", [FIRST, SECOND], [FIRST]),
+        ("The turtle reached 2 goals.", [FIRST, SECOND], [FIRST, CANCELLED]),
+        ("The goals were right, and one was cancelled", [FIRST, CANCELLED], [FIRST, SECOND]),
         ("No goal arrived at /turtle1/rotate_absolute.", [], [FIRST]),
         ("The node sent 1 goal, and then no more.", [FIRST], [FIRST, SECOND]),
         ("The callback that receives the result must send the next goal.", [FIRST], [UNASKED]),
