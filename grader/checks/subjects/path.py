@@ -10,6 +10,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed, ended_early
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_path import (
+    CHANGE,
     all_commands,
     all_zero,
     line_of_values,
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
     from grader.trial.recording import Pose
 
 NO_COMMAND = "The turtle stops when no command arrives for 1 s."
-CHANGE = "The commands change. A circle needs the same command all the time."
 MOVED_M = 0.05
 """A turtle with a shorter trajectory than this (m) did not move."""
 TURNED_RAD = 0.1
