@@ -239,7 +239,8 @@ SENDS_GOALS = Kind(
     "The node sends a goal",
     SendsGoals,
     sends_goals,
-    about="The node sends goals to `/turtle1/rotate_absolute`, one after the other, and the turtle reaches each one.",
+    about="The node sends goals to `/turtle1/rotate_absolute`, one after the other, and the turtle reaches each one, "
+    "unless the node cancels it after the first call by the trial.",
 )
 AWAITS_RESULT = Kind(
     "awaits_result",
