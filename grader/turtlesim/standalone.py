@@ -59,7 +59,7 @@ class Feed(Protocol):
 
     @property
     def on_publish(self) -> Callable[..., Any]:
-        """The callback for each message that the simulator publishes."""
+        """The callback for each pose and each colour that the simulator publishes."""
 
 
 class View(Protocol):
