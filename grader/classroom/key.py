@@ -45,8 +45,8 @@ def changed(old: Mapping[str, Any], new: Key) -> tuple[str, ...]:
 def grader_key() -> str:
     """Return a string that identifies the grader.
 
-    The string consists of the version, and the first 16 digits of the sha256 of the source files that determine a
-    report.
+    The string consists of the version, and the first 16 digits of the sha256 of all files of the package, except tests,
+    benchmarks, templates and compiled modules.
     """
     folder = Path(grader.__file__).parent
     whole = hashlib.sha256()

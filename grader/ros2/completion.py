@@ -25,18 +25,19 @@ def _look() -> Look:
 
 
 def topics(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    """Return the names of the topics in the graph."""
+    """Return the names of the topics in the graph. Hidden ones need --include-hidden-topics."""
     return _look().topic_names(all_of_them=getattr(parsed_args, "include_hidden_topics", False))
 
 
 def services(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    """Return the names of the services in the graph."""
+    """Return the names of the services in the graph. Hidden ones need --include-hidden-services."""
     return _look().service_names(all_of_them=getattr(parsed_args, "include_hidden_services", False))
 
 
 def nodes(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    """Return the names of the nodes in the graph."""
-    return _look().node_names(all_of_them=getattr(parsed_args, "include_hidden_nodes", False))
+    """Return the names of the nodes in the graph. Hidden ones need --include-hidden-nodes or --include-hidden."""
+    options = ("include_hidden_nodes", "include_hidden")
+    return _look().node_names(all_of_them=any(getattr(parsed_args, each, False) for each in options))
 
 
 def actions(**_: Any) -> list[str]:  # noqa: ANN401

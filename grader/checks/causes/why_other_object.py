@@ -99,12 +99,15 @@ def subscription_for_publisher(scene: CrashScene) -> Cause | None:
 
 
 def set_twice(scene: CrashScene, name: str, text: str) -> Cause:
-    """Return the cause of a missing attribute, with the lines that assign the object if there are several."""
+    """Return the cause of a missing attribute, with the lines that assign the object if there are several.
+
+    Assigning None does not count. A local variable is looked up only in its own function.
+    """
     holders = [dotted(node.value) for node in scene.on_line if isinstance(node, ast.Attribute) and node.attr == name]
     for holder in filter(None, holders):
-        lines = [
-            node.lineno for node in scene.nodes if isinstance(node, ast.Assign) and holder in map(dotted, node.targets)
-        ]
+        inside = scene.nodes if "." in holder or scene.function is None else ast.walk(scene.function)
+        made = [node for node in inside if isinstance(node, ast.Assign) and holder in map(dotted, node.targets)]
+        lines = [node.lineno for node in made if ast.unparse(node.value) != "None"]
         if len(lines) > 1:
             more = (
                 f"{shorten(holder)} is assigned on lines {a_list(list(map(str, sorted(lines))))}. "

@@ -37,11 +37,9 @@ def _why(wanted: str, topic: str, evidence: Evidence, maker: str) -> Cause:
         )
     if topic.lower() == wanted.lower():
         return Cause("topic-capitals", "Upper and lower case matter.")
-    if topic.endswith(wanted) and not _is_absolute(evidence, maker, topic):
-        return Cause(
-            "topic-namespace",
-            "The node adds its namespace to the name. A name that starts with a slash stays as it is.",
-        )
+    added = "" if _is_absolute(evidence, maker, topic) else _added(evidence, topic, topic.removesuffix(wanted))
+    if added:
+        return Cause("topic-namespace", f"{added} A name that starts with a slash stays as it is.")
     of_turtles = wanted.count("/") == topic.count("/") == 2 and topic.endswith(f"/{last}")
     if of_turtles and nearest(topic, [wanted]) and not _has_turtle(evidence, topic):
         return Cause("topic-other-turtle", "There is no turtle with that name.")
@@ -63,6 +61,15 @@ def _has_turtle(evidence: Evidence, topic: str) -> bool:
     """Return whether the simulator uses the topic. If it does, the turtle in the topic's name exists."""
     ends = (end for graph in evidence.recording.graphs for end in graph.endpoints)
     return any(end.topic == topic and end.node == "/turtlesim" for end in ends)
+
+
+def _added(evidence: Evidence, topic: str, begin: str) -> str:
+    """Return the sentence that says why ROS 2 puts `begin` before a topic name, or "" if no node explains it."""
+    nodes = {end.node for graph in evidence.recording.graphs for end in graph.endpoints if end.topic == topic}
+    if begin != topic and begin in nodes:
+        return "ROS 2 replaces ~ at the beginning of a topic name with the name of the node."
+    inside = any(name.startswith(f"{begin}/") for name in nodes)
+    return "The node adds its namespace to the name." if begin != topic and inside else ""
 
 
 def _is_absolute(evidence: Evidence, maker: str, topic: str) -> bool:

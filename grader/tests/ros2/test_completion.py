@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import os
 import re
+from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pexpect
 import pytest
 
+from grader.graph.graph_info import Look, NodeLook
+from grader.ros2 import completion
 from grader.tests.ros2.world import World, world
 from grader.tests.waiting import HANG_S
 
@@ -82,3 +85,11 @@ def test_tab_completes(shell: pexpect.spawn, typed: str, completed: str) -> None
         shell.sendline("echo next''!")
         shell.expect("next!")
         shell.expect("ready> ")
+
+
+@pytest.mark.parametrize("option", ["include_hidden_nodes", "include_hidden"])
+def test_hidden_nodes_are_completed_with_the_option_of_the_verb(monkeypatch: pytest.MonkeyPatch, option: str) -> None:
+    monkeypatch.setattr(completion, "_look", lambda: Look(nodes=(NodeLook("/_tool"), NodeLook("/turtlesim"))))
+    assert completion.nodes(Namespace(**{option: True})) == ["/_tool", "/turtlesim"]
+    assert completion.nodes(Namespace(**{option: False})) == ["/turtlesim"]
+    assert completion.nodes(Namespace()) == ["/turtlesim"]

@@ -56,3 +56,37 @@ def test_a_class_that_is_not_derived_from_node_has_none_of_its_methods(base: str
     given = reported(source, f"AttributeError: 'Driver' object has no attribute '{name}'")
     assert given.cause.startswith(words)
     assert (given.line == 3) == ("is not derived from" in words)
+
+
+TWO_TIMERS = """\
+class Driver(Node):
+    def __init__(self):
+        self.timer = None
+        self.timer = self.create_timer(0.5, self.send)
+        timer = self.create_timer(1.0, self.send)
+        timer.cancel()
+
+    def send(self):
+        timer = self.timer
+        {line}
+"""
+
+
+@pytest.mark.parametrize(
+    ("source", "more"),
+    [
+        (TWO_TIMERS.format(line="self.timer.stop()  # crashed"), ""),
+        (TWO_TIMERS.format(line="timer.stop()  # crashed"), ""),
+        (
+            TWO_TIMERS.format(line="self.timer.stop()  # crashed").replace("None", "self.create_timer(2.0, self.send)"),
+            " self.timer is assigned on lines 3 and 4. Use one name per object.",
+        ),
+        (
+            TWO_TIMERS.format(line="timer = self.timer\n        timer.stop()  # crashed"),
+            " timer is assigned on lines 9 and 10. Use one name per object.",
+        ),
+    ],
+)
+def test_only_assignments_of_the_same_variable_are_named(source: str, more: str) -> None:
+    given = reported(source, "AttributeError: 'Timer' object has no attribute 'stop'")
+    assert given.cause == f"Timer objects have no attribute or method with that name.{more}"

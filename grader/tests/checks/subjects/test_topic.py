@@ -65,7 +65,9 @@ def test_on_the_turtles_topic_what_the_simulator_saw_counts() -> None:
     [
         ("/cmd_vel", "topic-without-turtle"),
         ("/turtle1/CMD_vel", "topic-capitals"),
-        ("/robot/turtle1/cmd_vel", "topic-namespace"),
+        ("/draw_circle/turtle1/cmd_vel", "topic-namespace"),
+        ("/robot/turtle1/cmd_vel", "wrong-topic"),
+        ("/draw_circle", "wrong-topic"),
         ("/turtle2/cmd_vel", "topic-other-turtle"),
         ("/a_node_of_quite_another_kind/cmd_vel", "wrong-topic"),
         ("/a/turtle2/cmd_vel", "wrong-topic"),
@@ -76,6 +78,21 @@ def test_another_topic_is_explained_by_the_two_names(topic: str, diagnosis: str)
     finding = publishes(observed(("publisher", topic, TWIST)))
     assert reported(finding) == (diagnosis, ":9")
     assert finding.observed == f"The node publishes on {topic}, but turtle1 does not subscribe to it."
+
+
+@pytest.mark.parametrize(
+    ("name", "added"),
+    [
+        ("/robot/draw_circle", "The node adds its namespace to the name."),
+        ("/robot", "ROS 2 replaces ~ at the beginning of a topic name with the name of the node."),
+        ("/robotic/draw_circle", None),
+    ],
+)
+def test_what_ros_adds_to_a_topic_name_is_told_only_of_such_a_node(name: str, added: str | None) -> None:
+    ends = (Endpoint("publisher", name, f"/robot{TOPIC}", TWIST),)
+    finding = publishes(recording([], graphs=(Graph(0.0, (name,), ends),)))
+    assert (finding.diagnosis == "topic-namespace") == (added is not None)
+    assert finding.cause.startswith(f"{added} A name that" if added else "The topic name is the second argument")
 
 
 def test_of_several_topics_those_of_the_type_and_the_nearest_are_named() -> None:
@@ -225,7 +242,7 @@ def test_a_subscription_is_looked_for(trial: Recording, diagnosis: str | None, l
     [
         ("/pose", "topic-without-turtle", ":11"),
         ("/turtle1/Pose", "topic-capitals", ":11"),
-        ("/robot/turtle1/pose", "topic-namespace", ":10"),
+        ("/draw_circle/turtle1/pose", "topic-namespace", ":10"),
         ("/turtle2/pose", "topic-other-turtle", ":11"),
         ("/turtle1/position", "wrong-topic", ":11"),
     ],
