@@ -15,7 +15,7 @@ CANCELS = "cancel stops the timer, so the timer does not call its method again."
 
 
 def cancelled(evidence: Evidence) -> Where | None:
-    """Return the place where the node cancels a timer, or None."""
+    """Return the place where a node with timers calls a method named cancel, or None."""
     if evidence.code.calls("create_timer") and evidence.code.calls("cancel"):
         return evidence.place("cancel")
     return None
@@ -34,7 +34,7 @@ def why_stopped(evidence: Evidence, call: str) -> tuple[str, Where | None]:
 
 
 def _condition(evidence: Evidence, call: str) -> Where | None:
-    """Return the if statement that contains the only call to `call`, or None."""
+    """Return the innermost if statement whose body contains the only call to `call`, or None."""
     calls = evidence.code.calls(call)
     if len(calls) != 1:
         return None

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 TIMEOUT_S = 5.0
-"""The maximum time for a service to appear and to respond (s)."""
+"""The maximum total time for a service to appear and to respond (s)."""
 MOST_WAITING = 20
 """The maximum number of pending calls."""
 _EVERY_NODES = "rcl_interfaces/srv/"
