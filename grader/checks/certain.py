@@ -18,6 +18,11 @@ FROM_FILES: frozenset[Diagnosis] = frozenset().union(*OF_FILES.values())
 FROM_EXCEPTIONS: frozenset[Diagnosis] = frozenset(
     {
         "crash",
+        "bag-reader",
+        "no-values",
+        "changed-in-a-loop",
+        "asyncio-in-callback",
+        "parameter-twice",
         "needs-stdin",
         "no-object",
         "node-name-invalid",

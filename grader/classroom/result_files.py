@@ -19,7 +19,6 @@ from grader.report.class_reports import ClassReports, Entry
 from grader.report.csv import to_csv
 from grader.report.github import to_annotations, to_summary
 from grader.report.gradescope import to_gradescope
-from grader.report.html_class import PAGE, class_page
 from grader.report.junit import to_junit
 from grader.report.suspicion import suspicions
 
@@ -38,6 +37,8 @@ GITHUB_ANNOTATIONS = "github-annotations.txt"
 def write_all(results: Results, graded: Sequence[Result], folder: str = "") -> None:
     """Write the files. `folder` is the path of the package in a repository. Raises MachineError if the disk fails."""
     from urllib.parse import quote
+
+    from grader.report.html_class import PAGE, class_page  # imports jinja2
 
     rows = [(result.student, result.report) for result in graded]
     attention = suspicions([(result.report, result.errors) for result in graded])

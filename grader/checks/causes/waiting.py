@@ -68,7 +68,7 @@ class Wait:
                 f"{self._subject} waits inside a callback, but the executor calls no other callback until this one "
                 "returns: a deadlock. Remove the call. rclpy.spin in main calls every callback."
             )
-            return Cause("waits-in-callback", text, self.where)
+            return Cause("spins-in-callback", text, self.where)
         if self.deadlock:
             text = (
                 f"{self._subject} waits inside a callback, so rclpy.spin receives no response: a deadlock. "
@@ -81,7 +81,7 @@ class Wait:
                 f"{self._subject} waits inside a callback until the server exists, perhaps forever. Meanwhile, a node "
                 f"with one thread calls no other callback. {ready} returns at once."
             )
-            return Cause("waits-in-callback", text, self.where)
+            return Cause("waits-for-server", text, self.where)
         text = (
             "While a callback sleeps, a node with one thread calls no other callback. "
             "Count the timer calls instead, or use a second timer."

@@ -98,7 +98,7 @@ def _why_value(scene: CrashScene) -> Cause | None:
         return Cause("crash", "remove needs an item that is equal to one in the list, and the list has no such item.")
     if "empty" not in scene.crash.message or not any(name in scene.crash.message for name in ("min()", "max()")):
         return None
-    return Cause("crash", "min or max got no values to compare. Check first whether there are any values.")
+    return Cause("no-values", "min or max got no values to compare. Check first whether there are any values.")
 
 
 ARGUMENTS = re.compile(r"error: the following arguments are required: (?P<names>.+)")
@@ -123,7 +123,7 @@ def _why_resized(scene: CrashScene) -> Cause | None:
     if "during iteration" not in scene.crash.message:
         return None
     text = "An item was added or removed while a loop went through the collection. Loop over a copy: list() makes one."
-    return Cause("crash", text)
+    return Cause("changed-in-a-loop", text)
 
 
 def _why_no_loop(scene: CrashScene) -> Cause | None:
@@ -131,7 +131,7 @@ def _why_no_loop(scene: CrashScene) -> Cause | None:
     if "no running event loop" not in scene.crash.message:
         return None
     text = "rclpy calls this callback without the event loop of asyncio. To wait, use a timer instead of asyncio."
-    return Cause("crash", text)
+    return Cause("asyncio-in-callback", text)
 
 
 def _why_await(scene: CrashScene) -> Cause | None:

@@ -23,9 +23,9 @@ def why_no_file(scene: CrashScene) -> Cause | None:
         return None
     if "/share/" in found["path"]:
         text = f"The build does not install {shorten(own)} there. data_files in setup.py lists what is installed."
-        return Cause("crash", text)
+        return Cause("file-not-installed", text)
     text = (
         f"The package contains {shorten(own)}, but a node does not run in the folder of its package. Install the file "
         "with data_files, and open it in the share folder of the package."
     )
-    return Cause("crash", text)
+    return Cause("file-not-installed", text)

@@ -131,6 +131,6 @@ def _declared_twice(scene: CrashScene) -> Cause:
                 f"{node.arg} already declares each parameter that is set when the node starts. Remove this argument "
                 "if you declare the parameters yourself."
             )
-            return Cause("crash", text, scene.at(node.value))
+            return Cause("parameter-twice", text, scene.at(node.value))
     text = f"{name} is declared twice. Compare the names in the calls of declare_parameter."
-    return Cause("crash", text)
+    return Cause("parameter-twice", text)

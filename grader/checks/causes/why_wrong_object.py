@@ -109,7 +109,7 @@ def _key(scene: CrashScene) -> Cause | None:
         text = f"A {hashed['type']} cannot be the key of a dictionary or an item of a set. Use a name as the key."
         return Cause("message-field", text)
     if looped is not None and looped["type"] in PATHS and scene.calls_on_line("AnyReader"):
-        return Cause("crash", "AnyReader takes a list of paths. Write square brackets, even for one path.")
+        return Cause("bag-reader", "AnyReader takes a list of paths. Write square brackets, even for one path.")
     if looped is not None and looped["type"] == "Pose":
         text = "This value is one Pose, but the line needs a collection, such as a dictionary of poses."
         return Cause("message-field", text)
@@ -129,7 +129,7 @@ def _reader(scene: CrashScene) -> Cause | None:
     """Return the cause if AnyReader got a string, or was used after its with block, else None."""
     if scene.crash.error == "AnyReaderError" and "not open" in scene.crash.message:
         text = "The bag is open only inside the with block of AnyReader. Indent the lines that read the messages."
-        return Cause("crash", text)
+        return Cause("bag-reader", text)
     if "'str' object has no attribute 'exists'" in scene.crash.message and scene.calls_on_line("AnyReader"):
-        return Cause("crash", "AnyReader takes a list of Path objects, not of strings.")
+        return Cause("bag-reader", "AnyReader takes a list of Path objects, not of strings.")
     return None
