@@ -64,6 +64,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "blocks-in-init": "__init__ does not return while the node runs",
         "waits-in-callback": "a callback waits, so the node cannot receive what the callback waits for",
         "spins-in-callback": "a callback spins the node, which is already being spun",
+        "loops-in-callback": "a callback loops, so no other callback runs",
         "waits-for-server": "a callback waits until a server exists",
         "service-not-there": "the node waits for a service that does not exist",
         "method-never-called": "a method that sends something (a message, log line or request) is never called",

@@ -54,6 +54,7 @@ Diagnosis = Literal[
     "blocks-in-init",
     "waits-in-callback",
     "spins-in-callback",
+    "loops-in-callback",
     "waits-for-server",
     "service-not-there",
     "method-never-called",

@@ -45,7 +45,6 @@ SHOWN_BY_TESTS = {
     "publisher-in-callback": "checks/causes/test_why_rate.py",
     "resource-marker": "checks/subjects/test_building.py",
     "pause-never-ends": "checks/subjects/test_pause.py",
-    "service-not-called": "checks/subjects/test_services.py",
     "slow-stop": "checks/subjects/test_running.py",
     "unsteady-tests": "checks/subjects/test_tests_run.py",
     "square-gap": "checks/subjects/test_square.py",

@@ -40,7 +40,7 @@ def idle_loop(evidence: Evidence) -> Cause | None:
                     "This loop is in a callback. While it waits, a node with one thread calls no other callback, so "
                     "the value never changes. Return instead, and look again in the next call."
                 )
-                return Cause("waits-in-callback", text, Where(module.file, node.lineno))
+                return Cause("loops-in-callback", text, Where(module.file, node.lineno))
     return None
 
 

@@ -42,7 +42,7 @@ def _busy_loop(evidence: Evidence) -> Cause | None:
                     "This loop is in a callback. While it runs, a node with one thread receives no new pose. Publish "
                     "one command in each call, without a loop."
                 )
-                return Cause("waits-in-callback", text, Where(module.file, node.lineno))
+                return Cause("loops-in-callback", text, Where(module.file, node.lineno))
     return None
 
 
