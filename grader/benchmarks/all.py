@@ -3,9 +3,9 @@
     python -m grader.benchmarks.all [--times N] [--class N] [--sync N]
 
 F is the wall time of a `colcon build` of the package and of a process with one rclpy node, both run without the grader.
-Wall times and CPU times are divided by F, as in the other benchmarks. F is measured again for each cost that is divided
-by F, so that other programs slow down both alike. The first line shows the load of the machine. Results from a busy
-machine can be compared only with each other.
+Most times are divided by F, as in grader.benchmarks.check. F is measured again for each cost that is divided by F, so
+that other programs slow down both alike. The first line shows the load of the machine. Results from a busy machine can
+be compared only with each other.
 """
 
 from __future__ import annotations

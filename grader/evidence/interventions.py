@@ -127,7 +127,7 @@ def _by_goal(recording: Recording, now: slice) -> Steps:
 
 
 def _unasked(recording: Recording, now: slice) -> Steps:
-    """Return a mask of the frames whose turning speed was not set by a recent command."""
+    """Return a mask of the frames in which the turtle turned at a speed that no recent command had set."""
     frames = recording.frames
     times = np.array([command.t_s for command in recording.commands])
     speeds = np.array([command.angular[2] for command in recording.commands])

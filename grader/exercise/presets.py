@@ -6,8 +6,8 @@
     title = "b) Eight"
     start = { points = 2 }
 
-creates the checks `eight-entry-point`, `eight-start` and `eight-node-name`. Checks of the first trial have no prefix.
-The titles of these checks begin with `title`. A table with the name of a check, such as `start`, changes the keys of
+creates the checks `eight-entry-point`, `eight-start` and `eight-node-name`, with titles that begin with `title`. The
+ids of the checks of the first trial have no prefix. A table with the name of a check, such as `start`, changes the keys of
 that check.
 """
 

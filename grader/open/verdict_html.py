@@ -27,7 +27,7 @@ TEMPLATE = "verdict.html"
 def verdict_html(evidence: Evidence, report: Report, folder: Path) -> str:
     """Return the HTML. `folder` is the folder of the package. The links open the package's files in VS Code.
 
-    If the recorded data cannot be drawn, the HTML has no drawings.
+    If the submission or the recorded data cannot be shown, the HTML has no code and no drawings.
     """
     compiled(TEMPLATE)
     try:

@@ -1,6 +1,6 @@
 """Read the reports of a class: the JSON files below a folder.
 
-Students can write these files, so they are read in the process that reads students' files, a few at a time. A file that
+Students can write these files, so processes with limits read them in batches (grader.submission.reader). A file that
 cannot be read is left out, with the reason, and the other files are read.
 """
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def for_students(report: Report) -> Report:
-    """Return the report without the details of hidden checks, and without the code changes that proved causes."""
+    """Return the report without the details of hidden checks, and without the changes with which causes were tested."""
     numbers = {outcome.id: number for number, outcome in enumerate((o for o in report.outcomes if o.hidden), 1)}
     return replace(
         report,

@@ -57,7 +57,7 @@ class System:
 class Ears:
     """A thread that spins `node`. At regular intervals, the thread passes the graph and the rates to `tell`.
 
-    `known` returns the topics that are already counted by the simulator. `looking` returns whether a page shows the
+    `known` returns the topics whose rates the simulator already reports. `looking` returns whether a page shows the
     rates.
     """
 

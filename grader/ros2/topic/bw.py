@@ -1,4 +1,4 @@
-"""The verb `topic bw`: print the bandwidth of a topic in bytes per second."""
+"""The verb `topic bw`: print the bandwidth of a topic and the sizes of its messages."""
 
 from __future__ import annotations
 
