@@ -7,8 +7,8 @@
     start = { points = 2 }
 
 creates the checks `eight-entry-point`, `eight-start` and `eight-node-name`, with titles that begin with `title`. The
-ids of the checks of the first trial have no prefix. A table with the name of a check, such as `start`, changes the keys of
-that check.
+ids of the checks of the first trial have no prefix. A table with the name of a check, such as `start`, changes the keys
+of that check.
 """
 
 from __future__ import annotations
