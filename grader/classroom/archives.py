@@ -66,7 +66,8 @@ class Copy:
     def unpacked(self) -> Iterator[Path]:
         """Yield a temporary folder with the content of the archive. Raises the same errors as `unpacked`."""
         if self.error is not None:
-            raise not_opened(self.error, self.name) from self.error
+            reason = not_opened(self.error, self.name)
+            raise reason from (None if reason is self.error else self.error)
         with unpacked(self.file) as folder:
             yield folder
 

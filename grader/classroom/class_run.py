@@ -50,8 +50,7 @@ class _Run:
     screen: Screen
     running: dict[Name, Todo] = field(default_factory=dict)
     again: dict[Name, Todo] = field(default_factory=dict)
-    """The submissions that ended with an `error`. If another one has a final result, they are graded once
-    more."""
+    """The submissions that ended with an `error`. If not all submissions ended so, these are graded once more."""
     failures: Counter[Name] = field(default_factory=Counter)
     graded: dict[Name, Result] = field(default_factory=dict)
 

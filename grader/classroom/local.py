@@ -32,7 +32,7 @@ WAITING_A_JOB = 2
 
 
 def default_jobs() -> int:
-    """Return the number of submissions to grade in parallel: JOBS_PER_PROCESSOR, if the memory is sufficient."""
+    """Return the number of submissions to grade in parallel. It depends on the processors and the free memory."""
     return max(1, min(int(JOBS_PER_PROCESSOR * _processors()), _memory() // MEMORY_A_TASK))
 
 

@@ -48,11 +48,11 @@ class Worker:
     """
 
     def __init__(self) -> None:
-        ours, theirs = socket.socketpair()
         self._errors: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed in `close`
-        with theirs:
+        ours, theirs = socket.socketpair()
+        with ours, theirs:
             self.process = _server().request({}, [theirs.fileno(), self._errors.fileno()])
-        self.connection: Connection = Connection(ours.detach())
+            self.connection: Connection = Connection(ours.detach())
 
     def send(self, task: Task) -> None:
         """Send a task to the worker, which handles one task at a time.

@@ -168,11 +168,18 @@ def _files_in(folder: Path) -> tuple[list[tuple[str, int]], list[_LeftOut]]:
                         left_out.append(_LeftOut(name, f"its path has more than {MAX_PATH_BYTES} bytes"))
                     elif entry.is_dir(follow_symlinks=False):
                         waiting.append(name)
-                    elif name.endswith(".json") and not entry.is_dir():
+                    elif name.endswith(".json") and not _leads_to_folder(entry):
                         files.append((name, _size(entry)))
         except OSError as error:
             left_out.append(_LeftOut(below or ".", f"the folder could not be searched ({error.strerror})"))
     return files, left_out
+
+
+def _leads_to_folder(entry: os.DirEntry[str]) -> bool:
+    try:
+        return entry.is_dir()
+    except OSError:  # for example, a link to itself
+        return False  # reading the file will report the reason
 
 
 def _size(entry: os.DirEntry[str]) -> int:

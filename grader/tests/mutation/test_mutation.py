@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 ANSWERS = ROOT / "grader" / "checks" / "subjects" / "answers.py"
+WHY = ROOT / "grader" / "checks" / "causes" / "why_answer.py"
 CASE = CASES.parent / "mistakes" / "201-no-slash"
 
 SOURCE = '''
@@ -97,22 +98,22 @@ def test_a_case_is_recorded_once(recorded: list[Recorded], folder: Path) -> None
     assert [each.name for each in recorded] == ["mistakes/201-no-slash"]
 
 
-def noticed(recorded: list[Recorded], change: str) -> dict[str, bool]:
-    """Return whether the case notices each mutant with this change.
+def noticed(recorded: list[Recorded], file: Path, change: str) -> dict[str, bool]:
+    """Return whether the case notices each mutant of the file with this change.
 
     A child process runs the checks, because the test unloads their modules.
     """
-    wanted = [mutant for mutant in mutants_of(ANSWERS) if change in mutant.change]
+    wanted = [mutant for mutant in mutants_of(file) if change in mutant.change]
     assert wanted
     with multiprocessing.get_context("fork").Pool(1) as pool:
-        return pool.apply(_noticed, (recorded, wanted))
+        return pool.apply(_noticed, (recorded, file, wanted))
 
 
-def _noticed(recorded: list[Recorded], mutants: Sequence[Mutant]) -> dict[str, bool]:
+def _noticed(recorded: list[Recorded], file: Path, mutants: Sequence[Mutant]) -> dict[str, bool]:
     materials = judging.load(recorded)
     assert not any(judging.fails(material) for material in materials)
     judging.forget()
-    lines = judging.touched(materials, [ANSWERS])
+    lines = judging.touched(materials, [file])
 
     def job(mutant: Mutant) -> judging.Job:
         names = judging.who_runs(mutant, lines)
@@ -122,7 +123,7 @@ def _noticed(recorded: list[Recorded], mutants: Sequence[Mutant]) -> dict[str, b
 
 
 def test_a_case_notices_that_its_diagnosis_was_taken_out(recorded: list[Recorded]) -> None:
-    found = noticed(recorded, 'return Cause("no-slash"')
+    found = noticed(recorded, WHY, 'return Cause("no-slash", f"The full')
     assert all(found.values()), found
 
 
@@ -136,7 +137,7 @@ def test_of_those_that_see_a_file_alike_three_are_requested(tmp_path: Path) -> N
 
 
 def test_what_no_case_runs_survives(recorded: list[Recorded]) -> None:
-    found = noticed(recorded, '"no-answers" ->')
+    found = noticed(recorded, ANSWERS, '"no-answers" ->')
     assert not any(found.values()), found
 
 

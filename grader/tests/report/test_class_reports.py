@@ -93,14 +93,16 @@ def test_a_report_that_stops_the_reading_process_is_named(
 def test_a_pipe_a_broken_link_and_bytes_that_are_not_utf_8_are_named(folder: Path) -> None:
     os.mkfifo(folder / "pipe.json")
     (folder / "gone.json").symlink_to("nowhere")
+    (folder / "loop.json").symlink_to("loop.json")
     (folder / "bytes.json").write_bytes(b'{"outcomes": "\xff"}')
     (folder / "folder.json").mkdir()
     reports = read_class(folder)
     assert _names(reports) == ["anna", "ben"]
     said = dict(reports.left_out)
-    assert said.keys() == {"pipe.json", "gone.json", "bytes.json"}
+    assert said.keys() == {"pipe.json", "gone.json", "loop.json", "bytes.json"}
     assert "not a regular file" in said["pipe.json"]
     assert "No such file" in said["gone.json"]
+    assert "symbolic links" in said["loop.json"]
     assert "utf-8" in said["bytes.json"]
 
 

@@ -33,7 +33,7 @@ def judged(line: str, *, more: str = "", until_s: float = 10.0) -> Finding:
     ("line", "diagnosis", "words"),
     [
         (WAITS, "waits-in-callback", "deadlock"),
-        ("        self.pen.wait_for_service()", "waits-in-callback", "service_is_ready"),
+        ("        self.pen.wait_for_service()", "waits-for-server", "service_is_ready"),
         ("        time.sleep(1.0)", "sleep-in-callback", "sleeps"),
     ],
 )
