@@ -58,7 +58,7 @@ def cell_user() -> Iterator[int | None]:
         raise MachineError(message) from error
     try:
         # Choose a random id, so that a new cell rarely gets the id of a cell whose grader was just killed.
-        for user in random.choices(users, k=TRIES):
+        for user in (random.choice(users) for _ in range(TRIES)):
             if _lock(file, user):
                 break
         else:
