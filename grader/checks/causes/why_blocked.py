@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.waiting import clients_of, functions_in_callbacks, has_threads, inside, waits_in_callback
+from grader.checks.causes.why_other_object import NEED_THE_NODE
 from grader.submission.constants import dotted
 from grader.submission.where import Where
 
@@ -18,10 +19,10 @@ ANSWERS = ("wait_for_service", "service_is_ready", "wait_for_server", "server_is
 HARMLESS = frozenset({"sleep", "sleep_for", "print", "debug", "info", "warning", "warn", "error"})
 """Functions in a loop that only waits: they sleep, or report that the node waits."""
 EXECUTORS = ("SingleThreadedExecutor", "MultiThreadedExecutor")
-MAKERS = ("create_node", "Node")
+NODE_MAKERS = ("create_node", "Node")
 """Functions that create a node. The student's own classes of nodes do, too."""
-SPINNERS = ("spin", "spin_once", "spin_until_future_complete", "add_node")
-"""Functions whose first argument is a node that is spun."""
+WAKES = ("create_timer", "create_subscription", "create_service", "create_client", "ActionServer", "ActionClient")
+"""Functions that give a node something to do when it is spun."""
 
 
 def why_blocked(evidence: Evidence) -> Cause | None:
@@ -76,9 +77,12 @@ def _call_before_spin(evidence: Evidence) -> Cause | None:
         owner = dotted(call.node.func.value) if isinstance(call.node.func, ast.Attribute) else None
         inits = [node for node in call.module.nodes if isinstance(node, ast.FunctionDef) and node.name == "__init__"]
         if owner in clients and any(call.node in list(inside(each)) for each in inits):
+            limit = call.argument(1, "timeout_sec")
+            timed = limit is not None and not (isinstance(limit, ast.Constant) and limit.value is None)
+            end = "no response arrives" if timed else "call never returns"
             text = (
                 "call waits for the response, which arrives only while the node is spun. __init__ runs before "
-                "rclpy.spin, so call never returns. Use call_async."
+                f"rclpy.spin, so {end}. Use call_async."
             )
             return Cause("blocks-in-init", text, call.where)
     return None
@@ -92,35 +96,59 @@ def not_spun(evidence: Evidence) -> Cause | None:
 def _empty_executor(evidence: Evidence) -> Cause | None:
     """Return the cause if an executor spins without a node, else None."""
     code = evidence.code
-    made = {
-        target for name in ("SingleThreadedExecutor", "MultiThreadedExecutor") for target in _targets(evidence, name)
-    }
+    made = {target for name in EXECUTORS for target in _targets(evidence, name)}
     for call in code.calls("spin"):
         owner = dotted(call.node.func.value) if isinstance(call.node.func, ast.Attribute) else None
-        if owner in made and not call.node.args and not code.calls("add_node"):
+        if owner in made and not call.node.args and not code.calls("add_node") and not _used(evidence, owner):
             text = f"{owner} has no node, so it calls no callback. add_node adds a node to an executor."
             return Cause("no-spin", text, call.where)
     return None
 
 
 def _second_node(evidence: Evidence) -> Cause | None:
-    """Return the cause if the program creates two nodes and spins only one of them, else None."""
-    classes = [
-        node.name
+    """Return the cause if the program creates two nodes with callbacks and spins only one of them, else None."""
+    classes = {
+        node.name: node
         for module in evidence.code.modules
         for node in module.nodes
         if isinstance(node, ast.ClassDef) and any((dotted(base) or "").endswith("Node") for base in node.bases)
-    ]
-    made = {target: place for name in (*MAKERS, *classes) for target, place in _targets(evidence, name).items()}
-    given = [call.argument(0, "node") for name in SPINNERS for call in evidence.code.calls(name)]
+    }
+    made = {
+        target: (place, classes.get(name))
+        for name in (*NODE_MAKERS, *classes)
+        for target, place in _targets(evidence, name).items()
+    }
+    given = [call.argument(0, "node") for name in NEED_THE_NODE for call in evidence.code.calls(name)]
     spun = {dotted(each) for each in given if each is not None}
-    if not spun or not spun <= {*made, "self"}:
-        return None  # another name for a node, or a list of nodes
-    for target, place in made.items():
-        if target not in spun:
+    if not spun or not spun <= {*made}:
+        return None  # self, another name for a node, or a list of nodes
+    for target, (place, own) in made.items():
+        if target not in spun and not _used(evidence, target) and _has_callbacks(evidence, target, own):
             text = f"Nothing spins the node {target}, so none of its callbacks is called. rclpy.spin spins one node."
             return Cause("no-spin", text, place)
     return None
+
+
+def _used(evidence: Evidence, name: str) -> bool:
+    """Return whether the code passes on the object in this variable, or connects a node with an executor."""
+    for module in evidence.code.modules:
+        owners = {id(node.value) for node in module.nodes if isinstance(node, ast.Attribute)}
+        for node in module.nodes:
+            if not isinstance(node, ast.Name | ast.Attribute):
+                continue
+            loaded = isinstance(node.ctx, ast.Load) and id(node) not in owners and dotted(node) == name
+            if loaded or (isinstance(node.ctx, ast.Store) and getattr(node, "attr", "") == "executor"):
+                return True
+    return False
+
+
+def _has_callbacks(evidence: Evidence, target: str, own: ast.ClassDef | None) -> bool:
+    """Return whether something that needs a spin is created on the node in this variable, or in its class."""
+    inside = [node for node in ast.walk(own) if isinstance(node, ast.Call)] if own is not None else []
+    if any((dotted(node.func) or "").rpartition(".")[2] in WAKES for node in inside):
+        return True
+    calls = [call.node for name in WAKES for call in evidence.code.calls(name)]
+    return any((dotted(node.func) or "").rpartition(".")[0] == target for node in calls)
 
 
 def _targets(evidence: Evidence, maker: str) -> dict[str, Where]:

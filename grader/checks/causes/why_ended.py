@@ -6,6 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.waiting import SPINS
 from grader.checks.causes.why_other_object import CREATE_OBJECT
 from grader.evidence.activity import ended_at_start
 from grader.submission.constants import dotted
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 EXITS = ("exit", "quit", "sys.exit", "os._exit", "SystemExit", "rclpy.shutdown", "rclpy.try_shutdown")
-SPINS = ("spin", "spin_once", "spin_until_future_complete")
 
 
 def why_ended(evidence: Evidence) -> Cause:

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.no_entry_point import line
 from grader.common.words import shorten
-from grader.submission.code import Code, read_module
+from grader.errors import TooLargeError
+from grader.submission.code import MOST_BYTES, Code, read_module
 from grader.submission.constants import evaluate
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterator
 
     from grader.evidence.evidence import Evidence
     from grader.submission.code import Call, Module
@@ -24,7 +25,7 @@ GIVERS = ("__init__", "create_node", "Node")
 
 def why_node_name(evidence: Evidence, name: str) -> Cause:
     """Return the reason why the node has the name `name` (without a slash)."""
-    rule = remapping_rule(evidence, "__node:=") or remapping_rule(evidence, "__name:=")
+    rule = remapping_rule(evidence, ("__node", "__name"), name)
     if rule is not None:
         return Cause("node-name", "This remapping rule gives the node another name.", rule)
     calls = [call for giver in GIVERS for call in evidence.code.calls(giver)]
@@ -40,12 +41,17 @@ def why_node_name(evidence: Evidence, name: str) -> Cause:
     return Cause("node-name", f"The node name is the first argument of {giver}.", where)
 
 
-def remapping_rule(evidence: Evidence, rule: str) -> Where | None:
-    """Return the place of a string in the code that contains this part of a remapping rule, or None."""
+def remapping_rule(evidence: Evidence, olds: Collection[str], new: str) -> Where | None:
+    """Return the place of a string that is a remapping rule from one of the names `olds` to the name `new`, or None.
+
+    A longer string does not count, because it may be a docstring or a message that mentions the rule.
+    """
     for module in evidence.code.modules:
         for node in module.nodes:
-            if isinstance(node, ast.Constant) and isinstance(node.value, str) and rule in node.value:
-                return Where(module.file, node.lineno)
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                old, _, given = node.value.partition(":=")
+                if old.rpartition(":")[2] in olds and given.removeprefix("/") == new.removeprefix("/"):
+                    return Where(module.file, node.lineno)
     return None
 
 
@@ -103,11 +109,16 @@ def _other_file(evidence: Evidence, call: Call, calls: list[Call]) -> Cause | No
     if call.module.file.endswith(f"/{evidence.trial.executable}.py"):
         return None  # the entry point leads to the file with its name
     known = {module.file for module in evidence.code.modules}
+    left = MOST_BYTES
     for path in sorted(files):
-        if path in known or not path.endswith(".py") or path.startswith("test/"):
+        if path in known or not path.endswith(".py") or path.startswith("test/") or len(files[path]) > left:
             continue
-        others = [other for giver in GIVERS for other in Code((read_module(path, files[path]),)).calls(giver)]
-        if any(_name(each) == wanted for each in others):
+        left -= len(files[path])
+        try:
+            code = Code((read_module(path, files[path]),))
+        except TooLargeError:
+            continue
+        if any(_name(each) == wanted for giver in GIVERS for each in code.calls(giver)):
             here = call.module.file.rpartition("/")[2]
             text = (
                 f"The entry point {evidence.trial.executable} leads to {here}. The node named {wanted} is in "

@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.waiting import SPINS
 from grader.checks.causes.why_rejected import place_of
 from grader.common.words import count
 from grader.submission.uses import uses_of
@@ -113,7 +114,6 @@ def _not_called(events: NodeEvents, run: NodeRun, code: TestCode, right: Behavio
     return Cause("bench-clock-stands", text, _place(code, run, OVERRIDE))
 
 
-SPINS = ("spin", "spin_once", "spin_until_future_complete")
 OVERRIDE = "set_ros_time_override"
 NOT_SPUN = (
     "The node has received no pose, and the callback of its timer has not run. Is the node in the executor, and "

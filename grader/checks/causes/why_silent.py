@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.timers import timer_fault
-from grader.checks.causes.waiting import inside
-from grader.checks.causes.why_blocked import not_spun, only_waits, why_blocked
-from grader.checks.causes.why_ended import SPINS, named_only
+from grader.checks.causes.waiting import SPINS, inside
+from grader.checks.causes.why_blocked import WAKES, not_spun, only_waits, why_blocked
+from grader.checks.causes.why_ended import named_only
 from grader.checks.causes.why_inactive import never_activated
 from grader.checks.causes.why_never_set import never_set
 from grader.common.words import nearest, shorten
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
 INCOMPATIBLE = "incompatible QoS"
 """rclpy logs a message with these words if a publisher and a subscription cannot communicate."""
-WAKES = ("create_timer", "create_subscription", "create_service", "create_client", "ActionServer", "ActionClient")
-"""Functions that give a node something to do in spin_once."""
 CATCH = "/catch"
 ALWAYS = ("True", "1", "rclpy.ok()")
 

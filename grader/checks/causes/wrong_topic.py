@@ -28,7 +28,8 @@ def why_topic(wanted: str, topic: str, evidence: Evidence, maker: str = "create_
 
 def _why(wanted: str, topic: str, evidence: Evidence, maker: str) -> Cause:
     last = wanted.rpartition("/")[2]
-    rule = remapping_rule(evidence, f"{last}:=")
+    parts = wanted.split("/")
+    rule = remapping_rule(evidence, {wanted, *("/".join(parts[first:]) for first in range(1, len(parts)))}, topic)
     if rule is not None and _has_name(evidence, maker, wanted):
         return Cause("wrong-topic", "This remapping rule gives the topic another name.", rule)
     if topic == f"/{last}":
@@ -45,7 +46,8 @@ def _why(wanted: str, topic: str, evidence: Evidence, maker: str) -> Cause:
         return Cause("topic-other-turtle", "There is no turtle with that name.")
     text = f"The topic name is the second argument of {maker}."
     if _has_turtle(evidence, topic):
-        return Cause("wrong-topic", f"{text} turtlesim uses this topic for something else.")
+        use = "This topic belongs to another turtle." if of_turtles else "turtlesim uses this topic for something else."
+        return Cause("wrong-topic", f"{text} {use}")
     if nearest(topic, [wanted]):
         text = f"{text} Check the topic name letter by letter."
     return Cause("wrong-topic", text)

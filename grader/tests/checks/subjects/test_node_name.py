@@ -50,6 +50,18 @@ RUNS = "def main():\n    node = {}()\n"
             3,
         ),
         (
+            NAMED.format("Circle", "Node", f'"{NAME}"') + f'print("Start it with --ros-args -r __node:={NAME}")\n',
+            "",
+            "The node name is the first argument of super().__init__.",
+            3,
+        ),
+        (
+            NAMED.format("Circle", "Node", f'"{NAME}"') + 'OTHER = "__node:=draw_circle"\n',
+            "",
+            "The node name is the first argument of super().__init__.",
+            3,
+        ),
+        (
             IMPORTS + NAMED.format("Circle", "Other", ""),
             NAMED.format("Other", "Node", f'"{NAME}"'),
             f"Circle inherits the name {NAME} from Other, which passes it to its base class.",
@@ -92,6 +104,18 @@ def test_a_module_that_imports_the_right_one_can_be_the_right_one() -> None:
     build = replace(BUILD, entry_points={"draw_circle": "my_robot_controller.nodes:main"})
     given = finding("node-name", evidence(SHAPES["other name"](), submission(files), build=build))
     assert "the package also has a file draw_circle.py" not in given.cause
+
+
+@pytest.mark.parametrize("table", ["0, " * 200_000, "-" * 100_000 + "1"])
+def test_a_file_that_is_not_part_of_the_node_may_be_too_large_to_be_read(table: str) -> None:
+    files = {
+        NODE_FILE: None,
+        "my_robot_controller/first.py": NAMED.format("Circle", "Node", f'"{NAME}"'),
+        "my_robot_controller/table.py": f"TABLE = [{table}]\n",
+    }
+    build = replace(BUILD, entry_points={"draw_circle": "my_robot_controller.first:main"})
+    given = finding("node-name", evidence(SHAPES["other name"](), submission(files), build=build))
+    assert (given.diagnosis, given.cause) == ("node-name", "The node name is the first argument of super().__init__.")
 
 
 @pytest.mark.parametrize(("other", "told"), [("draw_circle", True), ("draw_square", False)])

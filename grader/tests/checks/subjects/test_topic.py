@@ -260,20 +260,23 @@ def test_a_wrong_topic_of_a_subscription_is_explained_like_one_of_a_publisher(
         assert finding.cause.startswith("The topic name is the second argument of create_subscription.")
 
 
-RENAMED = 'rclpy.init(args=["--ros-args", "-r", "{}:=/other"])'
+RENAMED = 'rclpy.init(args=["--ros-args", "-r", "{}:=/{}"])'
 
 
 @pytest.mark.parametrize(
-    ("topic", "rule", "words", "told"),
+    ("topic", "rule", "new", "told"),
     [
-        (TOPIC, TOPIC, "This remapping rule gives the topic another name.", True),
-        (TOPIC, "cmd_vel", "This remapping rule gives the topic another name.", True),
-        (TOPIC, "/chatter", "This remapping rule gives the topic another name.", False),
-        ("/other", TOPIC, "This remapping rule gives the topic another name.", False),
+        (TOPIC, TOPIC, "other", True),
+        (TOPIC, "cmd_vel", "other", True),
+        (TOPIC, "/chatter", "other", False),
+        (TOPIC, "Start it with -r cmd_vel", "other", False),
+        (TOPIC, "cmd_vel", "third", False),
+        ("/other", TOPIC, "other", False),
     ],
 )
-def test_a_remapping_rule_is_told(topic: str, rule: str, words: str, *, told: bool) -> None:
-    changes = (("rclpy.init(args=args)", RENAMED.format(rule)), (f'"{TOPIC}"', f'"{topic}"'))
+def test_a_remapping_rule_is_told(topic: str, rule: str, new: str, *, told: bool) -> None:
+    words = "This remapping rule gives the topic another name."
+    changes = (("rclpy.init(args=args)", RENAMED.format(rule, new)), (f'"{TOPIC}"', f'"{topic}"'))
     finding = found(
         PUBLISHES, evidence(observed(("publisher", "/other", TWIST)), node(*changes)), topic=TOPIC, type=TWIST
     )
@@ -301,6 +304,7 @@ def test_a_turtle_that_exists_is_not_denied() -> None:
     both = replace(trial, graphs=(replace(trial.graphs[0], endpoints=(*trial.graphs[0].endpoints, second)),))
     assert publishes(trial).cause == "There is no turtle with that name."
     assert reported(publishes(both)) == ("wrong-topic", ":9")
+    assert publishes(both).cause.endswith("This topic belongs to another turtle.")
 
 
 @pytest.mark.parametrize(
