@@ -31,6 +31,8 @@ MODULE_OF = {
     "glob": "glob",
 }
 """Maps a class or function to the module from which it is usually imported."""
+IN_RCLPY = {"Duration": "rclpy.duration", "Time": "rclpy.time", "wait_for_message": "rclpy.wait_for_message"}
+"""Maps more names to their modules. rospy has the same names, and no name is corrected to one of them."""
 SHARED_NAMES = frozenset({"Pose", "Color", "Empty", "setup", "find_packages", "glob"})
 """The names in `MODULE_OF` that also exist in other packages, such as Pose in geometry_msgs."""
 
@@ -90,9 +92,6 @@ OF_ROS_1 = {
     "ServiceProxy": "In ROS 2, the method create_client of the node creates a client.",
     "Service": "In ROS 2, the method create_service of the node offers a service.",
     "wait_for_service": "In ROS 2, a client has the methods wait_for_service and service_is_ready.",
-    "wait_for_message": "In ROS 2, a node receives messages in the callback of a subscription.",
-    "Duration": "In ROS 2, the class Duration is in rclpy.duration.",
-    "Time": "In ROS 2, the class Time is in rclpy.time.",
     "loginfo": "In ROS 2, the logger has the method info.",
     "logwarn": "In ROS 2, the logger has the method warning.",
     "logerr": "In ROS 2, the logger has the method error.",

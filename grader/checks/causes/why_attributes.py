@@ -145,13 +145,12 @@ def _of_module(scene: CrashScene, module: str, name: str) -> Cause | None:
         text = f"The entry point names {shorten(name)}, which the module {shorten(module)} does not contain."
         missing = Cause("entry-point-function", text, no_entry_point.line(scene.evidence))
         return no_entry_point.indented(scene.module_of(f"{module.replace('.', '/')}.py"), name) or missing
-    if name in ros_names.MODULE_OF and (module == "rclpy" or ros_names.MODULE_OF[name].startswith(f"{module}.")):
-        return Cause("import-wrong-place", f"{name} is in the module {ros_names.MODULE_OF[name]}.")
+    place = {**ros_names.IN_RCLPY, **ros_names.MODULE_OF}.get(name, "")
+    if place and (module == "rclpy" or place.startswith(f"{module}.")):
+        return Cause("import-wrong-place", f"{name} is in the module {place}.")
     if module == "rclpy" and name in ros_names.OF_ROS_1:
         return _of_ros_1(name)
-    known: Iterable[str] = (
-        ros_names.RCLPY if module == "rclpy" else dir(MODULES_READ[module]) if module in MODULES_READ else ()
-    )
+    known = ros_names.RCLPY if module == "rclpy" else dir(MODULES_READ[module]) if module in MODULES_READ else ()
     return _misspelt(scene, name, known) or Cause(
         "attribute-missing", f"The module {shorten(module)} does not contain this name."
     )

@@ -30,9 +30,6 @@ def cause(name: str) -> str:
         ("ServiceProxy", "In ROS 2, the method create_client of the node creates a client."),
         ("Service", "In ROS 2, the method create_service of the node offers a service."),
         ("wait_for_service", "In ROS 2, a client has the methods wait_for_service and service_is_ready."),
-        ("wait_for_message", "In ROS 2, a node receives messages in the callback of a subscription."),
-        ("Duration", "In ROS 2, the class Duration is in rclpy.duration."),
-        ("Time", "In ROS 2, the class Time is in rclpy.time."),
         ("loginfo", "In ROS 2, the logger has the method info."),
         ("logwarn", "In ROS 2, the logger has the method warning."),
         ("logerr", "In ROS 2, the logger has the method error."),
@@ -42,6 +39,14 @@ def test_what_replaces_a_name_of_rospy_is_told_for_that_name_only(name: str, wor
     assert cause(name) == f"{name} belongs to rospy, the library of ROS 1. {words}"
     others = [other for other, text in OF_ROS_1.items() if text != words]
     assert not any(words in cause(other) for other in (*others, "spinn"))
+
+
+@pytest.mark.parametrize(
+    ("name", "module"),
+    [("wait_for_message", "wait_for_message"), ("Duration", "duration"), ("Time", "time"), ("Node", "node")],
+)
+def test_a_name_that_rclpy_has_in_a_module_is_not_one_of_ros_1(name: str, module: str) -> None:
+    assert cause(name) == f"{name} is in the module rclpy.{module}."
 
 
 @pytest.mark.parametrize(("near", "name"), [("spinn", "spin"), ("intt", "init")])
