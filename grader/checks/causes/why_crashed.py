@@ -11,6 +11,7 @@ from grader.checks.causes.comma_for_dot import comma_for_dot
 from grader.checks.causes.crash_scene import CrashScene
 from grader.checks.causes.refused_calls import why_refused
 from grader.checks.causes.trailing_comma import trailing_comma
+from grader.checks.causes.waiting import functions_in_callbacks
 from grader.checks.causes.why_attributes import why_no_attribute
 from grader.checks.causes.why_calls import why_type
 from grader.checks.causes.why_ended import named_only
@@ -128,7 +129,8 @@ def _why_resized(scene: CrashScene) -> Cause | None:
 
 def _why_no_loop(scene: CrashScene) -> Cause | None:
     """Return the cause if the node uses asyncio in a coroutine that rclpy runs, else None."""
-    if "no running event loop" not in scene.crash.message:
+    callbacks = functions_in_callbacks(scene.evidence.code.modules)
+    if "no running event loop" not in scene.crash.message or scene.function not in [each for _, each in callbacks]:
         return None
     text = "rclpy calls this callback without the event loop of asyncio. To wait, use a timer instead of asyncio."
     return Cause("asyncio-in-callback", text)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.common.words import shorten
 from grader.submission.code import import_path, imported_files, module_file
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -22,11 +23,16 @@ def why_no_own_module(scene: CrashScene, name: str) -> Cause | None:
     files = scene.evidence.submission.files
     path = name.replace(".", "/")
     # Python names the first part that it cannot import. If this part is a folder, the folder is not installed.
-    if (
-        "." not in name
-        or not _has_modules(name, files)
-        or f"{path}/__init__.py" in {import_path(each) for each in files}
-    ):
+    setup = scene.evidence.setup_py
+    if "." not in name or not _has_modules(name, files) or setup is None or setup.packages_line is None:
+        return None
+    if not setup.finds_packages:
+        text = (
+            f"The build does not install the folder {shorten(path)}. The packages argument of setup() lists the "
+            "folders to install."
+        )
+        return Cause("module-not-installed", text, Where("setup.py", setup.packages_line))
+    if f"{path}/__init__.py" in {import_path(each) for each in files}:
         return None
     text = f"The folder {shorten(path)} has no file __init__.py, so the build does not install it."
     return Cause("missing-init", text)

@@ -7,16 +7,17 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.callback_groups import REGISTERS
 from grader.checks.causes.why_other_object import CREATE_OBJECT
 from grader.checks.causes.why_rate import callbacks_of
 from grader.common.words import shorten
-from grader.submission.constants import dotted
+from grader.submission.constants import dotted, written
 
 if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
-MOST = {"create_timer": 2, "create_publisher": 3, "create_subscription": 4, "create_service": 3}
-"""Maps a method of a node to the number of arguments that a beginner passes by position."""
+MOST = {**REGISTERS, "create_publisher": 3}
+"""Maps a method of a node to the maximum number of positional arguments without a callback group."""
 GROUPS = ("MutuallyExclusiveCallbackGroup", "ReentrantCallbackGroup")
 NOT_A_GROUP = re.compile(r"has no attribute '(?:handle|add_entity|can_execute)'|CallbackGroup\.add_entity\(\) missing")
 KEYWORD = re.compile(r"got an unexpected keyword argument '(?P<name>\w+)'")
@@ -46,15 +47,17 @@ def why_rclpy_refused(scene: CrashScene) -> Cause | None:
 
 def _group(scene: CrashScene) -> Cause | None:
     """Return the cause if something other than a callback group was passed as the callback group, else None."""
-    if not NOT_A_GROUP.search(scene.crash.message):
+    if not NOT_A_GROUP.search(scene.crash.message) or scene.module is None:
         return None
     for name, most in MOST.items():
         for call in scene.calls_on_line(name):
-            given = next((each.value for each in call.keywords if each.arg == "callback_group"), None)
-            written = (dotted(given) or "").rpartition(".")[2] if given is not None else ""
-            if written in GROUPS:
-                return Cause("class-for-object", f"{written} is a class. {CREATE_OBJECT}", scene.at(given))
-            if given is None and name == "create_timer" and len(call.args) > most:
+            by_name = next((each.value for each in call.keywords if each.arg == "callback_group"), None)
+            given = by_name or (call.args[most] if len(call.args) > most else None)
+            value = written(given, scene.module.names)
+            group = (dotted(value) or "").rpartition(".")[2] if value is not None else ""
+            if group in GROUPS:
+                return Cause("class-for-object", f"{group} is a class. {CREATE_OBJECT}", scene.at(value))
+            if by_name is None and name == "create_timer" and len(call.args) > most:
                 text = (
                     "The third argument of create_timer is a callback group. A timer passes no arguments to its "
                     "callback. Store the values in self."
@@ -114,7 +117,10 @@ def _value_of_parameter(scene: CrashScene) -> Cause | None:
         return _declared_twice(scene)
     if "The given value is not one of the allowed types" not in scene.crash.message:
         return None
-    kind = "a Parameter" if "rclpy.parameter.Parameter" in scene.crash.message else "an object of another type"
+    is_parameter = "rclpy.parameter.Parameter" in scene.crash.message
+    if not scene.calls_on_line("declare_parameter") or (scene.calls_on_line("Parameter") and not is_parameter):
+        return None  # the value of a Parameter, or one of the parameters in declare_parameters
+    kind = "a Parameter" if is_parameter else "an object of another type"
     text = f"The second argument of declare_parameter is the default value, such as 1.0. Here it is {kind}."
     return Cause("parameter-type", text)
 
@@ -126,7 +132,8 @@ def _declared_twice(scene: CrashScene) -> Cause:
     found = DECLARED.search(scene.crash.message)
     name = shorten(found["name"]) if found is not None else "This parameter"
     for node in scene.nodes:
-        if isinstance(node, ast.keyword) and node.arg == "automatically_declare_parameters_from_overrides":
+        automatic = isinstance(node, ast.keyword) and node.arg == "automatically_declare_parameters_from_overrides"
+        if isinstance(node, ast.keyword) and automatic and getattr(node.value, "value", None) is True:
             text = (
                 f"{node.arg} already declares each parameter that is set when the node starts. Remove this argument "
                 "if you declare the parameters yourself."

@@ -7,8 +7,10 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.why_other_object import without_return
 from grader.checks.causes.why_rate import callbacks_of
 from grader.checks.causes.why_silent import methods_of
+from grader.checks.causes.why_wrong_object import SENDERS
 from grader.common.words import shorten
 from grader.submission.where import Where
 
@@ -23,11 +25,12 @@ OF_A_RESPONSE = re.compile(r"'\w+_Response' object has no attribute")
 def why_response(scene: CrashScene) -> Cause | None:
     """Return the cause if a service callback does not return its response or mixes up its parameters, else None."""
     servers = {name for _, name in callbacks_of(scene.evidence, "create_service")}
-    if not servers and scene.crash.error == "TypeError" and not scene.crash.message:
-        for call in scene.evidence.code.calls("create_service"):
-            if isinstance(call.argument(2, "callback"), ast.Lambda):
-                text = "This lambda returns no response. The callback of a service must return its response."
-                return Cause("response-not-returned", text, call.where)
+    # rclpy raises a TypeError without a message if a callback returns anything but a response, or if a client sends
+    # anything but a request.
+    sends = any(scene.calls_on_line(sender) for sender in SENDERS)
+    no_response = scene.crash.error == "TypeError" and not scene.crash.message and not sends
+    if not servers and no_response:
+        return _lambda(scene)
     for module, method in methods_of(scene.evidence):
         where = Where(module.file, method.lineno)
         if method.name not in servers:
@@ -36,8 +39,7 @@ def why_response(scene: CrashScene) -> Cause | None:
         if OF_A_RESPONSE.search(scene.crash.message) and first.startswith("res"):
             text = f"{method.name} gets the request first, and the response second."
             return Cause("arguments-swapped", text, where)
-        # rclpy raises a TypeError without a message if a callback returns anything but a response.
-        if scene.crash.error != "TypeError" or scene.crash.message:
+        if not no_response:
             continue
         returns = any(isinstance(node, ast.Return) and node.value is not None for node in ast.walk(method))
         if not returns:
@@ -46,6 +48,23 @@ def why_response(scene: CrashScene) -> Cause | None:
         if wrong := _returned_instead(method):
             text = f"{method.name} returns {wrong}. The callback of a service must return its response."
             return Cause("response-not-returned", text, where)
+    return None
+
+
+def _lambda(scene: CrashScene) -> Cause | None:
+    """Return the cause if a lambda that is the callback of a service does not return a response, else None."""
+    for call in scene.evidence.code.calls("create_service"):
+        callback = call.argument(2, "callback")
+        body = callback.body if isinstance(callback, ast.Lambda) else None
+        if body is None:
+            continue
+        called = without_return(scene, body)
+        if called is not None:
+            text = f"{called.text} The callback of a service must return its response."
+            return Cause("response-not-returned", text, called.where)
+        if isinstance(body, ast.Constant) or type(body) in DISPLAYS:
+            text = "This lambda returns no response. The callback of a service must return its response."
+            return Cause("response-not-returned", text, call.where)
     return None
 
 

@@ -47,10 +47,16 @@ def _called_callback(scene: CrashScene) -> Cause | None:
         maker = getattr(node.func, "attr", "")
         place = MAKERS.get(maker, len(node.args))
         given = node.args[place] if len(node.args) > place else None
-        if isinstance(given, ast.Call) and dotted(given.func) == f"self.{name}":
+        called = isinstance(given, ast.Call) and dotted(given.func) == f"self.{name}"
+        if called and not any(map(_returns_a_value, ast.walk(scene.function or node))):
             text = f"{maker} needs the method itself. With () after its name, the method is called immediately."
             return Cause("callback-called", text, scene.at(node))
     return None
+
+
+def _returns_a_value(node: ast.AST) -> bool:
+    """Return whether this is a return statement with a value, which may be the callback."""
+    return isinstance(node, ast.Return) and node.value is not None
 
 
 def _request(scene: CrashScene) -> Cause | None:
@@ -121,14 +127,18 @@ def _braces(scene: CrashScene) -> Cause | None:
     found = BRACES.search(scene.crash.message)
     if found is None:
         return None
-    text = f"The name contains {found['name']} itself. Only an f-string replaces the braces with a value."
+    text = f"The name contains {found['name']} itself. An f-string or the method format replaces the braces."
     return Cause("topic-name-invalid", text)
 
 
 def _reader(scene: CrashScene) -> Cause | None:
     """Return the cause if AnyReader got a string, or was used after its with block, else None."""
     if scene.crash.error == "AnyReaderError" and "not open" in scene.crash.message:
-        text = "The bag is open only inside the with block of AnyReader. Indent the lines that read the messages."
+        around = scene.nodes if scene.function is None else ast.walk(scene.function)
+        blocks = [node for node in around if isinstance(node, ast.With)]
+        text = "The bag is not open here. A with statement opens it: with AnyReader([path]) as reader."
+        if any("AnyReader" in ast.unparse(item) for block in blocks for item in block.items):
+            text = "The bag is open only inside the with block of AnyReader. Indent the lines that read the messages."
         return Cause("bag-reader", text)
     if "'str' object has no attribute 'exists'" in scene.crash.message and scene.calls_on_line("AnyReader"):
         return Cause("bag-reader", "AnyReader takes a list of Path objects, not of strings.")

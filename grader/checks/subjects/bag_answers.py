@@ -69,7 +69,8 @@ def bag_answer(evidence: Evidence, params: BagAnswer) -> Finding:
     match = NUMBER.fullmatch(f"{given:.0f}" if isinstance(given, float) and not unit else str(given).strip())
     if match is None:
         written = shown_answer(given) if isinstance(given, tuple) else shorten(str(given))
-        comma = "Write a dot, not a comma, in decimal numbers." if re.match(r"\s*\d+,\d", str(given)) else ""
+        comma = "Write a dot, not a comma, in decimal numbers." if unit else "Write the number without a comma."
+        comma = comma if re.match(r"\s*\d+,\d", str(given)) else ""
         return failed(f"{params.answer} is {written}.", expected, Cause("answer-form", comma, where))
     value, has = float(match["number"]), match["unit"]
     observed = f"{params.answer} is {shorten(match[0])}."

@@ -97,9 +97,17 @@ def test_a_loop_over_what_it_changes_is_told(error: str, *, found: bool) -> None
     assert ("An item was added or removed while a loop went through the collection." in cause) == found
 
 
-@pytest.mark.parametrize(("error", "found"), [("no running event loop", True), ("cannot start a new loop", False)])
-def test_a_callback_has_no_event_loop_of_asyncio(error: str, *, found: bool) -> None:
-    cause = reported(DRIVER.format(line="await asyncio.sleep(0.5)"), f"RuntimeError: {error}").cause
+@pytest.mark.parametrize(
+    ("error", "init", "found"),
+    [
+        ("no running event loop", "self.create_timer(0.5, self.send)", True),
+        ("no running event loop", "self.send()", False),
+        ("cannot start a new loop", "self.create_timer(0.5, self.send)", False),
+    ],
+)
+def test_a_callback_has_no_event_loop_of_asyncio(error: str, init: str, *, found: bool) -> None:
+    source = DRIVER.format(line="await asyncio.sleep(0.5)").replace("self.count = 0", init)
+    cause = reported(source, f"RuntimeError: {error}").cause
     assert ("rclpy calls this callback without the event loop of asyncio." in cause) == found
 
 

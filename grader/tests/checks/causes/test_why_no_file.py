@@ -6,12 +6,15 @@ import pytest
 
 from grader.tests.checks.crashes import reported
 
+WRITTEN = "/home/ana/ros2_ws/src/my_robot_controller/config/circle.yaml"
 OWN = {"config/circle.yaml": ""}
 
 
 @pytest.mark.parametrize(
     ("path", "files", "words"),
     [
+        (WRITTEN, OWN, "The code contains an absolute path, which does not exist on every computer. Install the file"),
+        ("/ws/site-packages/config/circle.yaml", OWN, "contains config/circle.yaml, but not at this path. Install"),
         (
             "/ws/share/my_robot_controller/config/circle.yaml",
             OWN,
@@ -26,7 +29,9 @@ OWN = {"config/circle.yaml": ""}
 )
 def test_a_file_of_the_package_is_named(path: str, files: dict[str, str], words: str) -> None:
     found = reported(
-        "open(path)  # crashed\n", f"FileNotFoundError: [Errno 2] No such file or directory: '{path}'", files
+        f'PATH = "{WRITTEN}"\nopen(path)  # crashed\n',
+        f"FileNotFoundError: [Errno 2] No such file or directory: '{path}'",
+        files,
     )
-    told = "does not install" in found.cause or "does not run in the folder" in found.cause
+    told = found.diagnosis == "file-not-installed"
     assert (words in found.cause, told) == (True, bool(words))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from grader.tests.checks.crashes import reported
+from grader.tests.checks.made import SETUP_PY
 
 PACKAGE = "my_robot_controller"
 NO_MODULE = f"ModuleNotFoundError: No module named '{PACKAGE}.nodes'"
@@ -28,6 +29,20 @@ def test_a_folder_without_init_is_not_installed(files: dict[str, str], diagnosis
     assert found.diagnosis == diagnosis
     told = f"The folder {PACKAGE}/nodes has no file __init__.py, so the build does not install it." in found.cause
     assert told == (diagnosis == "missing-init")
+
+
+@pytest.mark.parametrize(
+    ("packages", "init", "told"),
+    [("[package_name]", False, True), ("[package_name]", True, True), ("find_packages()", False, False)],
+)
+def test_a_folder_that_is_not_in_the_list_of_packages_is_not_installed(
+    packages: str, *, init: bool, told: bool
+) -> None:
+    files = {f"{PACKAGE}/nodes/counter.py": "", **({f"{PACKAGE}/nodes/__init__.py": ""} if init else {})}
+    files["setup.py"] = SETUP_PY.replace('find_packages(exclude=["test"])', packages)
+    found = reported(f"import {PACKAGE}.nodes.counter  # crashed\n", NO_MODULE, files)
+    words = f"The build does not install the folder {PACKAGE}/nodes. The packages argument of setup() lists the folders"
+    assert (found.diagnosis, words in found.cause) == ("module-not-installed" if told else "missing-init", told)
 
 
 @pytest.mark.parametrize(

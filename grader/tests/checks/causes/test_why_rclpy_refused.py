@@ -26,6 +26,19 @@ TWICE = "rclpy.exceptions.ParameterAlreadyDeclaredException: Parameter(s) alread
             True,
         ),
         ("self.create_timer(0.5, self.send, callback_group=self.group)", ENTITY, "is a class", False),
+        (
+            "self.create_timer(0.5, self.send, ReentrantCallbackGroup)",
+            ENTITY,
+            "ReentrantCallbackGroup is a class. Add parentheses after the class name to create an object.",
+            True,
+        ),
+        ("self.create_timer(0.5, self.send, ReentrantCallbackGroup)", ENTITY, "A timer passes no arguments", False),
+        (
+            "self.create_subscription(Pose, 'pose', self.send, 10, ReentrantCallbackGroup)",
+            ENTITY,
+            "ReentrantCallbackGroup is a class.",
+            True,
+        ),
         ("print(pose['x'])", SUBSCRIPT, "A Pose is a message, not a dictionary.", True),
         ("print(pose['x'])", SUBSCRIPT.replace("Pose", "Place"), "is a message, not a dictionary", False),
         ("Vector3Stamped(1.0, 2.0)", POSITION, "Create the message without arguments", True),
@@ -43,6 +56,18 @@ TWICE = "rclpy.exceptions.ParameterAlreadyDeclaredException: Parameter(s) alread
             True,
         ),
         ('self.declare_parameter("radius", Twist())', "TypeError: another", "is the default value, such as", False),
+        (
+            'self.set_parameters([Parameter("radius", value=pose)])',
+            DEFAULT.format("Pose"),
+            "is the default value, such as",
+            False,
+        ),
+        (
+            'self.declare_parameter("radius", Parameter("radius", value=pose))',
+            DEFAULT.format("Pose"),
+            "is the default value, such as",
+            False,
+        ),
         ('self.declare_parameter("radius", 1.0)', TWICE, "radius is declared twice. Compare the names", True),
         ('self.declare_parameter("radius", 1.0)', "KeyError: 'radius'", "is declared twice", False),
         (
@@ -68,7 +93,7 @@ def test_an_argument_of_the_wrong_kind_is_told(line: str, error: str, words: str
 AUTOMATIC = """\
 class Driver(Node):
     def __init__(self):
-        super().__init__("driver", {argument}=True)
+        super().__init__("driver", {argument})
         self.declare_parameter("radius", 1.0)  # crashed
 """
 
@@ -76,8 +101,9 @@ class Driver(Node):
 @pytest.mark.parametrize(
     ("argument", "line", "words"),
     [
-        ("automatically_declare_parameters_from_overrides", 3, "already declares each parameter that is set when"),
-        ("allow_undeclared_parameters", 4, "radius is declared twice."),
+        ("automatically_declare_parameters_from_overrides=True", 3, "already declares each parameter that is set when"),
+        ("automatically_declare_parameters_from_overrides=False", 4, "radius is declared twice."),
+        ("allow_undeclared_parameters=True", 4, "radius is declared twice."),
     ],
 )
 def test_a_parameter_may_be_declared_by_an_argument_of_the_node(argument: str, line: int, words: str) -> None:

@@ -57,24 +57,42 @@ def test_a_callback_of_a_service_is_blamed_only_for_its_own_error(
     assert (found.cause if own else "", found.line) == (words, to_look_at(source))
 
 
+SPIN = "rclpy.spin(Driver())"
 LAMBDA = """\
 class Driver(Node):
     def __init__(self):
         super().__init__("driver")
         self.create_service(SetBool, "/pause", {callback})
 
-rclpy.spin(Driver())  # crashed
+    def right(self, request, response):
+        return response
+
+    def wrong(self, request, response):
+        response.success = True
+
+{line}  # crashed
 """
 
 
 @pytest.mark.parametrize(
-    ("callback", "error", "told"),
+    ("callback", "error", "line", "told"),
     [
-        ("lambda request, response: None", "TypeError", True),
-        ("lambda request, response: None", "TypeError: bad", False),
-        ("pause", "TypeError", False),
+        ("lambda request, response: None", "TypeError", SPIN, f"This lambda returns no response. {MUST}"),
+        ("lambda request, response: (True, 'ok')", "TypeError", SPIN, f"This lambda returns no response. {MUST}"),
+        (
+            "lambda request, response: self.wrong(request, response)",
+            "TypeError",
+            SPIN,
+            f"wrong has no return statement with a value, so it returns None. {MUST}",
+        ),
+        ("lambda request, response: self.right(request, response)", "TypeError", SPIN, ""),
+        ("lambda request, response: response", "TypeError", SPIN, ""),
+        ("lambda request, response: None", "TypeError: bad", SPIN, ""),
+        ("lambda request, response: None", "TypeError", "client.call_async(Spawn.Request)", ""),
+        ("wrong", "TypeError", "client.call_async(Spawn.Request)", ""),
+        ("pause", "TypeError", SPIN, ""),
     ],
 )
-def test_a_lambda_must_return_the_response(callback: str, error: str, *, told: bool) -> None:
-    found = reported(LAMBDA.format(callback=callback), error)
-    assert ("This lambda returns no response. The callback of a service must return" in found.cause) == told
+def test_a_lambda_must_return_the_response(callback: str, error: str, line: str, told: str) -> None:
+    found = reported(LAMBDA.format(callback=callback, line=line), error)
+    assert found.cause == told if told else MUST not in found.cause, found

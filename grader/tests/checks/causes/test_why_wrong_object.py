@@ -76,10 +76,24 @@ FORMAT = "TypeError: unsupported format string passed to {}.__format__"
         ("find([folder])", "pass", "AttributeError: 'str' object has no attribute 'exists'", "AnyReader takes", False),
         (
             "reader.messages()",
-            "pass",
+            "with AnyReader([path]) as reader: pass",
             "rosbags.highlevel.anyreader.AnyReaderError: AnyReader is not open.",
             "The bag is open only inside the with block of AnyReader. Indent the lines that read",
             True,
+        ),
+        (
+            "reader.messages()",
+            "reader = AnyReader([path])",
+            "rosbags.highlevel.anyreader.AnyReaderError: AnyReader is not open.",
+            "The bag is not open here. A with statement opens it: with AnyReader([path]) as reader.",
+            True,
+        ),
+        (
+            "reader.messages()",
+            "reader = AnyReader([path])",
+            "rosbags.highlevel.anyreader.AnyReaderError: AnyReader is not open.",
+            "Indent the lines that read",
+            False,
         ),
         (
             "reader.messages()",
@@ -92,10 +106,10 @@ FORMAT = "TypeError: unsupported format string passed to {}.__format__"
             'self.create_subscription(Pose, "/{name}/pose", self.send, 10)',
             "pass",
             "RCLError: failed to resolve name: unknown substitution: {name}, at /a.c:1",
-            "The name contains {name} itself. Only an f-string replaces the braces with a value.",
+            "The name contains {name} itself. An f-string or the method format replaces the braces.",
             True,
         ),
-        ("self.create_subscription()", "pass", "RCLError: failed to resolve name", "itself. Only an f-string", False),
+        ("self.create_subscription()", "pass", "RCLError: failed to resolve name", "itself. An f-string", False),
         (
             "msg.x = [1.0, 2.0]",
             "pass",
@@ -130,12 +144,15 @@ class Driver(Node):
 
     def answered(self, future):
         print(future.result())  # crashed
+        return{returned}
 """
 
 
-@pytest.mark.parametrize(("given", "told"), [("(name)", True), ("", False)])
-def test_a_callback_that_was_called_at_once_is_told(given: str, *, told: bool) -> None:
-    source = CALLED.format(given=given, look="  # look" if told else "")
+@pytest.mark.parametrize(
+    ("given", "returned", "told"), [("(name)", "", True), ("", "", False), ("(name)", " lambda future: None", False)]
+)
+def test_a_callback_that_was_called_at_once_is_told(given: str, returned: str, *, told: bool) -> None:
+    source = CALLED.format(given=given, returned=returned, look="  # look" if told else "")
     found = reported(source, "AttributeError: 'str' object has no attribute 'result'", caller=3)
     words = "add_done_callback needs the method itself. With () after its name, the method is called immediately."
     assert (words in found.cause, found.line == line_with(LOOK, source)) == (told, told)

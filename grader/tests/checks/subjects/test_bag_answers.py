@@ -54,6 +54,7 @@ def about(check: str, answer: str) -> str:
         ('duration is a number and its unit, s, as in "12.5 s".', "duration", '"long"', '"11.1 s"'),
         ('messages is a number, as in "1250".', "messages", '"many"', "696"),
         ("duration is [11.1 s].", "duration", '["11.1 s"]', '"11.1 s"'),
+        ("Write the number without a comma.", "messages", '"1,234"', '"many"'),
         ("Write a dot, not a comma, in decimal numbers.", "duration", '"11,1 s"', '"long"'),
         ("A number needs its unit.", "duration", '"11.1"', '"11.1 m"'),
         ("The unit is s.", "duration", '"11.1 m"', '"11.1"'),
