@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import ast
+import math
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.why_rate import callbacks_of
 from grader.checks.causes.why_silent import methods_of
 from grader.common.words import shorten
-from grader.submission.constants import dotted
+from grader.submission.constants import dotted, number, written
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -37,18 +38,40 @@ FIELDS: dict[str, tuple[Diagnosis, str]] = {
 
 def field_and_string(evidence: Evidence, field: str) -> Cause | None:
     """Return the cause if a field that is not a string, such as `status`, is compared with a string, else None."""
+    if any(_defines(node, field) for module in evidence.code.modules for node in module.nodes):
+        return None
     for module, node in _compared(evidence):
         sides = (node.left, *node.comparators)
         strings = [each for each in sides if isinstance(each, ast.Constant) and isinstance(each.value, str)]
-        if strings and any(isinstance(each, ast.Attribute) and each.attr == field for each in sides):
+        if strings and any(_is_field(each, field) for each in sides):
             diagnosis, kind = FIELDS[field]
             text = f"This line compares {field} with a string, but {field} is {kind}."
             return Cause(diagnosis, text, Where(module.file, node.lineno))
     return None
 
 
-def why_from_afar(evidence: Evidence) -> Cause | None:
+def _is_field(side: ast.expr, field: str) -> bool:
+    """Return whether the expression is this field of a request or a result. The field `data` is that of a request."""
+    if not isinstance(side, ast.Attribute) or side.attr != field:
+        return False
+    owner = ast.unparse(side.value)
+    return owner != "self" and (field != "data" or "req" in owner.lower())
+
+
+def _defines(node: ast.AST, field: str) -> bool:
+    """Return whether the code gives an attribute with this name to an object of its own."""
+    if isinstance(node, ast.Attribute):
+        return node.attr == field and isinstance(node.ctx, ast.Store)
+    if isinstance(node, ast.ClassDef):
+        named = [getattr(each, "name", "") for each in node.body]
+        given = [inner.id for each in node.body for inner in ast.iter_child_nodes(each) if isinstance(inner, ast.Name)]
+        return field in (*named, *given)
+    return isinstance(node, ast.keyword) and node.arg == field
+
+
+def why_from_afar(evidence: Evidence, reach_m: float) -> Cause | None:
     """Return the cause if the distance is not a square root, or the comparison with the reach is reversed."""
+    squares_are_used = _uses_squares(evidence, reach_m)
     for module, method in methods_of(evidence):
         read = {node.attr for node in ast.walk(method) if isinstance(node, ast.Attribute)}
         if method.name == "distance" and "x" in read and "y" not in read:
@@ -56,13 +79,15 @@ def why_from_afar(evidence: Evidence) -> Cause | None:
             return Cause("from-afar", text, Where(module.file, method.lineno))
         for node in ast.walk(method):
             value = node.value if isinstance(node, ast.Return) else None
-            if "distance" in method.name and value is not None and _is_sum_of_squares(value):
+            named = "distance" in method.name and "sq" not in method.name
+            if named and value is not None and _is_sum_of_squares(value) and not squares_are_used:
                 text = f"{method.name} returns the square of the distance. The square root is missing."
                 return Cause("from-afar", text, Where(module.file, getattr(node, "lineno", None)))
     for module, node in _compared(evidence):
         right = dotted(node.comparators[0]) or ""
         sign = SIGNS.get(type(node.ops[0]))
-        if sign is not None and "reach" in right.lower() and _is_condition_of_call(module, node):
+        is_reach = "reach" in right.lower() and "reached" not in right.lower()
+        if sign is not None and is_reach and _is_condition_of_call(module, node):
             text = f"With {sign}, this condition holds while the target is farther away than {shorten(right)}."
             return Cause("from-afar", text, Where(module.file, node.lineno))
     return None
@@ -71,18 +96,54 @@ def why_from_afar(evidence: Evidence) -> Cause | None:
 def _is_sum_of_squares(value: ast.expr) -> bool:
     """Return whether an expression adds powers, as in dx**2 + dy**2, and takes no square root."""
     powers = [each for each in ast.walk(value) if isinstance(each, ast.BinOp) and isinstance(each.op, ast.Pow)]
-    halves = any(isinstance(each.right, ast.Constant) and each.right.value == 0.5 for each in powers)
+    halves = any(map(_is_root, powers))
     calls = [each.func for each in ast.walk(value) if isinstance(each, ast.Call)]
     called = {getattr(each, "attr", getattr(each, "id", "")) for each in calls}
     added = isinstance(value, ast.BinOp) and isinstance(value.op, ast.Add)
     return added and len(powers) >= 2 and not halves and not called & ROOTS
 
 
+def _uses_squares(evidence: Evidence, reach_m: float) -> bool:
+    """Return whether the code takes a root, or compares a value with a square."""
+    for module in evidence.code.modules:
+        for node in module.nodes:
+            sides = (node.left, *node.comparators) if isinstance(node, ast.Compare) else ()
+            if _is_root(node) or any(_is_square(side, module, reach_m) for side in sides):
+                return True
+    return False
+
+
+def _is_root(node: ast.AST) -> bool:
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow):
+        return isinstance(node.right, ast.Constant) and node.right.value == 0.5
+    return isinstance(node, ast.Call) and getattr(node.func, "attr", getattr(node.func, "id", "")) == "sqrt"
+
+
+def _is_square(side: ast.expr, module: Module, reach_m: float) -> bool:
+    """Return whether the expression is a square: a power, x * x, a name for one of them, or the square of the reach."""
+    value = written(side, module.names)
+    product = isinstance(value, ast.BinOp) and (
+        isinstance(value.op, ast.Pow)
+        or (
+            isinstance(value.op, ast.Mult)
+            and dotted(value.left) is not None
+            and dotted(value.left) == dotted(value.right)
+        )
+    )
+    squared = number(side, module.names)
+    near = squared is not None and math.isclose(squared, reach_m**2)
+    return product or near or "sq" in ast.unparse(side).lower()
+
+
 def _is_condition_of_call(module: Module, test: ast.Compare) -> bool:
-    """Return whether an if statement with this condition begins by calling a method whose name contains "catch"."""
+    """Return whether an if statement with this condition begins by calling catch."""
     for node in module.nodes:
         if isinstance(node, ast.If) and node.test is test:
-            return any("catch" in ast.unparse(each).lower() for each in node.body)
+            first = node.body[0]
+            call = first.value if isinstance(first, ast.Expr | ast.Assign) else None
+            name = (dotted(call.func) or "").lower() if isinstance(call, ast.Call) else ""
+            owner, _, last = name.rpartition(".")
+            return last.lstrip("_").startswith("catch") or (last == "call_async" and "catch" in owner)
     return False
 
 

@@ -45,22 +45,33 @@ def why_killed(evidence: Evidence, track: Track, service: str) -> Cause:
 
 def _place(evidence: Evidence) -> Where | None:
     """Return the place where the node creates a request to /kill, or else where it uses a client, or None."""
+    return kill_request(evidence) or evidence.place("call_async", "create_client")
+
+
+def kill_request(evidence: Evidence) -> Where | None:
+    """Return the place where the code creates a request to /kill, or None."""
     for call in evidence.code.calls("Request"):
         if isinstance(call.node.func, ast.Attribute) and ast.unparse(call.node.func.value) == "Kill":
             return call.where
-    return evidence.place("call_async", "create_client")
+    return None
 
 
 def _same_name(evidence: Evidence) -> Cause | None:
-    """Return the cause if this node and the node beside it have the same name in the source, else None."""
+    """Return the cause if this node and the node beside it have the same name in their own files, else None."""
     others = [spec for spec in evidence.exercise.trials if spec.id == evidence.trial.beside]
     for other in others:
-        theirs = {_name(call) for call in evidence.from_trial(other.id).code.calls("__init__")} - {None}
-        for call in evidence.code.calls("__init__"):
-            if _name(call) in theirs:
+        beside = evidence.from_trial(other.id)
+        theirs = {_name(call) for call in _own_calls(beside)} - {None}
+        for call in _own_calls(evidence):
+            if beside.node_file != evidence.node_file and _name(call) in theirs:
                 text = f"Both nodes have the name {_name(call)}, so their calls cannot be told apart."
                 return Cause("node-name", text, call.where)
     return None
+
+
+def _own_calls(evidence: Evidence) -> list[Call]:
+    """Return the calls to __init__ in the node's own file. The files that it imports may contain other nodes."""
+    return [call for call in evidence.code.calls("__init__") if call.module.file == evidence.node_file]
 
 
 def _name(call: Call) -> str | None:

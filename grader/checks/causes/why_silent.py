@@ -133,7 +133,7 @@ def returns_before(evidence: Evidence, call: str) -> Cause | None:
     """Return the cause if a function returns unconditionally before it calls `call`, else None."""
     for module, method in methods_of(evidence):
         returns = [each.lineno for each in method.body if isinstance(each, ast.Return)]
-        calls = [each.lineno for each in ast.walk(method) if isinstance(each, ast.Call) and _calls(each, call)]
+        calls = [each.lineno for each in ast.walk(method) if isinstance(each, ast.Call) and calls_method(each, call)]
         if returns and calls and min(returns) < min(calls):
             text = f"{method.name} returns on line {min(returns)}, before it calls {call}."
             return Cause("never-publishes", text, Where(module.file, min(returns)))
@@ -144,7 +144,7 @@ def hidden_error(evidence: Evidence, call: str) -> Cause | None:
     """Return the cause if `call` is in a try statement whose except clause hides every error, else None."""
     for module in evidence.code.modules:
         for node in module.nodes:
-            if isinstance(node, ast.Try) and any(_calls(each, call) for each in node.body):
+            if isinstance(node, ast.Try) and any(calls_method(each, call) for each in node.body):
                 for handler in node.handlers:
                     catches_all = handler.type is None or dotted(handler.type) in ("Exception", "BaseException")
                     if catches_all and not any(isinstance(each, ast.Call | ast.Raise) for each in ast.walk(handler)):
@@ -153,7 +153,8 @@ def hidden_error(evidence: Evidence, call: str) -> Cause | None:
     return None
 
 
-def _calls(node: ast.AST, name: str) -> bool:
+def calls_method(node: ast.AST, name: str) -> bool:
+    """Return whether the code calls a method with this name."""
     return any(isinstance(each, ast.Call) and getattr(each.func, "attr", "") == name for each in ast.walk(node))
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import ast
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.waiting import functions_in_callbacks, has_threads, inside
-from grader.submission.constants import dotted, evaluate
+from grader.checks.causes.why_silent import calls_method
+from grader.submission.constants import dotted, number
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -19,6 +21,13 @@ if TYPE_CHECKING:
 LARGEST_RAD = 6.5
 """No angle that a program compares with theta is larger than this (rad): theta is between -pi and pi."""
 COORDINATES = ("x", "y")
+GOALS = ("goal", "target")
+"""Parts of the names that programs give to a goal."""
+TO_DEGREES = ("degrees", "rad2deg")
+ROTATES = ("sin", "cos", "exp", "rect")
+"""Functions of the modules math, cmath and numpy that can rotate a vector."""
+DIGITS = 3
+"""Rounding a step to this number of decimal places, or to fewer, changes the distance."""
 
 
 def why_steering(evidence: Evidence) -> Cause | None:
@@ -37,7 +46,7 @@ def _busy_loop(evidence: Evidence) -> Cause | None:
         return None
     for module, function in functions_in_callbacks(evidence.code.modules):
         for node in inside(function):
-            if isinstance(node, ast.While) and _publishes(node) and not _calls(node, "spin_once"):
+            if isinstance(node, ast.While) and _publishes(node) and not calls_method(node, "spin_once"):
                 text = (
                     "This loop is in a callback. While it runs, a node with one thread receives no new pose. Publish "
                     "one command in each call, without a loop."
@@ -48,37 +57,84 @@ def _busy_loop(evidence: Evidence) -> Cause | None:
 
 def _publishes(loop: ast.While) -> bool:
     poses = any(isinstance(node, ast.Attribute) and "pose" in node.attr for node in ast.walk(loop))
-    return poses and _calls(loop, "publish")
-
-
-def _calls(node: ast.AST, name: str) -> bool:
-    return any(isinstance(each, ast.Call) and getattr(each.func, "attr", "") == name for each in ast.walk(node))
+    return poses and calls_method(loop, "publish")
 
 
 def _degrees(evidence: Evidence) -> Cause | None:
     """Return the cause if the heading is compared with a number that is an angle in degrees, else None."""
+    if _sets_theta(evidence) or any(evidence.code.calls(name) for name in TO_DEGREES):
+        return None
+    assigned = _Assigned(evidence)
     for module, node in _nodes(evidence):
         sides = [node.left, *node.comparators] if isinstance(node, ast.Compare) else []
         if any((dotted(side) or "").endswith(".theta") for side in sides):
-            numbers = [number for side in sides if (number := _number(side, module)) is not None]
-            if any(abs(number) > LARGEST_RAD for number in numbers):
+            values = [value for side in sides if (value := assigned.number(side, module)) is not None]
+            if any(abs(value) > LARGEST_RAD for value in values):
                 text = "theta is in radians, between -pi and pi, so it never reaches this value. Is it in degrees?"
                 return Cause("degrees", text, Where(module.file, getattr(node, "lineno", None)))
     return None
 
 
-def _number(side: ast.expr, module: Module) -> float | None:
-    """Return the number that the expression has, or that is assigned to it first, or None."""
-    value = evaluate(side, module.names)
-    if value is None:
-        targets = [node for node in module.nodes if isinstance(node, ast.Assign) and dotted(side)]
-        given = next((node.value for node in targets if dotted(side) in map(dotted, node.targets)), None)
-        value = evaluate(given, module.names) if given is not None else None
-    return float(value) if isinstance(value, int | float) else None
+def _sets_theta(evidence: Evidence) -> bool:
+    """Return whether the code sets an attribute theta, which may then be in degrees."""
+    for _, node in _nodes(evidence):
+        stores = isinstance(node, ast.Attribute) and node.attr == "theta" and isinstance(node.ctx, ast.Store)
+        if stores or (isinstance(node, ast.keyword) and node.arg == "theta"):
+            return True
+    return False
+
+
+class _Assigned:
+    """What the code assigns to its variables and attributes. Those with the same last name count as one."""
+
+    def __init__(self, evidence: Evidence) -> None:
+        self.stores: Counter[str] = Counter()
+        self.arguments: set[str] = set()
+        self.values: dict[str, list[tuple[Module, ast.expr, ast.operator | None]]] = {}
+        for module, node in _nodes(evidence):
+            if isinstance(node, ast.arg):
+                self.arguments |= {node.arg} - {"self"}
+            if isinstance(getattr(node, "ctx", None), ast.Store):
+                self.stores[_name(node)] += 1
+            if isinstance(node, ast.Assign | ast.AnnAssign | ast.AugAssign) and node.value is not None:
+                operator = node.op if isinstance(node, ast.AugAssign) else None
+                for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
+                    self.values.setdefault(_name(target), []).append((module, node.value, operator))
+
+    def number(self, side: ast.expr, module: Module) -> float | None:
+        """Return the constant value of the expression, or None.
+
+        For a name that gets several values, return the value that is nearest to 0. All values must be constants, and an
+        operator such as += must not bring the value nearer to 0.
+        """
+        if any(isinstance(each, ast.Name) and each.id in self.arguments for each in ast.walk(side)):
+            return None
+        name = _name(side)
+        if not name or not self.stores[name]:
+            return number(side, module.names)
+        values, steps = [], []
+        for other, given, operator in self.values.get(name, ()):
+            value = number(given, other.names)
+            if value is None or not isinstance(operator, ast.Add | ast.Sub | None):
+                return None
+            if operator is None:
+                values.append(value)
+            else:
+                steps.append(value if isinstance(operator, ast.Add) else -value)
+        if not values or len(values) + len(steps) < self.stores[name] or min(values) * max(values) <= 0.0:
+            return None
+        return None if any(step * values[0] < 0.0 for step in steps) else min(values, key=abs)
+
+
+def _name(node: ast.AST) -> str:
+    """Return the last part of the name of a variable or attribute, or "" for other nodes."""
+    return getattr(node, "attr", getattr(node, "id", ""))
 
 
 def _sideways(evidence: Evidence) -> Cause | None:
-    """Return the cause if linear.y is computed from a difference of coordinates, else None."""
+    """Return the cause if linear.y is computed from a difference of coordinates that nothing rotates, else None."""
+    if _reads_theta(evidence) and any(evidence.code.calls(name) for name in ROTATES):
+        return None
     for module, node in _nodes(evidence):
         if not isinstance(node, ast.Assign) or not any(
             (dotted(each) or "").endswith("linear.y") for each in node.targets
@@ -96,19 +152,23 @@ def _sideways(evidence: Evidence) -> Cause | None:
 def theta_forgotten(evidence: Evidence) -> Cause | None:
     """Return the cause if the code computes a direction with atan2 but never reads theta, else None."""
     directions = evidence.code.calls("atan2")
-    reads = any(isinstance(node, ast.Attribute) and node.attr == "theta" for _, node in _nodes(evidence))
-    if not directions or reads:
+    if not directions or _reads_theta(evidence):
         return None
     text = "The code never reads theta. The angle to turn by is the direction to the target minus theta."
     return Cause("turns-away", text, directions[0].where)
 
 
+def _reads_theta(evidence: Evidence) -> bool:
+    return any(isinstance(node, ast.Attribute) and node.attr == "theta" for _, node in _nodes(evidence))
+
+
 def compared_exactly(evidence: Evidence) -> Cause | None:
-    """Return the cause if a coordinate of the pose is compared with == or !=, else None."""
+    """Return the cause if a coordinate of the pose is compared with a goal by == or !=, else None."""
     for module, node in _nodes(evidence):
         if not isinstance(node, ast.Compare) or not isinstance(node.ops[0], ast.Eq | ast.NotEq):
             continue
-        if any(_is_coordinate(side) for side in (node.left, *node.comparators)):
+        sides = (node.left, *node.comparators)
+        if any(map(_is_coordinate, sides)) and any(_is_goal(side, module) for side in sides):
             sign = "==" if isinstance(node.ops[0], ast.Eq) else "!="
             text = (
                 f"This line compares a coordinate with {sign}, but the turtle hardly ever has exactly this coordinate. "
@@ -123,21 +183,47 @@ def _is_coordinate(side: ast.expr) -> bool:
     return name.rpartition(".")[2] in COORDINATES and "pose" in name.lower()
 
 
+def _is_goal(side: ast.expr, module: Module) -> bool:
+    """Return whether the expression is a coordinate of a goal: a constant inside the field, or named as a goal."""
+    value = number(side, module.names)
+    return value > 0.0 if value is not None else any(word in ast.unparse(side).lower() for word in GOALS)
+
+
 def rounded_steps(evidence: Evidence) -> Cause | None:
     """Return the cause if the distance grows by rounded steps, or by a speed times a time, else None."""
     for module, node in _nodes(evidence):
         if not isinstance(node, ast.AugAssign) or not isinstance(node.op, ast.Add):
             continue
+        if "dist" not in ast.unparse(node.target).lower():
+            continue
         where = Where(module.file, node.lineno)
-        called = [getattr(each.func, "id", "") for each in ast.walk(node.value) if isinstance(each, ast.Call)]
-        if {"round", "int"} & set(called):
+        if _rounds(node.value, module):
             text = "Each step is rounded before it is added, so the errors add up. Round only when you log the sum."
             return Cause("wrong-distance", text, where)
-        speeds = [each for each in ast.walk(node.value) if getattr(each, "attr", "") == "linear_velocity"]
-        if speeds:
+        if _has_speed(node.value) and not any(
+            _may_change_sign(each) and _has_speed(each) for each in ast.walk(node.value)
+        ):
             text = (
                 "linear_velocity is a speed, and it is negative when the turtle drives backwards. Add the distance "
                 "from each pose to the next."
             )
             return Cause("wrong-distance", text, where)
     return None
+
+
+def _rounds(value: ast.expr, module: Module) -> bool:
+    """Return whether the expression is a call to int, or a call to round with few decimal places."""
+    name = value.func.id if isinstance(value, ast.Call) and isinstance(value.func, ast.Name) else ""
+    if name != "round" or not isinstance(value, ast.Call):
+        return name == "int"
+    digits = number(value.args[1], module.names) if len(value.args) > 1 else 0.0
+    return not value.keywords and digits is not None and digits <= DIGITS
+
+
+def _has_speed(node: ast.AST) -> bool:
+    return any(isinstance(each, ast.Attribute) and each.attr == "linear_velocity" for each in ast.walk(node))
+
+
+def _may_change_sign(node: ast.AST) -> bool:
+    """Return whether the node is a call, a power or a conditional expression, which may remove a minus sign."""
+    return isinstance(node, ast.Call | ast.IfExp) or (isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow))

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
+from grader.checks.causes.waiting import inside
 from grader.checks.causes.why_blocked import why_blocked
-from grader.checks.causes.why_silent import methods_of, not_there, why_nothing
+from grader.checks.causes.why_silent import not_there, why_nothing
 from grader.common.words import nearest, shorten
 from grader.submission.constants import dotted, evaluate
 from grader.submission.where import Where
@@ -16,6 +17,8 @@ from grader.submission.where import Where
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
     from grader.submission.code import Module
+
+WAITS = {"wait_for_service", "service_is_ready"}
 
 
 def why_unasked(evidence: Evidence, service: str) -> Cause:
@@ -69,17 +72,36 @@ def _asks_whether_ready(made: ast.Call, module: Module) -> bool:
 
 def _too_early(evidence: Evidence) -> Cause | None:
     """Return the cause if __init__, or a method that it calls, sends a request without waiting for the service."""
-    for _, method in methods_of(evidence):
-        if method.name != "__init__":
-            continue
-        own = {each.name: each for _, each in methods_of(evidence)}
-        called = [node for node in ast.walk(method) if isinstance(node, ast.Call)]
-        names = {getattr(node.func, "attr", "") for node in called}
-        sends = "call_async" in names or any("call_async" in ast.unparse(own[name]) for name in names & own.keys())
-        if sends and not names & {"wait_for_service", "service_is_ready"}:
+    nodes = [node for module in evidence.code.modules for node in module.nodes]
+    functions: dict[str, list[ast.FunctionDef]] = {}
+    for node in nodes:
+        if isinstance(node, ast.FunctionDef):
+            functions.setdefault(node.name, []).append(node)
+    # A base class, or a function of the module, may wait.
+    if WAITS & _called_from("__init__", functions):
+        return None
+    for node in nodes:
+        body = node.body if isinstance(node, ast.ClassDef) else []
+        own = {f"self.{each.name}": [each] for each in body if isinstance(each, ast.FunctionDef)}
+        if "call_async" in _called_from("self.__init__", own):
             text = "__init__ sends a request. The request is lost if the service does not exist yet."
             return Cause("service-not-ready", text, evidence.place("call_async"))
     return None
+
+
+def _called_from(name: str, functions: dict[str, list[ast.FunctionDef]]) -> set[str]:
+    """Return the names that this function calls, and that those of its callees call which are in `functions`.
+
+    A method has two names: send and self.send.
+    """
+    found, waiting = {name}, [name]
+    while waiting:
+        for function in functions.get(waiting.pop(), ()):
+            called = [node.func for node in inside(function) if isinstance(node, ast.Call)]
+            new = {getattr(each, "attr", "") for each in called} | {dotted(each) or "" for each in called}
+            waiting += new - found
+            found |= new
+    return found
 
 
 def _never_called(evidence: Evidence) -> Cause:

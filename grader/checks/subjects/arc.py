@@ -104,7 +104,8 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
     if not round_.holds(fitted.rms):
         off = f"it deviates by {max(fitted.rms, 0.01):.2f} m (RMS) from the best-fitting circle"
         text = "The command or the pen changes during this part of the path."
-        cause = stored_before_refused(evidence) or Cause("not-round", text, where)
+        stored = stored_before_refused(evidence) if _was_refused(evidence, params) else None
+        cause = stored or Cause("not-round", text, where)
         return failed(
             f"This part of the path is not a single arc: {off}.", expected, cause, near_edge=round_.near(fitted.rms)
         )
@@ -155,6 +156,12 @@ def _other_angle(evidence: Evidence, params: Arc, chosen: Steps, angle: float) -
 def _until_the_end(chosen: Steps) -> bool:
     """Return whether the arc includes the last step of the trajectory."""
     return bool(chosen[-1])
+
+
+def _was_refused(evidence: Evidence, params: Arc) -> bool:
+    """Return whether the node refused a value of a parameter before this arc."""
+    calls = [call for call in set_calls(evidence) if call.t_s < params.from_s]
+    return any(call.response is not None and not was_accepted(call) for call in calls)
 
 
 def _not_followed(evidence: Evidence, params: Arc) -> Cause | None:

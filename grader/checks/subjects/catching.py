@@ -211,7 +211,7 @@ def within_reach(evidence: Evidence, params: WithinReach) -> Finding:
         away_m = distance_m(recording, track, call.t_s)
         if not away_m <= params.reach_m + SLACK_M:
             observed = f"When the node called {params.service} for {track.turtle}, this turtle was {away_m:.2f} m away."
-            why = why_from_afar(evidence) or Cause("from-afar", "", where)
+            why = why_from_afar(evidence, params.reach_m) or Cause("from-afar", "", where)
             return failed(observed, expected, why, near_edge=_near(away_m, params))
     if often:
         observed = f"The node called {params.service} for {often[0]} repeatedly."

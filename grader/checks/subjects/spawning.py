@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,7 +10,7 @@ from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_blocked import why_blocked
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
-from grader.checks.causes.why_killed import why_killed
+from grader.checks.causes.why_killed import kill_request, why_killed
 from grader.checks.causes.why_rate import callbacks_of
 from grader.checks.causes.why_silent import methods_of
 from grader.checks.causes.why_unasked import why_unasked
@@ -203,7 +202,7 @@ def _not_killed(
         text = f"{name} was never announced. Perhaps {name} is not in the list of the remaining turtles."
         return failed(f"{name} was caught, but it still exists.", expected, Cause("target-unannounced", text, where))
     before = [message for message in heard if message.t_s < caught_s]
-    if not any(call.service == "/kill" for call in calls_of(evidence)) and not _creates_kill(evidence):
+    if not any(call.service == "/kill" for call in calls_of(evidence)) and kill_request(evidence) is None:
         text = "The callback of the service must send a request to /kill."
         return failed(f"{name} was caught, but it still exists.", expected, Cause("not-killed", text, where))
     if before and name not in before[-1].names:
@@ -220,11 +219,6 @@ def _not_killed(
     if why.diagnosis in ("service-not-called", "service-not-ready"):
         why = Cause("not-killed", "The callback of the service must send a request to /kill.", where)
     return failed(f"{name} was caught, but it still exists.", expected, why)
-
-
-def _creates_kill(evidence: Evidence) -> bool:
-    """Return whether the code creates a request for /kill."""
-    return any(ast.unparse(call.node.func) == "Kill.Request" for call in evidence.code.calls("Request"))
 
 
 def _callback(evidence: Evidence) -> Where | None:

@@ -41,6 +41,11 @@ def source(
         ("data", 'if request.name == "true":', ""),
         ("status", 'if result().status != "SUCCEEDED":', "but status is a number. GoalStatus has a constant for each"),
         ("status", "if result().status != 4:", ""),
+        ("status", 'if self.status == "turn":', ""),
+        ("status", 'other.status = "turn"\n        if other.status == "turn":', ""),
+        ("status", 'other = Turtle(status="turn")\n        if other.status == "turn":', ""),
+        ("status", 'class Turtle:\n            status = 0\n        if other.status == "turn":', ""),
+        ("data", 'if msg.data == "stop":', ""),
     ],
 )
 def test_a_field_that_is_compared_with_a_string_is_told(field: str, line: str, words: str) -> None:
@@ -62,12 +67,27 @@ def test_a_field_that_is_compared_with_a_string_is_told(field: str, line: str, w
         ("0", "if self.distance(place) >= REACH:", "With >=, this condition holds while the target is farther away"),
         ("0", "if self.distance(place) > FAR:", ""),
         ("0", "while self.distance(place) > REACH:", ""),
+        ("0", 'if self.distance(place) > REACH:\n            self.get_logger().info("too far to catch")', ""),
+        ("0", "if self.distance(place) > REACH:\n            self.drive()", ""),
+        ("0", "if self.distance(place) > REACH:\n            self.catch_client.call_async(request)", "With >,"),
+        ("0", "if self.now() > self.reached_s:", ""),
+        ("dx ** 2 + dy ** 2", "if self.distance(place) < REACH ** 2:", ""),
+        ("dx ** 2 + dy ** 2", "if self.distance(place) < REACH * REACH:", ""),
+        ("dx ** 2 + dy ** 2", "square = REACH ** 2\n        if self.distance(place) < square:", ""),
+        ("dx ** 2 + dy ** 2", "if self.distance(place) < 0.25:", ""),
+        ("dx ** 2 + dy ** 2", "if math.sqrt(self.distance(place)) < REACH:", ""),
+        ("dx ** 2 + dy ** 2", "if self.distance(place) < 2 * REACH:", "distance returns the square of the distance."),
     ],
 )
 def test_why_a_target_is_caught_from_afar_is_told(distance: str, step: str, words: str) -> None:
-    cause = why_from_afar(evidence(package=submission({NODE_FILE: source(distance=distance, step=step)})))
+    cause = why_from_afar(evidence(package=submission({NODE_FILE: source(distance=distance, step=step)})), 0.5)
     assert (cause is None) == (not words)
     assert cause is None or cause.text.startswith(words)
+
+
+def test_a_method_for_the_square_of_the_distance_is_not_told() -> None:
+    code = source(distance="dx ** 2 + dy ** 2", step="if d < REACH:").replace("def distance", "def distance_sq")
+    assert why_from_afar(evidence(package=submission({NODE_FILE: code})), 0.5) is None
 
 
 @pytest.mark.parametrize(

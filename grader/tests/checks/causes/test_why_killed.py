@@ -49,10 +49,25 @@ SPAWNER = "class Spawner(Node):\n    def __init__(self):\n        super().__init
 CATCHER = "class Catcher(Node):\n    def __init__(self):\n        super().__init__('catcher')\n"
 
 
-@pytest.mark.parametrize(("name", "told"), [("catcher", True), ("spawner", False)])
-def test_two_nodes_of_one_name_are_told(name: str, *, told: bool) -> None:
-    files = {"my_robot_controller/spawner.py": SPAWNER.format(name), "my_robot_controller/catcher.py": CATCHER}
+IMPORTS = "from my_robot_controller.{} import TURTLES\n"
+
+
+@pytest.mark.parametrize(
+    ("spawner", "catcher", "told"),
+    [
+        (SPAWNER.format("catcher"), CATCHER, True),
+        (SPAWNER.format("spawner"), CATCHER, False),
+        (SPAWNER.format("spawner"), IMPORTS.format("spawner") + CATCHER, False),
+        (IMPORTS.format("catcher") + SPAWNER.format("spawner"), CATCHER, False),
+        (None, CATCHER + SPAWNER.format("spawner"), False),
+    ],
+)
+def test_two_nodes_of_one_name_are_told(spawner: str | None, catcher: str, *, told: bool) -> None:
     package = open_submission(ROOT / "solutions/13-catch-them-all")
+    files = {"my_robot_controller/spawner.py": spawner or "", "my_robot_controller/catcher.py": catcher}
+    if spawner is None:
+        setup = package.files["setup.py"].decode()
+        files["setup.py"] = setup.replace("my_robot_controller.spawner:", "my_robot_controller.catcher:")
     package = replace(package, files={**package.files, **{path: text.encode() for path, text in files.items()}})
     runs = {"referee": Run(recording=recording([], calls=(kill(4.9, "far"),)))}
     given = Evidence(find_exercise("13-catch-them-all"), package, runs=runs).from_trial("referee")

@@ -45,6 +45,32 @@ def test_what_the_source_lacks_is_told(code: str, words: str) -> None:
     assert why_unasked(evidence(recording([]), submission({NODE_FILE: code})), PEN).text == words
 
 
+NOT_READY = "__init__ sends a request. The request is lost if the service does not exist yet."
+HELPER = CLIENT.format(name=PEN, line="self.ask()\n        ")
+ASKS = "    def ask(self):\n        {}self.client.call_async(SetPen.Request())\n\n    def send(self):"
+WAIT = "while not self.client.wait_for_service(1.0): pass"
+LATER = "def later(): self.client.call_async(SetPen.Request())\n        "
+
+
+def helper(line: str) -> str:
+    return HELPER.replace("    def send(self):", ASKS.format(line), 1)
+
+
+@pytest.mark.parametrize(
+    ("code", "words"),
+    [
+        (helper(""), NOT_READY),
+        (helper(f"{WAIT}\n        "), ""),
+        (helper("self.wait()\n        ") + f"\n\nclass Base:\n    def wait(self):\n        {WAIT}\n", ""),
+        (helper("wait(self.client)\n        ") + "\n\ndef wait(it):\n    it.wait_for_service()\n", ""),
+        (helper("").replace("self.ask()", "self.other.ask()"), ""),
+        (CLIENT.format(name=PEN, line=LATER), ""),
+    ],
+)
+def test_a_request_that_a_method_sends_for_init_is_too_early_unless_something_waits(code: str, words: str) -> None:
+    assert why_unasked(evidence(recording([]), submission({NODE_FILE: code})), PEN).text == words
+
+
 READY = CLIENT.replace("self.timer", 'self.spawn = self.create_client(Spawn, "{spawn}")\n        self.timer', 1)
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from grader.checks.outcome import Status
 from grader.checks.subjects.arc import ARC
-from grader.tests.checks.made import every, evidence, found, recording
+from grader.tests.checks.made import NODE_FILE, every, evidence, found, recording, submission
 from grader.tests.checks.shapes import TRACEBACK, crashed
 from grader.tests.checks.told import told
 from grader.trial.observed import Call, PenChange
@@ -159,6 +159,30 @@ def test_commands_that_did_not_follow_a_parameter_are_told(commands: list[Timed]
     given = told(found_arc(commands, call))
     assert (NOT_FOLLOWED in given) == found
     assert ("Read the parameter with get_parameter before each command." in given) == found
+
+
+STORES = """\
+class Circle(Node):
+    def __init__(self):
+        self.add_on_set_parameters_callback(self.check)
+
+    def check(self, parameters):
+        self.radius = parameters[0].value
+        return SetParametersResult(successful=False, reason="too large")
+"""
+
+
+@pytest.mark.parametrize(("t_s", "accepted", "found_"), [(1.2, False, True), (1.2, True, False), (1.6, False, False)])
+def test_values_that_were_stored_before_the_refusal_are_told_only_after_a_refusal(
+    t_s: float, *, accepted: bool, found_: bool
+) -> None:
+    result = {"results": [{"successful": accepted, "reason": "too large"}]}
+    call = Call(t_s, "/node/set_parameters", "", {"parameters": []}, result, t_s, by_trial=True)
+    turns = [*every(0.1, 1.0, 1.0, until_s=3.0), *every(0.1, 1.0, -1.0, first_s=3.1)]
+    given = evidence(recording(turns, calls=(call,)), submission({NODE_FILE: STORES}))
+    finding = found(ARC, given, radius_m=1.0, from_s=1.4)
+    assert "This part of the path is not a single arc" in finding.observed
+    assert ("check stores new values in self before it refuses them." in finding.cause) == found_
 
 
 def found_arc(commands: list[Timed], call: Call) -> Finding:
