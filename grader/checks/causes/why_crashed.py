@@ -14,7 +14,7 @@ from grader.checks.causes.trailing_comma import trailing_comma
 from grader.checks.causes.waiting import functions_in_callbacks
 from grader.checks.causes.why_attributes import why_no_attribute
 from grader.checks.causes.why_calls import why_type
-from grader.checks.causes.why_ended import named_only
+from grader.checks.causes.why_ended import named_only, spins_in_a_thread
 from grader.checks.causes.why_fields import why_field
 from grader.checks.causes.why_imports import why_no_import
 from grader.checks.causes.why_interface import why_interface
@@ -170,6 +170,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "ParameterNotDeclaredException": _why_undeclared,
     "RCLError": lambda scene: why_no_transition(scene) or why_refused(scene),
     "RuntimeError": lambda scene: _why_resized(scene) or _why_no_loop(scene) or why_refused(scene),
+    "SIGABRT": lambda scene: spins_in_a_thread(scene.evidence),  # ROS 2 may abort if the main thread ends first
     "SyntaxError": _why_await,
     "TypeError": lambda scene: why_none(scene) or why_type(scene),
     "UnboundLocalError": why_unbound,

@@ -88,6 +88,26 @@ def test_an_argument_that_the_program_requires_is_named(said: str, exit_code: in
 
 
 @pytest.mark.parametrize(
+    ("thread", "exit_code", "told"),
+    [
+        ("Thread(target=rclpy.spin, args=(node,)).start()", -6, True),
+        ("Thread(target=rclpy.spin, args=(node,)).start()", -11, False),
+        ("Thread(target=node.work).start()", -6, False),
+    ],
+)
+def test_a_thread_that_spins_while_the_program_ends_may_abort(thread: str, exit_code: int, *, told: bool) -> None:
+    end = ProcessEnd(by="itself", exit_code=exit_code, t_s=0.1, stop_s=None)
+    given = evidence(recording([], end=end), submission({NODE_FILE: f"node = Driver()\n{thread}\n"}))
+    crash = crash_of(given)
+    assert crash is not None
+    cause = why_crashed(given, crash)
+    assert (cause.diagnosis, cause.text.startswith("rclpy.spin runs in this thread.")) == (
+        "ends-at-once" if told else "crash",
+        told,
+    )
+
+
+@pytest.mark.parametrize(
     ("error", "found"),
     [("dictionary changed size during iteration", True), ("dictionary keys changed", False), ("no service", False)],
 )
