@@ -305,6 +305,11 @@ def test_a_turtle_that_exists_is_not_denied() -> None:
     assert publishes(trial).cause == "There is no turtle with that name."
     assert reported(publishes(both)) == ("wrong-topic", ":9")
     assert publishes(both).cause.endswith("This topic belongs to another turtle.")
+    only = observed(("publisher", POSE, TWIST))
+    own = Endpoint("publisher", "/turtlesim", POSE, "turtlesim/msg/Pose")
+    pose = replace(only, graphs=(replace(only.graphs[0], endpoints=(*only.graphs[0].endpoints, own)),))
+    assert publishes(pose).cause.endswith("turtlesim uses this topic for something else.")
+    assert "This topic belongs to another turtle." not in publishes(pose).cause
 
 
 @pytest.mark.parametrize(
