@@ -1,8 +1,7 @@
 """Find the ROS 2 installation, and create the environment that child processes need for it.
 
-If a ROS 2 Jazzy is sourced, the grader uses this installation. If no ROS 2 Jazzy is sourced, the wheels in this
-Python's environment are used. The process of the command `grader` never imports rclpy. All ROS 2 code runs in other
-processes, with the environment that this module creates.
+If no ROS 2 Jazzy is sourced, the wheels in this Python's environment are used. The process of the command `grader`
+never imports rclpy. All ROS 2 code runs in other processes, with the environment that this module creates.
 """
 
 from __future__ import annotations
@@ -30,12 +29,8 @@ SEARCHED = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHON
 """The environment variables that hold the search paths of ROS 2 and its overlays."""
 FASTDDS_PROFILE = Path(__file__).with_name("fastdds.xml")
 _UNWATCHED = (
-    "ROS_LOG_DIR",
-    "RCUTILS_COLORIZED_OUTPUT",
-    "PYTHONHASHSEED",
-    "PYTHONNOUSERSITE",
-    "PYTHONUNBUFFERED",
-    "OPENBLAS_NUM_THREADS",
+    *("ROS_LOG_DIR", "RCUTILS_COLORIZED_OUTPUT", "OPENBLAS_NUM_THREADS"),
+    *("PYTHONHASHSEED", "PYTHONNOUSERSITE", "PYTHONUNBUFFERED"),
 )
 """Variables that are set only for processes that the grader starts. A node that a user starts uses the user's
 settings. If the home folder is not writable, however, such a node gets a ROS_LOG_DIR in a temporary folder."""
@@ -275,13 +270,19 @@ def _wheels(prefix: Path) -> Ros | None:
         return None
     return Ros(
         kind="wheels",
-        version=_wheel_version(prefix),
+        version=_of_wheel(prefix) or _version(prefix),
         prefix=prefix,
         prefixes=(prefix,),
         python=prefix / "bin" / "python3",
         python_path=(),
         library_path=(prefix / "lib", *sorted((prefix / PYTHON_LIB).glob("ros_*.libs"))),
     )
+
+
+def _of_wheel(prefix: Path) -> str:
+    """Return the version of the wheel that contains rclpy. importlib.metadata would find it, but imports 40 modules."""
+    found = (prefix / PYTHON_LIB).glob("ros_rclpy-*.dist-info")
+    return max((each.stem.removeprefix("ros_rclpy-") for each in found), default="")
 
 
 def _has(prefix: Path, package: str) -> bool:
@@ -291,12 +292,6 @@ def _has(prefix: Path, package: str) -> bool:
 def has_turtlesim(ros: Ros) -> bool:
     """Return whether this ROS 2 includes turtlesim, so that the turtlesim interfaces need not be built."""
     return any(_has(prefix, "turtlesim") for prefix in ros.prefixes)
-
-
-def _wheel_version(prefix: Path) -> str:
-    """Return the version of the wheel that contains rclpy. importlib.metadata would find it, but imports 40 modules."""
-    names = [found.name for found in (prefix / PYTHON_LIB).glob("ros_rclpy-*.dist-info")]
-    return max(names, default="").removeprefix("ros_rclpy-").removesuffix(".dist-info") or "of unknown version"
 
 
 def _version(prefix: Path) -> str:
