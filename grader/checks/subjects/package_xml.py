@@ -148,6 +148,13 @@ def _has_none_of_these(code: Code, package: str) -> bool:
     return package in KNOWN and bool(names) and len(elsewhere) == len(names) and package not in elsewhere
 
 
+def _declared_inside(evidence: Evidence, begin: str, end: str, package: str) -> Where | None:
+    """Return the place of a tag that declares the package between `begin` and `end`, or None if there is no such tag."""
+    pattern = rf"{begin}(?:(?!{end}).)*depend>\s*{re.escape(package)}\s*<"
+    found = re.search(pattern, _text(evidence), re.DOTALL)
+    return Where(FILE, _text(evidence)[: found.end()].count("\n") + 1) if found is not None else None
+
+
 def _why_not_declared(
     evidence: Evidence, manifest: Manifest, missing: Sequence[str], needed: Sequence[str], imported: Mapping[str, Where]
 ) -> Cause:
@@ -157,20 +164,18 @@ def _why_not_declared(
     if guess is not None:
         cause = f'The file declares "{shorten(guess)}". Is that a typo?'
         return Cause("depend-misspelt", cause, _line(evidence, re.escape(guess)))
-    comment = re.search(rf"<!--(?:(?!-->).)*depend>\s*{re.escape(name)}\s*<", _text(evidence), re.DOTALL)
+    comment = _declared_inside(evidence, "<!--", "-->", name)
     if comment is not None:
         cause = "The line is inside a comment, between <!-- and -->, so it does not count."
-        line = _text(evidence)[: comment.end()].count("\n") + 1
-        return Cause("depend-commented-out", cause, Where(FILE, line))
+        return Cause("depend-commented-out", cause, comment)
     module = next((each for each in manifest.run_depends if each.startswith(f"{name}.")), None)
     if module is not None:
         cause = f"{shorten(module)} is a module of the package {name}. Declare the package."
         return Cause("depend-on-class", cause, _line(evidence, re.escape(module)))
-    exported = re.search(rf"<export>(?:(?!</export>).)*depend>\s*{re.escape(name)}\s*<", _text(evidence), re.DOTALL)
+    exported = _declared_inside(evidence, "<export>", "</export>", name)
     if exported is not None:
         cause = "The line is inside <export>, which does not declare dependencies. Move the line above <export>."
-        line = _text(evidence)[: exported.end()].count("\n") + 1
-        return Cause("missing-depend", cause, Where(FILE, line))
+        return Cause("missing-depend", cause, exported)
     where = _line(evidence, r"<\w*depend\b", "</license>")
     setup = evidence.setup_py
     if setup is not None and name in setup.required:
