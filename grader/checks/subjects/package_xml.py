@@ -149,7 +149,7 @@ def _has_none_of_these(code: Code, package: str) -> bool:
 
 
 def _declared_inside(evidence: Evidence, begin: str, end: str, package: str) -> Where | None:
-    """Return the place of a tag that declares the package between `begin` and `end`, or None if there is no such tag."""
+    """Return the place of a tag that declares the package between `begin` and `end`, or None."""
     pattern = rf"{begin}(?:(?!{end}).)*depend>\s*{re.escape(package)}\s*<"
     found = re.search(pattern, _text(evidence), re.DOTALL)
     return Where(FILE, _text(evidence)[: found.end()].count("\n") + 1) if found is not None else None
