@@ -74,8 +74,8 @@ class Crash:
 
     @property
     def observed(self) -> str:
-        """The exception with its message, such as 'ZeroDivisionError: division by zero'."""
-        return f"{self.error}: {shorten(self.message.rstrip(' :'), 90)}" if self.message else self.error
+        """The exception with its message, such as 'ZeroDivisionError: division by zero'. No full stop ends it."""
+        return f"{self.error}: {shorten(self.message.rstrip(' :.'), 90)}" if self.message else self.error
 
     @property
     def meaning(self) -> str:

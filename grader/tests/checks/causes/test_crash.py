@@ -69,6 +69,7 @@ def test_an_end_is_reported_in_words(given: Evidence, error: str | None, early: 
 def test_an_exception_is_reported_with_its_words_if_it_has_any() -> None:
     assert Crash("KeyError", "'x'").observed == "KeyError: 'x'"
     assert Crash("InvalidNodeNameException", "other than '_':").observed.endswith("other than '_'")
+    assert Crash("TypeError", "bad arguments.").observed == "TypeError: bad arguments"
     assert Crash("KeyError", "").observed == "KeyError"
 
 
