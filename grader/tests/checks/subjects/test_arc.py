@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from grader.checks.outcome import Status
 from grader.checks.subjects.arc import ARC
 from grader.tests.checks.made import NODE_FILE, every, evidence, found, recording, submission
+from grader.tests.checks.parameter_calls import was_set
 from grader.tests.checks.shapes import TRACEBACK, crashed
 from grader.tests.checks.told import told
 from grader.trial.observed import Call, PenChange
@@ -197,3 +199,16 @@ def test_an_arc_that_a_crash_cut_off_or_did_not_end_is_the_fault_of_the_crash(
     finding = found(ARC, evidence(recording(CIRCLE, **changes)), radius_m=2.0, angle_deg=degrees)
     assert (finding.diagnosis == "drives-on") == (end is None)
     assert ("crashed" in finding.observed) == (end is not None)
+
+
+@pytest.mark.parametrize(("successful", "diagnosis"), [(True, "parameter-not-followed"), (False, "wrong-radius")])
+def test_a_path_that_does_not_follow_a_parameter_is_named(successful: bool, diagnosis: str) -> None:
+    given = evidence(recording(every(0.1, 2.0, 1.0), calls=(was_set(1.0, successful=successful, reason="no"),)))
+    assert found(ARC, given, radius_m=1.0, from_s=3.4).diagnosis == diagnosis
+
+
+def test_the_next_change_at_the_end_of_an_arc_does_not_hide_the_cause() -> None:
+    commands = [*every(0.1, 2.0, 1.0, until_s=6.0), *every(0.1, 2.0, 2.0, first_s=6.0)]
+    calls = (was_set(1.0, successful=True, reason=""), replace(was_set(1.0, successful=True, reason=""), t_s=6.0))
+    given = evidence(recording(commands, calls=calls))
+    assert found(ARC, given, radius_m=1.0, from_s=3.4, until_s=6.0).diagnosis == "parameter-not-followed"

@@ -1,4 +1,4 @@
-"""The checks of the build: colcon succeeds and installs everything."""
+"""The checks of the build: colcon builds the package and installs its Python files."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 from grader.checks.outcome import Status
 from grader.tests.checks.changed import BARE, INIT, LINKED, NOTHING, of, setup_py, xml
-from grader.tests.checks.made import BUILD, SETUP_PY, evidence, finding, submission
+from grader.tests.checks.made import BUILD, SETUP_PY
 from grader.tests.checks.told import told
 
 if TYPE_CHECKING:
@@ -27,8 +27,6 @@ RuntimeError: no
 ---
 Failed   <<< my_robot_controller [0.61s, exited with code 1]
 """
-
-
 READ_BY_COLCON = """\
 Traceback (most recent call last):
   File "<string>", line 1, in <module>
@@ -105,39 +103,6 @@ def test_a_folder_of_packages_that_does_not_exist_is_told(log: str, *, told: boo
 def test_the_last_words_of_a_failed_build_are_shown() -> None:
     found = of("build", build=replace(NOTHING, exit_code=1, log="warning: x\nerror: no such option\nfailed\n"))
     assert found.observed == "`colcon build` failed: error: no such option."
-
-
-def test_what_ros_2_finds_a_package_by_must_be_installed() -> None:
-    no_marker = tuple(path for path in BUILD.installed if "resource_index" not in path)
-    found = of("installed", build=replace(BUILD, installed=no_marker))
-    assert (found.diagnosis, found.observed) == (
-        "resource-marker",
-        "Not installed: the marker file resource/my_robot_controller.",
-    )
-    assert str(found.where) == "setup.py:5"
-    no_xml = tuple(path for path in BUILD.installed if "package.xml" not in path)
-    found = of("installed", build=replace(BUILD, installed=no_xml))
-    assert (found.diagnosis, str(found.where)) == ("package-xml-not-installed", "setup.py:5")
-    nothing = of("installed", {"setup.py": None}, replace(BUILD, installed=()))
-    assert (nothing.diagnosis, str(nothing.where)) == ("resource-marker", "setup.py")
-    assert nothing.observed == "Not installed: the marker file resource/my_robot_controller and package.xml."
-
-
-@pytest.mark.parametrize(
-    ("files", "package", "name"),
-    [
-        ({}, "my_robot", "my_robot"),
-        (xml("<name>my_robot_controller", "<name>by_package_xml"), None, "by_package_xml"),
-        ({"package.xml": None, **setup_py('"my_robot_controller"', '"by_setup_py"')}, None, "by_setup_py"),
-        ({"package.xml": None, "setup.py": None}, None, "my_robot_controller"),
-        ({"package.xml": None, "setup.py": "setup()\n"}, None, "my_robot_controller"),
-    ],
-)
-def test_the_package_is_looked_for_by_the_name_that_colcon_knows(files: Files, package: str | None, name: str) -> None:
-    found = of("installed", files, replace(BUILD, package=package, installed=()))
-    assert found.observed == f"Not installed: the marker file resource/{name} and package.xml."
-    both = (f"share/ament_index/resource_index/packages/{name}", f"share/{name}/package.xml")
-    assert of("installed", files, replace(BUILD, package=package, installed=both)).status is Status.PASSED
 
 
 OTHER_TYPE = (
@@ -294,10 +259,3 @@ def test_a_slow_build_of_a_usual_setup_py_is_not_the_students_fault(files: Files
     assert found.status is status
     words = "although setup.py only calls setup(). Try again when the machine is less busy."
     assert (words in found.observed) == (status is Status.ERROR)
-
-
-@pytest.mark.parametrize(("rejected", "found"), [((), True), (("data: a link that leaves the package.",), False)])
-def test_files_that_are_not_normal_are_told(rejected: tuple[str, ...], *, found: bool) -> None:
-    reported = finding("files", evidence(package=submission(rejected=rejected)))
-    assert (reported.observed == "The package contains only normal files and folders.") == found
-    assert (reported.expected == "A package contains only normal files and folders of a limited size.") != found

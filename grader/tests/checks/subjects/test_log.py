@@ -1,3 +1,5 @@
+"""The log lines of a node: their format, their rate, and the causes of a log without such lines."""
+
 from __future__ import annotations
 
 from dataclasses import replace
@@ -6,33 +8,15 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from grader.checks.outcome import Finding, Status
-from grader.checks.subjects.log import LOG_COUNTER, LOG_LINES, LOG_RATE
+from grader.checks.subjects.log import LOG_LINES, LOG_RATE
 from grader.tests.checks.made import DURATION_S, NODE, NODE_FILE, evidence, found, recording, submission
+from grader.tests.checks.node_log import HELLO, LOGS, OTHER_FORM, POINTS, RATE, hello, in_format, lines
 from grader.tests.checks.shapes import TRACEBACK, crashed
 from grader.tests.checks.told import told
 from grader.trial.recording import LogLine, Output
 
 if TYPE_CHECKING:
     from grader.trial.recording import Recording
-
-HELLO = "Hello {counter}"
-POINTS = "x={x:.2f}"
-RATE = {"rate_hz": 1.0, "tolerance_percent": 5.0, "min_interval_s": 0.85, "max_interval_s": 1.2}
-OTHER_FORM = "The words are right, but the numbers are missing or have the wrong format."
-LOGS = NODE.replace("self.publisher.publish(msg)", 'self.get_logger().info("...")')
-
-
-def lines(*texts: str, every_s: float = 1.0, logger: str = "my_first_node") -> tuple[LogLine, ...]:
-    return tuple(LogLine(every_s * (index + 1), "INFO", logger, text) for index, text in enumerate(texts))
-
-
-def hello(*numbers: int) -> tuple[LogLine, ...]:
-    return lines(*(f"Hello {number}" for number in numbers))
-
-
-def in_format(log: tuple[LogLine, ...], format_: str = HELLO, node: str = LOGS, stdout: str = "") -> Finding:
-    trial = recording([], log=log, stdout=Output(stdout))
-    return found(LOG_LINES, evidence(trial, submission({NODE_FILE: node})), format=format_)
 
 
 def test_lines_in_the_format_are_enough_whatever_else_is_logged() -> None:
@@ -95,29 +79,6 @@ def test_a_line_in_another_format_is_shown_with_what_differs(log: str, format_: 
 
 
 @pytest.mark.parametrize(
-    ("message", "line"),
-    [
-        ("str(self.count)", "turtle 3"),
-        ('"turtle " + str(self.count)', "turtle 3"),
-        ('f"turtle {self.count}"', "turtle 3"),
-        ('"turtle %d" % self.count', "turtle 3"),
-        ('"turtle {} of 9".format(self.count)', "turtle 3 of 9"),
-        ('"turtle" + " 3"', "turtle 3"),
-    ],
-)
-def test_the_place_is_the_call_that_can_have_written_the_line(message: str, line: str) -> None:
-    wrong = ('"I have started"', 'f"{self.count} turtles"', '"a turtle %d" % 3', '"turtle {}s".format(3)')
-    for first in wrong:
-        node = LOGS.replace("super()", f"self.get_logger().info({first})\n        super()", 1)
-        start = node[: node.index(first)].count("\n") + 1
-        node = node.replace("def send(self):", f"def send(self):\n        self.get_logger().info({message})")
-        here = node[: node.index(message)].count("\n") + 1
-        assert str(in_format(lines(line), node=node).where) == f"{NODE_FILE}:{here}"
-        unknown = here if message.startswith("str(") else start
-        assert str(in_format(lines("I ended"), node=node).where) == f"{NODE_FILE}:{unknown}"
-
-
-@pytest.mark.parametrize(
     ("node", "stdout", "diagnosis"),
     [
         (LOGS, "Hello 0\nHello 1\n", "print-instead"),
@@ -166,58 +127,6 @@ def test_only_what_the_node_logged_before_ctrl_c_counts(forged: str) -> None:
     late = tuple(replace(line, t_s=DURATION_S + 0.1) for line in hello(0))
     ours = lines("Hello 0", logger="turtlesim") if forged == "turtlesim" else ()
     assert in_format((*ours, *late)).status is Status.FAILED
-
-
-@pytest.mark.parametrize(
-    ("numbers", "diagnosis", "observed"),
-    [
-        ((0, 1, 2, 3), None, "The counter starts at 0 and increases by one per line."),
-        ((1, 2, 3), "counter-start", "The first number is 1."),
-        ((5, 6, 7), "counter-start", "The first number is 5."),
-        ((0, 0, 0), "counter-stuck", "The number is always 0."),
-        ((0, 2, 4), "counter-step", "The number after 0 is 2."),
-        ((0, 1, 1, 2), "counter-step", "The number after 1 is 1."),
-        ((3, 2, 1), "counter-step", "The number after 3 is 2."),
-    ],
-)
-def test_the_counter(numbers: tuple[int, ...], diagnosis: str | None, observed: str) -> None:
-    trial = recording([], log=hello(*numbers))
-    finding = found(LOG_COUNTER, evidence(trial), format=HELLO, counts="counter")
-    assert (finding.diagnosis, finding.observed) == (diagnosis, observed)
-    assert str(finding.where) == ("None" if diagnosis is None else NODE_FILE)
-    assert ("Log the number first, then increase it." in finding.cause) == (numbers[0] == 1)
-
-
-def test_the_place_of_a_counter_is_the_line_that_logs_it() -> None:
-    source = LOGS.replace("super()", 'self.get_logger().info("Hello")\n        super()', 1)
-    source = source.replace('info("...")', 'info(f"Hello {self.count}")')
-    line = source[: source.index('f"Hello')].count("\n") + 1
-    given = evidence(recording([], log=hello(3, 2, 1)), submission({NODE_FILE: source}))
-    assert str(found(LOG_COUNTER, given, format=HELLO, counts="counter").where) == f"{NODE_FILE}:{line}"
-
-
-@pytest.mark.parametrize("numbers", [(0, 1, 1), (1, 1, 1)])
-def test_a_sign_in_place_of_a_sum_is_named(numbers: tuple[int, ...]) -> None:
-    source = LOGS.replace("def send(self):", "def send(self):\n        self.count =+ 1")
-    assert source != LOGS
-    given = evidence(recording([], log=hello(*numbers)), submission({NODE_FILE: source}))
-    finding = found(LOG_COUNTER, given, format=HELLO, counts="counter")
-    line = source[: source.index("=+")].count("\n") + 1
-    assert (str(finding.where), finding.cause) == (
-        f"{NODE_FILE}:{line}",
-        "=+ sets self.count to 1 in each call. += adds.",
-    )
-    in_init = LOGS.replace("super()", "self.count = +1\n        super()", 1)
-    given = evidence(recording([], log=hello(*numbers)), submission({NODE_FILE: in_init}))
-    assert "=+" not in found(LOG_COUNTER, given, format=HELLO, counts="counter").cause
-
-
-def test_one_line_counts_nothing_and_two_do() -> None:
-    for log, diagnosis in ((hello(0), "too-few-log-lines"), (hello(0, 1), None)):
-        trial = recording([], log=log)
-        finding = found(LOG_COUNTER, evidence(trial, submission({NODE_FILE: LOGS})), format=HELLO, counts="counter")
-        assert (finding.diagnosis, finding.where is not None) == (diagnosis, diagnosis is not None)
-        assert finding.expected in ('"Hello 0", then "Hello 1", and so on.', "")
 
 
 @pytest.mark.parametrize(("every_s", "status"), [(1.0, "passed"), (0.5, "failed"), (2.0, "failed")])
@@ -280,21 +189,6 @@ def test_only_a_subscription_can_receive_nothing(warning: str, *, found: bool) -
 
 def found_in(trial: Recording) -> Finding:
     return found(LOG_LINES, evidence(trial, submission({NODE_FILE: LOGS})), format=HELLO)
-
-
-@pytest.mark.parametrize(("numbers", "few"), [((0,), True), ((0, 1), False)])
-def test_one_line_is_too_few_to_compare(numbers: tuple[int, ...], *, few: bool) -> None:
-    finding = found(LOG_COUNTER, evidence(recording([], log=hello(*numbers))), format=HELLO, counts="counter")
-    assert (finding.observed == "There are fewer than two lines to compare.") == few
-
-
-@pytest.mark.parametrize(("begins", "cause"), [(1, "Start with 0."), (0, "Log the number first, then increase it.")])
-def test_a_counter_that_begins_at_1_is_told_from_one_that_is_increased_too_early(begins: int, cause: str) -> None:
-    source = f"class Node:\n    def __init__(self):\n        self.counter = {begins}\n\n    def call(self):\n"
-    changed = submission({NODE_FILE: source + "        self.counter += 1\n"})
-    trial = recording([], log=hello(1, 2, 3))
-    finding = found(LOG_COUNTER, evidence(trial, package=changed), format=HELLO, counts="counter")
-    assert finding.cause == cause
 
 
 @pytest.mark.parametrize(

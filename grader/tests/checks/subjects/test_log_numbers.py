@@ -9,7 +9,7 @@ import pytest
 from grader.checks.outcome import Finding, Status
 from grader.checks.subjects.log import LOG_RATE
 from grader.tests.checks.made import NODE_FILE, evidence, found, recording, submission
-from grader.tests.checks.subjects.test_log import LOGS, OTHER_FORM, POINTS, RATE, lines
+from grader.tests.checks.node_log import LOGS, OTHER_FORM, POINTS, RATE, lines
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence

@@ -1,4 +1,4 @@
-"""The checks of the package's files, its package.xml, its name and its dependencies."""
+"""The checks of package.xml, of the package's name and of its dependencies."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from grader.evidence.evidence import Evidence
 from grader.submission.tree import read_folder
 from grader.tests.case import ROOT
 from grader.tests.checks.changed import INIT, LINKED, of, setup_py, xml
-from grader.tests.checks.made import BUILD, NODE_FILE, PACKAGE_XML, evidence, finding, submission
+from grader.tests.checks.made import BUILD, NODE_FILE, PACKAGE_XML, submission
 from grader.tests.checks.told import told
 
 if TYPE_CHECKING:
@@ -121,99 +121,6 @@ def test_the_imports_of_each_node_of_an_exercise_must_be_declared() -> None:
 
 def test_another_node_of_the_package_may_import_what_it_likes() -> None:
     assert of("dependencies", {"my_robot_controller/other.py": "import std_msgs.msg\n"}).status is Status.PASSED
-
-
-@pytest.mark.parametrize(
-    ("more", "observed"),
-    [
-        ((), "Left out: data: a link that leaves the package."),
-        (("x",), "Left out: data: a link that leaves the package (and 1 more)."),
-        (("x", "y", "And 7 more."), "Left out: data: a link that leaves the package (and 9 more)."),
-    ],
-)
-def test_what_was_left_out_of_the_submission_is_reported(more: tuple[str, ...], observed: str) -> None:
-    given = evidence(package=submission(rejected=("data: a link that leaves the package.", *more)))
-    found = finding("files", given)
-    assert (found.diagnosis, found.observed) == ("rejected-file", observed)
-
-
-@pytest.mark.parametrize(
-    ("files", "diagnosis", "where", "cause"),
-    [
-        (
-            {"package.xml": f"{PACKAGE_XML}<more/>"},
-            "xml-malformed",
-            "package.xml:15",
-            '</package> on line 14 closes the first tag. No text or tag may follow it, but line 15 contains "<more/>".',
-        ),
-        (
-            {"package.xml": f"{PACKAGE_XML}</package>\n"},
-            "xml-malformed",
-            "package.xml:15",
-            (
-                "</package> on line 14 closes the first tag. "
-                'No text or tag may follow it, but line 15 contains "</package>".'
-            ),
-        ),
-        (
-            {"package.xml": f"{PACKAGE_XML.rstrip()} end\n"},
-            "xml-malformed",
-            "package.xml:14",
-            "</package> on line 14 closes the first tag. No text or tag may follow it.",
-        ),
-        (
-            xml("</depend>\n  <depend>turtle", "</depends>\n  <depend>turtle"),
-            "xml-malformed",
-            "package.xml:9",
-            "<depend> on line 9 has no closing tag </depend>.",
-        ),
-        (
-            xml("MIT", "M & T"),
-            "xml-malformed",
-            "package.xml:7",
-            "In XML, & begins the name of a character. Write &amp; for the character & itself.",
-        ),
-        (
-            {"package.xml": PACKAGE_XML.replace("MIT", "M\xfcT").encode("latin-1")},
-            "not-utf8",
-            "package.xml:7",
-            "Save the file as UTF-8.",
-        ),
-        (
-            xml("<depend>rclpy", "<depend a=1>rclpy"),
-            "xml-malformed",
-            "package.xml:8",
-            "Each <tag> needs a closing </tag> with the same name. Close the inner tag before the outer tag.",
-        ),
-        (
-            xml("<depend>rclpy</depend>", "<run_depend>rclpy</run_depend>"),
-            "package-xml-old-tag",
-            "package.xml:8",
-            "<run_depend> belongs to ROS 1. In format 3, use <depend> or <exec_depend>.",
-        ),
-        (
-            xml("<depend>rclpy</depend>", "<depend>rclpy</depend>\n  <depend>rclpy</depend>"),
-            "package-xml-invalid",
-            "package.xml:9",
-            "The package rclpy is declared more than once. One tag <depend> is enough.",
-        ),
-        (
-            xml("<depend>rclpy</depend>", "<exec_depends>rclpy</exec_depends>"),
-            "package-xml-invalid",
-            "package.xml:8",
-            "Format 3 of package.xml has no tag <exec_depends>. There is a tag <exec_depend>.",
-        ),
-        (
-            xml("<depend>rclpy</depend>", "<quaff>rclpy</quaff>"),
-            "package-xml-invalid",
-            "package.xml:8",
-            "Format 3 of package.xml has no tag <quaff>.",
-        ),
-    ],
-)
-def test_a_package_xml_that_cannot_be_read_is_explained(files: Files, diagnosis: str, where: str, cause: str) -> None:
-    found = of("package-xml", files)
-    assert (found.diagnosis, str(found.where), found.cause) == (diagnosis, where, cause)
 
 
 @pytest.mark.parametrize("files", [{"package.xml": None}, {"package.xml": "<package>"}])

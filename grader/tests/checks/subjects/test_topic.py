@@ -3,36 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Literal
 
 import pytest
 
-from grader.checks.outcome import Finding, Status
-from grader.checks.subjects.topic import ONLY_TYPE, PUBLISHES, SUBSCRIBES
-from grader.tests.checks.made import DURATION_S, NODE_FILE, TOPIC, TWIST, evidence, found, node, recording
+from grader.checks.outcome import Status
+from grader.checks.subjects.topic import ONLY_TYPE, SUBSCRIBES
+from grader.tests.checks.made import DURATION_S, TOPIC, TWIST, evidence, found, node, recording
+from grader.tests.checks.node_topics import COLOR, POSE, TEXT, observed, publishes, reported
 from grader.tests.checks.shapes import TRACEBACK, crashed
-from grader.trial.recording import Endpoint, Graph, Message, Output, ProcessEnd, Recording
+from grader.trial.recording import Message, Output, ProcessEnd, Recording
 
-TEXT = "std_msgs/msg/String"
-COLOR = "turtlesim/msg/Color"
 CRASHED = crashed(3.0)
 ENDED = ProcessEnd(by="itself", exit_code=0, t_s=3.0, stop_s=None)
-
-
-def observed(*ends: tuple[Literal["publisher", "subscription"], str, str], **changes: Any) -> Recording:  # noqa: ANN401
-    """Return a trial in which the node had these publishers and subscriptions (kind, topic, type)."""
-    endpoints = tuple(Endpoint(kind, "/draw_circle", topic, type_) for kind, topic, type_ in ends)
-    ours = Endpoint("subscription", "/turtlesim", TOPIC, TWIST)
-    graph = Graph(0.0, ("/turtlesim", "/draw_circle"), (ours, *endpoints))
-    return recording([], graphs=(graph,), **changes)
-
-
-def publishes(trial: Recording, *changes: tuple[str, str], topic: str = TOPIC, type_: str = TWIST) -> Finding:
-    return found(PUBLISHES, evidence(trial, node(*changes)), topic=topic, type=type_)
-
-
-def reported(finding: Finding) -> tuple[str | None, str | None]:
-    return finding.diagnosis, None if finding.where is None else str(finding.where).removeprefix(NODE_FILE)
 
 
 @pytest.mark.parametrize(
@@ -58,41 +40,6 @@ def test_on_the_turtles_topic_what_the_simulator_saw_counts() -> None:
     other = (Message(TOPIC, TEXT, b"", 3.0, 3.0),)
     assert publishes(recording([], messages=other), type_=TEXT).status is Status.PASSED
     assert publishes(recording([], messages=forged), topic="/chatter", type_=TWIST).status is Status.FAILED
-
-
-@pytest.mark.parametrize(
-    ("topic", "diagnosis"),
-    [
-        ("/cmd_vel", "topic-without-turtle"),
-        ("/turtle1/CMD_vel", "topic-capitals"),
-        ("/draw_circle/turtle1/cmd_vel", "topic-namespace"),
-        ("/robot/turtle1/cmd_vel", "wrong-topic"),
-        ("/draw_circle", "wrong-topic"),
-        ("/turtle2/cmd_vel", "topic-other-turtle"),
-        ("/a_node_of_quite_another_kind/cmd_vel", "wrong-topic"),
-        ("/a/turtle2/cmd_vel", "wrong-topic"),
-        ("/turtle1/cmd_val", "wrong-topic"),
-    ],
-)
-def test_another_topic_is_explained_by_the_two_names(topic: str, diagnosis: str) -> None:
-    finding = publishes(observed(("publisher", topic, TWIST)))
-    assert reported(finding) == (diagnosis, ":9")
-    assert finding.observed == f"The node publishes on {topic}, but turtle1 does not subscribe to it."
-
-
-@pytest.mark.parametrize(
-    ("name", "added"),
-    [
-        ("/robot/draw_circle", "The node adds its namespace to the name."),
-        ("/robot", "ROS 2 replaces ~ at the beginning of a topic name with the name of the node."),
-        ("/robotic/draw_circle", None),
-    ],
-)
-def test_what_ros_adds_to_a_topic_name_is_told_only_of_such_a_node(name: str, added: str | None) -> None:
-    ends = (Endpoint("publisher", name, f"/robot{TOPIC}", TWIST),)
-    finding = publishes(recording([], graphs=(Graph(0.0, (name,), ends),)))
-    assert (finding.diagnosis == "topic-namespace") == (added is not None)
-    assert finding.cause.startswith(f"{added} A name that" if added else "The topic name is the second argument")
 
 
 def test_of_several_topics_those_of_the_type_and_the_nearest_are_named() -> None:
@@ -199,9 +146,6 @@ def test_a_second_type_is_reported_whoever_shows_it() -> None:
     assert found(ONLY_TYPE, evidence(one), topic=TOPIC, type=TWIST).status is Status.PASSED
 
 
-POSE = "/turtle1/pose"
-
-
 @pytest.mark.parametrize(
     ("trial", "diagnosis", "line", "words"),
     [
@@ -237,79 +181,12 @@ def test_a_subscription_is_looked_for(trial: Recording, diagnosis: str | None, l
         assert (reported(nowhere), nowhere.cause) == ((diagnosis, ""), "create_subscription is never called.")
 
 
-@pytest.mark.parametrize(
-    ("topic", "diagnosis", "line"),
-    [
-        ("/pose", "topic-without-turtle", ":11"),
-        ("/turtle1/Pose", "topic-capitals", ":11"),
-        ("/draw_circle/turtle1/pose", "topic-namespace", ":10"),
-        ("/turtle2/pose", "topic-other-turtle", ":11"),
-        ("/turtle1/position", "wrong-topic", ":11"),
-    ],
-)
-def test_a_wrong_topic_of_a_subscription_is_explained_like_one_of_a_publisher(
-    topic: str, diagnosis: str, line: str
-) -> None:
-    name = "turtle1/pose" if diagnosis == "topic-namespace" else topic
-    one = f'self.create_subscription(Pose, "{name}", print, 10)'
-    two = f"self.create_subscription(Pose, NAME, print, 10)\n        {one}"
-    package = node(("self.timer = self.create_timer(0.5, self.send)", one if diagnosis == "topic-namespace" else two))
-    finding = found(SUBSCRIBES, evidence(observed(("subscription", topic, TEXT)), package), topic=POSE, type=TEXT)
-    assert reported(finding) == (diagnosis, line)
-    if diagnosis == "wrong-topic":
-        assert finding.cause.startswith("The topic name is the second argument of create_subscription.")
-
-
-RENAMED = 'rclpy.init(args=["--ros-args", "-r", "{}:=/{}"])'
-
-
-@pytest.mark.parametrize(
-    ("topic", "rule", "new", "told"),
-    [
-        (TOPIC, TOPIC, "other", True),
-        (TOPIC, "cmd_vel", "other", True),
-        (TOPIC, "/chatter", "other", False),
-        (TOPIC, "Start it with -r cmd_vel", "other", False),
-        (TOPIC, "cmd_vel", "third", False),
-        ("/other", TOPIC, "other", False),
-    ],
-)
-def test_a_remapping_rule_is_told(topic: str, rule: str, new: str, *, told: bool) -> None:
-    words = "This remapping rule gives the topic another name."
-    changes = (("rclpy.init(args=args)", RENAMED.format(rule, new)), (f'"{TOPIC}"', f'"{topic}"'))
-    finding = found(
-        PUBLISHES, evidence(observed(("publisher", "/other", TWIST)), node(*changes)), topic=TOPIC, type=TWIST
-    )
-    assert (words in finding.cause, finding.diagnosis) == (told, "wrong-topic")
-
-
-@pytest.mark.parametrize(("topic", "told"), [("/turtle1/cmd_val", True), ("/odom", False)])
-def test_only_similar_names_are_compared_letter_by_letter(topic: str, *, told: bool) -> None:
-    finding = publishes(observed(("publisher", topic, TWIST)))
-    assert finding.cause.startswith("The topic name is the second argument of create_publisher.")
-    assert ("Check the topic name letter by letter." in finding.cause) == told
-
-
 @pytest.mark.parametrize(("line", "told"), [("wait_for_message(Pose, self, NAME)", True), ("wait(Pose, NAME)", False)])
 def test_a_wait_for_a_message_is_not_a_subscription(line: str, *, told: bool) -> None:
     package = node(("self.timer = self.create_timer(0.5, self.send)", line))
     finding = found(SUBSCRIBES, evidence(observed(), package), topic=POSE, type=TEXT)
     assert ("wait_for_message listens only while it waits, and it blocks the node." in finding.cause) == told
     assert ("create_subscription is never called." in finding.cause) != told
-
-
-def test_a_turtle_that_exists_is_not_denied() -> None:
-    trial = observed(("publisher", "/turtle2/cmd_vel", TWIST))
-    second = Endpoint("subscription", "/turtlesim", "/turtle2/cmd_vel", TWIST)
-    both = replace(trial, graphs=(replace(trial.graphs[0], endpoints=(*trial.graphs[0].endpoints, second)),))
-    assert publishes(trial).cause == "There is no turtle with that name."
-    assert reported(publishes(both)) == ("wrong-topic", ":9")
-    assert publishes(both).cause.endswith("This topic belongs to another turtle.")
-    only = observed(("publisher", POSE, TWIST))
-    own = Endpoint("publisher", "/turtlesim", POSE, "turtlesim/msg/Pose")
-    pose = replace(only, graphs=(replace(only.graphs[0], endpoints=(*only.graphs[0].endpoints, own)),))
-    assert publishes(pose).cause.endswith("turtlesim uses this topic for something else.")
-    assert "This topic belongs to another turtle." not in publishes(pose).cause
 
 
 @pytest.mark.parametrize(
@@ -352,15 +229,3 @@ def test_a_single_type_is_no_second_type(types: tuple[str, ...], *, two: bool) -
     assert (finding.observed == f"{TOPIC} also has the type {TEXT}.") == two
     assert (finding.observed == f"{TOPIC} has the type {TEXT}.") != two
     assert finding.diagnosis == ("second-type" if two else "wrong-type")
-
-
-@pytest.mark.parametrize(("topic", "told"), [("/turtle1/color_sensor", True), ("/turtle1/colour", False)])
-def test_a_topic_of_turtlesim_for_something_else_is_told(topic: str, *, told: bool) -> None:
-    trial = observed(("publisher", topic, TWIST))
-    sensor = Endpoint("publisher", "/turtlesim", "/turtle1/color_sensor", COLOR)
-    graphs = (replace(trial.graphs[0], endpoints=(*trial.graphs[0].endpoints, sensor)),)
-    finding = publishes(replace(trial, graphs=graphs))
-    assert ("turtlesim uses this topic for something else." in finding.cause, finding.diagnosis) == (
-        told,
-        "wrong-topic",
-    )
