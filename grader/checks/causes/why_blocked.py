@@ -97,9 +97,10 @@ def _empty_executor(evidence: Evidence) -> Cause | None:
     """Return the cause if an executor spins without a node, else None."""
     code = evidence.code
     made = {target for name in EXECUTORS for target in _targets(evidence, name)}
+    filled = any(getattr(node, "attr", "") == "add_node" for module in code.modules for node in module.nodes)
     for call in code.calls("spin"):
         owner = dotted(call.node.func.value) if isinstance(call.node.func, ast.Attribute) else None
-        if owner in made and not call.node.args and not code.calls("add_node") and not _used(evidence, owner):
+        if owner in made and not call.node.args and not filled and not _used(evidence, owner):
             text = f"{owner} has no node, so it calls no callback. add_node adds a node to an executor."
             return Cause("no-spin", text, call.where)
     return None
@@ -130,7 +131,7 @@ def _second_node(evidence: Evidence) -> Cause | None:
 
 
 def _used(evidence: Evidence, name: str) -> bool:
-    """Return whether the code passes on the object in this variable, or connects a node with an executor."""
+    """Return whether the code passes on the object in this variable, or sets the executor of a node."""
     for module in evidence.code.modules:
         owners = {id(node.value) for node in module.nodes if isinstance(node, ast.Attribute)}
         for node in module.nodes:

@@ -10,7 +10,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.why_rate import callbacks_of
 from grader.checks.causes.why_silent import methods_of
 from grader.common.words import shorten
-from grader.submission.constants import dotted, number, written
+from grader.submission.constants import Names, dotted, number, written
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
 
 ROOTS = frozenset({"sqrt", "hypot", "dist", "norm"})
+HALF = 0.5
 SIGNS: dict[object, str] = {ast.Gt: ">", ast.GtE: ">="}
 
 
@@ -86,7 +87,7 @@ def why_from_afar(evidence: Evidence, reach_m: float) -> Cause | None:
     for module, node in _compared(evidence):
         right = dotted(node.comparators[0]) or ""
         sign = SIGNS.get(type(node.ops[0]))
-        is_reach = "reach" in right.lower() and "reached" not in right.lower()
+        is_reach = right.lower().endswith(("reach", "reach_m"))
         if sign is not None and is_reach and _is_condition_of_call(module, node):
             text = f"With {sign}, this condition holds while the target is farther away than {shorten(right)}."
             return Cause("from-afar", text, Where(module.file, node.lineno))
@@ -96,11 +97,8 @@ def why_from_afar(evidence: Evidence, reach_m: float) -> Cause | None:
 def _is_sum_of_squares(value: ast.expr) -> bool:
     """Return whether an expression adds powers, as in dx**2 + dy**2, and takes no square root."""
     powers = [each for each in ast.walk(value) if isinstance(each, ast.BinOp) and isinstance(each.op, ast.Pow)]
-    halves = any(map(_is_root, powers))
-    calls = [each.func for each in ast.walk(value) if isinstance(each, ast.Call)]
-    called = {getattr(each, "attr", getattr(each, "id", "")) for each in calls}
     added = isinstance(value, ast.BinOp) and isinstance(value.op, ast.Add)
-    return added and len(powers) >= 2 and not halves and not called & ROOTS
+    return added and len(powers) >= 2 and not any(map(_is_root, ast.walk(value)))
 
 
 def _uses_squares(evidence: Evidence, reach_m: float) -> bool:
@@ -114,9 +112,13 @@ def _uses_squares(evidence: Evidence, reach_m: float) -> bool:
 
 
 def _is_root(node: ast.AST) -> bool:
+    """Return whether the node takes a square root: a function in ROOTS, or a power with the exponent 0.5."""
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow):
-        return isinstance(node.right, ast.Constant) and node.right.value == 0.5
-    return isinstance(node, ast.Call) and getattr(node.func, "attr", getattr(node.func, "id", "")) == "sqrt"
+        return number(node.right, Names()) == HALF
+    name = (dotted(node.func) or "").rpartition(".")[2] if isinstance(node, ast.Call) else ""
+    if isinstance(node, ast.Call) and name == "pow" and len(node.args) > 1:
+        return number(node.args[1], Names()) == HALF
+    return name in ROOTS
 
 
 def _is_square(side: ast.expr, module: Module, reach_m: float) -> bool:
@@ -157,10 +159,32 @@ def stored_before_refused(evidence: Evidence) -> Cause | None:
             for node in ast.walk(method)
             if isinstance(node, ast.Assign) and any((dotted(each) or "").startswith("self.") for each in node.targets)
         ]
-        if method.name in names and refusals and stores and min(stores) < max(refusals):
+        early = [
+            store
+            for store in stores
+            for refusal in refusals
+            if store < refusal and not _of_other_names(method, store, refusal)
+        ]
+        if method.name in names and early:
             text = f"{method.name} stores new values in self before it refuses them. Check all values first."
-            return Cause("parameter-not-followed", text, Where(module.file, min(stores)))
+            return Cause("parameter-not-followed", text, Where(module.file, min(early)))
     return None
+
+
+def _of_other_names(method: ast.AST, store: int, refusal: int) -> bool:
+    """Return whether if statements make these lines belong to different parameters, by comparing their names."""
+    ifs = [node for node in ast.walk(method) if isinstance(node, ast.If)]
+    names = [
+        {
+            each.value
+            for node in ifs
+            if node.body[0].lineno <= line <= (node.body[-1].end_lineno or 0)
+            for each in ast.walk(node.test)
+            if isinstance(each, ast.Constant) and isinstance(each.value, str)
+        }
+        for line in (store, refusal)
+    ]
+    return all(names) and names[0].isdisjoint(names[1])
 
 
 def _refuses(node: ast.Return) -> bool:

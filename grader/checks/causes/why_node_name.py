@@ -10,7 +10,7 @@ from grader.checks.causes.no_entry_point import line
 from grader.common.words import shorten
 from grader.errors import TooLargeError
 from grader.submission.code import MOST_BYTES, Code, read_module
-from grader.submission.constants import evaluate
+from grader.submission.constants import dotted, evaluate
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -35,9 +35,10 @@ def why_node_name(evidence: Evidence, name: str) -> Cause:
         other = other or _other_file(evidence, of_name, calls)
         if other is not None:
             return other
-    by_class = evidence.code.calls("__init__") or not evidence.code.calls("create_node")
-    giver = "super().__init__" if by_class else "create_node"
-    where = of_name.where if of_name is not None else evidence.place("create_node", "__init__")
+    first = of_name or next(iter(calls), None)
+    giver = (dotted(first.node.func) or "").rpartition(".")[2] if first is not None else ""
+    giver = "super().__init__" if giver in ("", "__init__") else giver
+    where = first.where if first is not None else evidence.place("create_node", "__init__")
     return Cause("node-name", f"The node name is the first argument of {giver}.", where)
 
 

@@ -47,9 +47,9 @@ def why_circular(scene: CrashScene) -> Cause | None:
     """Return the cause if two modules of this package import each other, or a module imports itself, else None."""
     found = CIRCULAR.search(scene.crash.message)
     file = module_file(found["module"], scene.evidence.submission.files) if found is not None else None
-    if found is None or file is None:
+    if found is None or file is None or scene.module is None:
         return None
-    here = scene.module.file if scene.module is not None else ""
+    here = scene.module.file
     name = file.rpartition("/")[2]
     if here == file:
         text = f"{name} imports itself. Remove this import: the names of a file can be used in it without an import."

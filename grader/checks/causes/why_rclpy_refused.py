@@ -7,7 +7,6 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.callback_groups import REGISTERS
 from grader.checks.causes.why_other_object import CREATE_OBJECT
 from grader.checks.causes.why_rate import callbacks_of
 from grader.common.words import shorten
@@ -16,8 +15,8 @@ from grader.submission.constants import dotted, written
 if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
-MOST = {**REGISTERS, "create_publisher": 3}
-"""Maps a method of a node to the maximum number of positional arguments without a callback group."""
+GROUP_OF_TIMER = 2
+"""The position (from 0) of the callback group in a call to create_timer. Elsewhere, it can only be given by name."""
 GROUPS = ("MutuallyExclusiveCallbackGroup", "ReentrantCallbackGroup")
 NOT_A_GROUP = re.compile(r"has no attribute '(?:handle|add_entity|can_execute)'|CallbackGroup\.add_entity\(\) missing")
 KEYWORD = re.compile(r"got an unexpected keyword argument '(?P<name>\w+)'")
@@ -31,6 +30,9 @@ OF_A_LIST = re.compile(r"'list' object has no attribute '(?:name|value)'")
 SUBSCRIPT = re.compile(r"'(?P<type>[A-Z]\w*)' object is not subscriptable")
 BY_POSITION = re.compile(r"(?P<of>[A-Z]\w*)\.__init__\(\) takes 1 positional argument but \d+ were given")
 INTERFACES = (".msg", ".srv", ".action")
+AUTOMATIC = "automatically_declare_parameters_from_overrides"
+OF_RCLPY = ("use_sim_time", "start_type_description_service")
+"""The parameters that rclpy declares for every node."""
 
 
 def why_rclpy_refused(scene: CrashScene) -> Cause | None:
@@ -49,20 +51,21 @@ def _group(scene: CrashScene) -> Cause | None:
     """Return the cause if something other than a callback group was passed as the callback group, else None."""
     if not NOT_A_GROUP.search(scene.crash.message) or scene.module is None:
         return None
-    for name, most in MOST.items():
-        for call in scene.calls_on_line(name):
-            by_name = next((each.value for each in call.keywords if each.arg == "callback_group"), None)
-            given = by_name or (call.args[most] if len(call.args) > most else None)
-            value = written(given, scene.module.names)
-            group = (dotted(value) or "").rpartition(".")[2] if value is not None else ""
-            if group in GROUPS:
-                return Cause("class-for-object", f"{group} is a class. {CREATE_OBJECT}", scene.at(value))
-            if by_name is None and name == "create_timer" and len(call.args) > most:
-                text = (
-                    "The third argument of create_timer is a callback group. A timer passes no arguments to its "
-                    "callback. Store the values in self."
-                )
-                return Cause("too-many-arguments", text, scene.at(call))
+    timers = scene.calls_on_line("create_timer")
+    by_place = [call.args[GROUP_OF_TIMER] for call in timers if len(call.args) > GROUP_OF_TIMER]
+    calls = [node for node in scene.on_line if isinstance(node, ast.Call)]
+    by_name = [each.value for call in calls for each in call.keywords if each.arg == "callback_group"]
+    for given in (*by_name, *by_place):
+        value = written(given, scene.module.names)
+        group = (dotted(value) or "").rpartition(".")[2] if value is not None else ""
+        if group in GROUPS:
+            return Cause("class-for-object", f"{group} is a class. {CREATE_OBJECT}", scene.at(value))
+    if by_place:
+        text = (
+            "The third argument of create_timer is a callback group. A timer passes no arguments to its callback. "
+            "Store the values in self."
+        )
+        return Cause("too-many-arguments", text, scene.at(by_place[0]))
     return None
 
 
@@ -131,9 +134,10 @@ DECLARED = re.compile(r"already declared: \['(?P<name>[^']+)'")
 def _declared_twice(scene: CrashScene) -> Cause:
     found = DECLARED.search(scene.crash.message)
     name = shorten(found["name"]) if found is not None else "This parameter"
+    if name in OF_RCLPY:
+        return Cause("parameter-twice", f"rclpy already declares {name} for every node. Do not declare it again.")
     for node in scene.nodes:
-        automatic = isinstance(node, ast.keyword) and node.arg == "automatically_declare_parameters_from_overrides"
-        if isinstance(node, ast.keyword) and automatic and getattr(node.value, "value", None) is True:
+        if isinstance(node, ast.keyword) and node.arg == AUTOMATIC and getattr(node.value, "value", None) is True:
             text = (
                 f"{node.arg} already declares each parameter that is set when the node starts. Remove this argument "
                 "if you declare the parameters yourself."

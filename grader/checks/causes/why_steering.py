@@ -46,7 +46,7 @@ def _busy_loop(evidence: Evidence) -> Cause | None:
         return None
     for module, function in functions_in_callbacks(evidence.code.modules):
         for node in inside(function):
-            if isinstance(node, ast.While) and _publishes(node) and not calls_method(node, "spin_once"):
+            if isinstance(node, ast.While) and _publishes(node) and not _lets_others_run(node):
                 text = (
                     "This loop is in a callback. While it runs, a node with one thread receives no new pose. Publish "
                     "one command in each call, without a loop."
@@ -58,6 +58,11 @@ def _busy_loop(evidence: Evidence) -> Cause | None:
 def _publishes(loop: ast.While) -> bool:
     poses = any(isinstance(node, ast.Attribute) and "pose" in node.attr for node in ast.walk(loop))
     return poses and calls_method(loop, "publish")
+
+
+def _lets_others_run(loop: ast.While) -> bool:
+    """Return whether the loop spins the node, or awaits something: then other callbacks run meanwhile."""
+    return calls_method(loop, "spin_once") or any(isinstance(node, ast.Await) for node in ast.walk(loop))
 
 
 def _degrees(evidence: Evidence) -> Cause | None:
@@ -132,7 +137,7 @@ def _name(node: ast.AST) -> str:
 
 
 def _sideways(evidence: Evidence) -> Cause | None:
-    """Return the cause if linear.y is computed from a difference of coordinates that nothing rotates, else None."""
+    """Return the cause if linear.y is computed from a difference that nothing rotates, else None."""
     if _reads_theta(evidence) and any(evidence.code.calls(name) for name in ROTATES):
         return None
     for module, node in _nodes(evidence):
@@ -159,6 +164,7 @@ def theta_forgotten(evidence: Evidence) -> Cause | None:
 
 
 def _reads_theta(evidence: Evidence) -> bool:
+    """Return whether the code may read theta. Setting it counts too: the action rotate_absolute gets a heading."""
     return any(isinstance(node, ast.Attribute) and node.attr == "theta" for _, node in _nodes(evidence))
 
 
@@ -179,8 +185,9 @@ def compared_exactly(evidence: Evidence) -> Cause | None:
 
 
 def _is_coordinate(side: ast.expr) -> bool:
-    name = dotted(side) or ""
-    return name.rpartition(".")[2] in COORDINATES and "pose" in name.lower()
+    """Return whether the expression is a coordinate of the turtle's pose. Many programs call the goal goal_pose."""
+    name = (dotted(side) or "").lower()
+    return name.rpartition(".")[2] in COORDINATES and "pose" in name and not any(word in name for word in GOALS)
 
 
 def _is_goal(side: ast.expr, module: Module) -> bool:

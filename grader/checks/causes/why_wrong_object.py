@@ -19,7 +19,6 @@ FORMAT = re.compile(r"unsupported format string passed to (?P<type>\w+)\.__forma
 UNHASHABLE = re.compile(r"unhashable type: '(?P<type>\w+)'")
 NOT_ITERABLE = re.compile(r"'(?P<type>\w+)' object is not iterable")
 BRACES = re.compile(r"unknown substitution: (?P<name>\{\w+\})")
-PARTS = ("Request", "Goal")
 SENDERS = {"call_async": "create_client", "call": "create_client", "send_goal_async": "ActionClient"}
 """Maps a method that sends a request or a goal to the function or class that creates its client."""
 PATHS = frozenset({"PosixPath", "Path", "WindowsPath"})
@@ -66,7 +65,7 @@ def _request(scene: CrashScene) -> Cause | None:
     for sender, maker in SENDERS.items():
         for call in scene.calls_on_line(sender):
             client = dotted(call.func.value) if isinstance(call.func, ast.Attribute) else None
-            kind = _type_of(scene, client, maker)
+            kind = _type_of(scene, client, maker) if client is not None else None
             part = "Goal" if maker == "ActionClient" else "Request"
             if kind is None:
                 continue
@@ -85,7 +84,7 @@ def _is_class(node: ast.AST, call: ast.Call, name: str) -> bool:
     return assigned and isinstance(node, ast.Assign) and given in map(dotted, node.targets)
 
 
-def _type_of(scene: CrashScene, client: str | None, maker: str) -> str | None:
+def _type_of(scene: CrashScene, client: str, maker: str) -> str | None:
     """Return the name of the type with which the client is created, or None."""
     for node in scene.nodes:
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and client in map(dotted, node.targets):
@@ -102,9 +101,10 @@ def _formatted(scene: CrashScene) -> Cause | None:
         return None
     kind = found["type"]
     if kind == "NoneType":
-        return Cause("none-before-message", "A value in this line is None, which cannot be written as a number.")
+        text = "A value in this line is None, which cannot have a format such as .2f or >10."
+        return Cause("none-before-message", text)
     what = "a feedback message" if kind.endswith("_Feedback") else f"an object of type {shorten(kind)}"
-    text = f"A value in this line is {what}, but its format needs a number, such as a field of a message."
+    text = f"A value in this line is {what}. A format such as .2f or >10 needs a number or a string."
     return Cause("message-field", text)
 
 

@@ -83,6 +83,7 @@ SECOND = "Nothing spins the node {}, so none of its callbacks is called. rclpy.s
         ("executor = SingleThreadedExecutor()\nexecutor.spin()  # look", EMPTY),
         ("executor = MultiThreadedExecutor()\nexecutor.spin()  # look", EMPTY),
         ("executor = MultiThreadedExecutor()\nexecutor.add_node(Driver())\nexecutor.spin()", ""),
+        ("executor = MultiThreadedExecutor()\nlist(map(executor.add_node, [Driver()]))\nexecutor.spin()", ""),
         ("executor = MultiThreadedExecutor()\nnode = Driver()\nnode.executor = executor\nexecutor.spin()", ""),
         ("executor = MultiThreadedExecutor()\nrclpy.spin(node, executor)\nexecutor.spin()", ""),
         ("node = Driver()  # look\nmain = rclpy.create_node('main')\nrclpy.spin(main)", SECOND.format("node")),

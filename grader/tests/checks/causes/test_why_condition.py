@@ -71,11 +71,17 @@ def test_a_field_that_is_compared_with_a_string_is_told(field: str, line: str, w
         ("0", "if self.distance(place) > REACH:\n            self.drive()", ""),
         ("0", "if self.distance(place) > REACH:\n            self.catch_client.call_async(request)", "With >,"),
         ("0", "if self.now() > self.reached_s:", ""),
+        ("0", "if self.now() > self.reach_time:", ""),
+        ("0", "if self.distance(place) > self.reach_m:", "With >, this condition holds while the target is farther"),
         ("dx ** 2 + dy ** 2", "if self.distance(place) < REACH ** 2:", ""),
         ("dx ** 2 + dy ** 2", "if self.distance(place) < REACH * REACH:", ""),
         ("dx ** 2 + dy ** 2", "square = REACH ** 2\n        if self.distance(place) < square:", ""),
         ("dx ** 2 + dy ** 2", "if self.distance(place) < 0.25:", ""),
         ("dx ** 2 + dy ** 2", "if math.sqrt(self.distance(place)) < REACH:", ""),
+        ("dx ** 2 + dy ** 2", "near = min(self.distance(place) ** (1 / 2), 9)\n        if near < REACH:", ""),
+        ("dx ** 2 + dy ** 2", "if pow(self.distance(place), 0.5) < REACH:", ""),
+        ("dx ** 2 + dy ** 2", "if math.hypot(dx, dy) < REACH:", ""),
+        ("dx ** 2 + dy ** 2", "if pow(self.distance(place), 2) < REACH:", "distance returns the square of"),
         ("dx ** 2 + dy ** 2", "if self.distance(place) < 2 * REACH:", "distance returns the square of the distance."),
     ],
 )
@@ -91,12 +97,46 @@ def test_a_method_for_the_square_of_the_distance_is_not_told() -> None:
 
 
 @pytest.mark.parametrize(
-    ("check", "told"), [("self.radius = 1.0", True), ("radius = 1.0", False), ("print(self.radius)", False)]
+    ("check", "told"),
+    [
+        ("self.radius = 1.0", True),
+        ("radius = 1.0", False),
+        ("print(self.radius)", False),
+    ],
 )
 def test_values_that_are_stored_before_they_are_refused_are_told(check: str, *, told: bool) -> None:
     cause = stored_before_refused(evidence(package=submission({NODE_FILE: source(check=check)})))
     words = "check stores new values in self before it refuses them. Check all values first."
     assert (cause is not None and cause.text == words) == told
+
+
+OF_A_NAME = """\
+class Driver(Node):
+    def __init__(self):
+        self.add_on_set_parameters_callback(self.check)
+
+    def check(self, parameters):
+        for each in parameters:
+            if each.name == "radius":
+                self.radius = each.value
+            {test}:
+                return SetParametersResult(successful=False, reason="no")
+        return SetParametersResult(successful=True)
+"""
+
+
+@pytest.mark.parametrize(
+    ("test", "told"),
+    [
+        ('if each.name == "radius"', True),
+        ('if each.name == "speed"', False),
+        ('elif each.name == "speed"', False),
+        ("if each.value < 0.0", True),
+    ],
+)
+def test_a_refusal_of_another_parameter_is_not_told(test: str, *, told: bool) -> None:
+    cause = stored_before_refused(evidence(package=submission({NODE_FILE: OF_A_NAME.format(test=test)})))
+    assert (cause is not None) == told
 
 
 @pytest.mark.parametrize(

@@ -34,7 +34,7 @@ TWICE = "rclpy.exceptions.ParameterAlreadyDeclaredException: Parameter(s) alread
         ),
         ("self.create_timer(0.5, self.send, ReentrantCallbackGroup)", ENTITY, "A timer passes no arguments", False),
         (
-            "self.create_subscription(Pose, 'pose', self.send, 10, ReentrantCallbackGroup)",
+            "self.create_client(Kill, 'kill', callback_group=ReentrantCallbackGroup)",
             ENTITY,
             "ReentrantCallbackGroup is a class.",
             True,
@@ -69,6 +69,12 @@ TWICE = "rclpy.exceptions.ParameterAlreadyDeclaredException: Parameter(s) alread
             False,
         ),
         ('self.declare_parameter("radius", 1.0)', TWICE, "radius is declared twice. Compare the names", True),
+        (
+            'self.declare_parameter("use_sim_time", True)',
+            TWICE.replace("radius", "use_sim_time"),
+            "rclpy already declares use_sim_time for every node. Do not declare it again.",
+            True,
+        ),
         ('self.declare_parameter("radius", 1.0)', "KeyError: 'radius'", "is declared twice", False),
         (
             "self.client.send_goal(goal, done_cb=self.send)",

@@ -32,6 +32,7 @@ SPEED = "linear_velocity is a speed, and it is negative when the turtle drives b
     [
         ("while self.pose.x < 8: self.publisher.publish(msg)  # look", LOOP),
         ("while self.pose.x < 8: self.publisher.publish(msg); rclpy.spin_once(self)", ""),
+        ("async def go():\n            while self.pose: self.publisher.publish(msg); await x\n        use(go)", ""),
         ("while self.ticks < 8: self.publisher.publish(msg)", ""),
         ("if self.pose.x < 8: self.publisher.publish(msg)", ""),
         ("if self.pose.theta >= 90: pass  # look", THETA),
@@ -90,6 +91,9 @@ def test_another_thread_may_receive_the_pose() -> None:
         ("if self.pose.x == self.last_pose.x: pass", ""),
         ("if self.pose.x == self.last_x: pass", ""),
         ("if self.pose.x == 0.0: return", ""),
+        ("if self.goal_pose.x != self.last_goal_pose.x: pass", ""),
+        ("if self.target_pose.x == 8.5: pass", ""),
+        ("if self.pose.x == self.goal_pose.x: pass", "This line compares a coordinate with ==,"),
         ("if self.pose.x == self.goal_x: pass", "This line compares a coordinate with ==,"),
     ],
 )
