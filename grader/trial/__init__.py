@@ -1,1 +1,1 @@
-"""A trial: one run of the simulator and the student's node on one clock."""
+"""Trials: run the simulator and a student's nodes on one clock, or call a student's function or program."""

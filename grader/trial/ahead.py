@@ -52,7 +52,7 @@ class _Started:
 class Ahead:
     """The trials of a submission, as a context manager. On exit, the manager stops every trial that it started.
 
-    Each trial has a name, which the methods take as an argument. Up to `at_once` trials run in parallel.
+    Each trial has a name. Up to `at_once` nodes that `run` started run in parallel.
     """
 
     def __init__(self, at_once: int) -> None:

@@ -23,9 +23,10 @@ class Called:
     """The result of the call with this id.
 
     `ended` describes how the process ended, such as "exit 0" or "signal 9". It is TOO_LATE if the call took too long,
-    and empty if the call has no result. `values` are the numbers that a function returned, if there are at most
-    MOST_VALUES. `kind` is the name of the returned value's type. If the call raised an exception other than SystemExit,
-    `kind` has the names of the exception's class and its bases, separated by spaces. `kind` has at most 100 characters.
+    and empty if the call has no result. `values` are the numbers that a function returned, or None if it returned
+    anything else or more than MOST_VALUES numbers. `kind` is the name of the type that a function returned. If the call
+    raised an exception other than SystemExit, `kind` has the names of the exception's class and its bases, separated by
+    spaces. `kind` has at most 100 characters.
     """
 
     id: str

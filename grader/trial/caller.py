@@ -23,7 +23,9 @@ FOUND_S = 0.5
 
 
 class Caller:
-    """Makes each service call at the time that the exercise sets, or up to LATE_S later if the service is not ready.
+    """Makes each service call at the time that the exercise sets. A call waits up to LATE_S until its service is ready.
+
+    During this wait, the later calls wait, too.
 
     The clients are created at the start, so that discovery is usually complete before the first call.
     """
@@ -37,7 +39,7 @@ class Caller:
 
     @property
     def calls(self) -> tuple[Call, ...]:
-        """The calls that the trial has made, in the order in which they were due."""
+        """The calls that were due so far, in order. If the service of a call was never ready, the call is `missing`."""
         return tuple(self._made)
 
     @property
@@ -48,8 +50,8 @@ class Caller:
     def make_due(self, now_s: float, *, spin: Callable[[float], object] | None) -> None:
         """Make the calls that are due.
 
-        If the clock stands still during this method, `spin` must be a function that spins the node for a
-        given time (s).
+        If the clock stands still during this method, `spin` must be a function that spins the node for a given time
+        (s). Otherwise, `spin` is None.
         """
         while self._waiting and self._waiting[0][0].at_s <= now_s:
             call, client = self._waiting[0]

@@ -1,4 +1,4 @@
-"""Call a function or a program of the built package in a sandbox cell, without a simulator."""
+"""Call a function of the built package, or run one of its programs, without a simulator."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ TIMEOUT_S = 60.0
 MOST_OUTPUT = 2 * MIB
 MOST_ERRORS = 64 * 1024
 AHEAD = ("numpy", "rosbags.highlevel")
-"""Modules that most programs import. These modules are imported once, before the calls."""
+"""Modules that most programs import. They are imported once, before the calls. A function needs only the first."""
 _SCRIPT = Path(__file__).with_name("cell_calls.py")
 _READY = b"ready\n"
 

@@ -1,4 +1,4 @@
-"""Call a student's function or program in a sandbox cell, once per input, in a new process each time.
+"""Call a student's function or run a student's program, once per input, in a new process each time.
 
 This file runs as a separate script. The script reads one line of JSON (`calls`, `script`, `function`, `python_path`,
 `env`, `install`, `files`, `ahead`) and then the install tree, a tar stream, from standard input. The script writes the
@@ -113,7 +113,7 @@ def _ended(child: int) -> str:
                 return TOO_LATE
             return f"exit {code}" if code >= 0 else f"signal {-code}"
         time.sleep(POLL_S)
-    os.kill(child, signal.SIGKILL)  # it may have left its process group
+    os.kill(child, signal.SIGKILL)  # the child may have left its process group
     os.waitpid(child, 0)
     return TOO_LATE
 

@@ -1,6 +1,6 @@
 """Search the source of a node for clues that the node follows wall time.
 
-In simulated time, a node that follows wall time would get a wrong verdict.
+In simulated time, a node that follows wall time could get a wrong verdict.
 
 The search is limited to the executable's module and the modules of the package that it imports. A call to sleep in
 another node of the package does not matter.
@@ -55,7 +55,7 @@ MOST_NODES = 30
 
 @dataclass(frozen=True)
 class Clue:
-    """A clue, such as "time.sleep" (the full name, even after `from time import sleep`), and its place in the source.
+    """A clue, such as "time.sleep" (also after `from time import sleep`), and its place in the source.
 
     `file` is relative to the package folder.
     """

@@ -127,7 +127,7 @@ def _conduct(order: dict[str, Any], answers: IO[str], nodes: socket.socket | Non
         stack.enter_context(postponed())
         processes = [stack.enter_context(NodeProcess(_launcher(ros, order, nodes), NODE_LIMITS)) for _ in names]
         node = NodeGroup(processes)
-        # These imports are slow. They run here, while the launcher is importing too.
+        # Without a fork server, these imports are slow. They run here, while the launcher is importing too.
         from grader.trial.simulated import SimulatedTrial
         from grader.trial.wall import WallTrial
 

@@ -144,6 +144,7 @@ class ConductorInRoom(ConductorProcess):
 
         Raises:
             HolderError: bubblewrap could not create the room.
+            OSError: the system refused an operation, for example because too many files are open.
         """
         super().__init__()
         with ExitStack() as stack:

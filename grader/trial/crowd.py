@@ -12,9 +12,9 @@ from grader.trial.rest import GoneError
 STALL_S = 0.03
 """If the simulator or the node had to wait longer than this between two frames (s), arrival times are unreliable."""
 OWN_DOING = 0.5
-"""If a node used a processor for more than this share of the time, it delayed itself, so the delay is not a stall. Work
-that the node causes in the simulator counts as work of the node. For example, the machine is not to blame if the
-simulator is late because it responds to thousands of calls.
+"""If a node or the simulator used a processor for more than this share of the time, the node delayed itself, so the
+delay is not a stall. Work that the node causes in the simulator counts as work of the node. For example, the machine is
+not to blame if the simulator is late because it responds to thousands of calls.
 """
 SIMULATOR = 0.3
 """The share of a processor that the simulator may use for itself. In measurements, the simulator used a tenth of a
@@ -69,7 +69,7 @@ class Stalls:
                 threads.close()
 
     def look(self, now_s: float) -> tuple[float, float] | None:
-        """Return the stall since the last call, or None if there was none.
+        """Return the period of the stall since the last call (from, to, in s), or None if there was none.
 
         In a stall, threads waited for a processor for more than STALL_S, or the hypervisor gave the processor to
         another virtual machine for more than STALL_S. If the node kept a processor busy (OWN_DOING), the waits of the

@@ -70,7 +70,8 @@ class Fork:
     def wait(self, timeout: float | None = None) -> int:
         """Wait until the process has exited, and return its exit code.
 
-        If no exit code arrives, return -SIGKILL: the fork server was killed, or could not create the process.
+        If no exit code arrives, return -SIGKILL. For example, the fork server was killed, or the process could not
+        enter the sandbox.
 
         Raises:
             subprocess.TimeoutExpired: the process did not exit within `timeout` (s).

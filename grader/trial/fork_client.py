@@ -40,7 +40,7 @@ class ForkServer:
     """
 
     def __init__(self, start: Callable[[int], subprocess.Popen[bytes]]) -> None:
-        """Create a server that is started with the first request.
+        """Create a server that is started by `start` or with the first request.
 
         `start` starts the process. Its argument is the descriptor of the socket for requests, which the process
         inherits.
@@ -58,7 +58,7 @@ class ForkServer:
             self._running()
 
     def request(self, order: Mapping[str, Any], descriptors: Sequence[int]) -> Fork:
-        """Send a request with these file descriptors. Any thread may call this method."""
+        """Request a fork. The server gets `order` and these file descriptors. Any thread may call this method."""
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
             passed = [*descriptors, theirs.fileno()]
@@ -67,7 +67,7 @@ class ForkServer:
         return Fork(ours)
 
     def close(self) -> None:
-        """Stop the server and its forks. If another process started the server, it keeps running."""
+        """Stop the server and its forks. A server that another process started keeps running."""
         with self._changing:
             if self._requests is not None:
                 self._requests.close()

@@ -2,8 +2,9 @@
 
 A grader has two fork servers: one forks the conductors of its trials, and the other forks the nodes
 (grader.trial.launcher). They are separate, because a conductor reads the messages of a student's node, and the node
-must not be able to find out the memory layout of the conductor. A server has no data about the trials. Its forks enter
-the sandbox before they read anything but the request, and student code never runs outside the sandbox.
+must not be able to find out the memory layout of the conductor. A server has no data about the trials. Before its forks
+enter the sandbox, they read only the request and, for a node, file descriptors from the conductor. Student code never
+runs outside the sandbox.
 
 The server runs outside the sandbox. It reads requests from the grader on a socket, each with file descriptors:
 
@@ -60,7 +61,7 @@ def main() -> None:
     The arguments are "conductor" or "node", and the descriptor of the socket.
     """
     kind, requests = sys.argv[1], socket.socket(fileno=int(sys.argv[2]))
-    Path("/proc/self/comm").write_text("python3", "ascii")  # otherwise, it is the name of the loader
+    Path("/proc/self/comm").write_text("python3", "ascii")  # otherwise, `ps` shows the name of the loader
     gc.disable()  # imports leave hardly any garbage
     problem, postponed = "", []
     try:

@@ -74,7 +74,7 @@ def fork_supervised(result: int, childs: Sequence[int]) -> None:
         results.close()
         os.setsid()  # otherwise, signals to its process group would reach the server and other forks
         return
-    entering.end_with_parent()  # entering a cell may have cancelled the earlier request
+    entering.end_with_parent()  # entering a cell may have cancelled the earlier call
     for descriptor in childs:
         os.close(descriptor)
     process = pidfd_open(child)

@@ -1,10 +1,9 @@
-"""Start a node quickly inside its cell: rclpy is imported while colcon is still building.
+"""Start a node quickly: import rclpy before the node is built.
 
 The launcher starts before the install tree exists: as a fork of the fork server (grader.trial.fork_server) or, if there
-is no fork server, as a separate script. The launcher reads one line of JSON (`script`,
-`ros_arguments`, `params_file`, `python_path`, `env`, `install`) and then the install tree, a tar stream, from standard
-input. After reading the install tree, the launcher runs the installed script as __main__, as the interpreter in the
-script's first line would.
+is no fork server, as a separate script. The launcher reads one line of JSON (`script`, `ros_arguments`, `params_file`,
+`python_path`, `env`, `install`) and then the install tree, a tar stream, from standard input. After reading the install
+tree, the launcher runs the installed script as __main__, as the interpreter in the script's first line would.
 
 `ros_arguments` are the ROS arguments of the node, for example those that select simulated time. rclpy gets these
 arguments when it is initialized. The arguments never appear in the sys.argv of a Python script, because a program that
@@ -198,7 +197,8 @@ def _frames_of_others(trace: types.TracebackType | None) -> types.TracebackType 
 def main() -> None:
     """Import rclpy, wait for the start command, and then run the node in this process.
 
-    Without a cell, a node must not outlive a conductor that was killed: it would drive the turtle of another trial.
+    Without a cell, a node must not outlive a conductor that was killed: the node could drive the turtle of another
+    trial.
     """
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
     sys.path.pop(0)

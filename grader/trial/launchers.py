@@ -80,7 +80,7 @@ class Launcher(ABC):
 
     @abstractmethod
     def kill(self) -> None:
-        """Kill the process, and all other processes of the cell."""
+        """Kill the process and, in a cell, all other processes of the cell."""
 
     @abstractmethod
     def close(self) -> None:
@@ -129,7 +129,11 @@ class LauncherInCell(Launcher):
     in_cell = True
 
     def __init__(self, view: bubblewrap.View, limits: Limits, nodes: socket.socket) -> None:
-        """Create the cell, and request a fork through the socket `nodes`."""
+        """Create the cell, and request a fork through the socket `nodes`.
+
+        Raises:
+            LaunchError: bubblewrap could not create the cell.
+        """
         with call_filter() as filter_fd:
             self._cell = Holder(
                 lambda info_fd: bubblewrap.cell(
@@ -163,7 +167,7 @@ class LauncherInCell(Launcher):
         """Wait until the process has been forked. Return its process id, and the process id of bubblewrap."""
         pid = self._fork.await_started()
         if pid is None:
-            raise LaunchError(self.stderr.read().decode("utf-8", "replace").strip() or "The launcher was not forked")
+            raise LaunchError(self.stderr.read().decode("utf-8", "replace").strip() or "the launcher was not forked")
         return (pid, self._cell.pid)
 
     def poll(self) -> int | None:

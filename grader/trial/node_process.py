@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 KEPT = 256 * 1024
 """The maximum number of bytes that are kept from each output stream."""
 PIPE = 1024 * 1024
-"""The size of the node's pipes (bytes). The size is large, so that the node need not wait until the grader has read its
-output."""
+"""The size (bytes) that the grader requests for the node's pipes. The size is large, so that the node need not wait
+until the grader has read its output."""
 FULL = 0.25
 """If a node wrote less than this share of the pipe's size, the pipe was never full, so the node did not have to wait.
 The share is small, because the kernel may leave half of each page of the pipe empty."""
@@ -86,7 +86,7 @@ class Stream:
 class NodeProcess:
     """The process of a node with its pipes, as a context manager.
 
-    On exit, the manager kills all processes of the node.
+    On exit, the manager kills the process and, in a cell, all other processes of the cell.
     """
 
     def __init__(self, launcher: Launcher, limits: Limits) -> None:
@@ -100,6 +100,8 @@ class NodeProcess:
         self.pid = 0
         self._interrupted: float | None = None
         self._waited_before_s = 0.0
+        self._took_s: float | None = None
+        """The time (s) from SIGINT until the exit of the process was noticed, as `_stopping_s` measured it."""
         self._by = "itself"
         self._processes: tuple[int, ...] = ()
 
@@ -134,7 +136,7 @@ class NodeProcess:
             pass  # the launcher has exited: see `ended`
 
     def worked_s(self, begin: float, end: float) -> float:
-        """Return the CPU time that all processes of the cell used between two times of CLOCK_MONOTONIC (s)."""
+        """Return the CPU time that all processes of the node used between two times of CLOCK_MONOTONIC (s)."""
         return self._guard.worked_s(begin, end) if self._guard is not None else 0.0
 
     def started_ready_s(self) -> float:
@@ -155,7 +157,11 @@ class NodeProcess:
 
     def ended(self) -> bool:
         """Return whether the process has exited."""
-        return self._launcher.poll() is not None
+        if self._launcher.poll() is None:
+            return False
+        if self._took_s is None:
+            self._took_s = self._stopping_s()
+        return True
 
     @property
     def ended_itself(self) -> bool:
@@ -183,7 +189,7 @@ class NodeProcess:
         assert passed is not None
         if passed > STOP_S + 1.0 and self._by != "SIGKILL":
             self._by = "SIGKILL"
-            self._launcher.kill()  # this ends the whole cell, because of --die-with-parent
+            self._launcher.kill()  # in a cell, this ends all processes of the cell
             self._signal(signal.SIGKILL)
         elif passed > STOP_S and self._by == "SIGINT":
             self._by = "SIGTERM"
@@ -191,7 +197,7 @@ class NodeProcess:
 
     def end(self, now_s: float) -> ProcessEnd:
         """Return how the process of the node ended. Call this method only after `ended` has returned True."""
-        return ProcessEnd(self._by, self._launcher.poll(), now_s, self._stopping_s(), self._out_of)  # type: ignore[arg-type]
+        return ProcessEnd(self._by, self._launcher.poll(), now_s, self._took_s, self._out_of)  # type: ignore[arg-type]
 
     def _stopping_s(self) -> float | None:
         """Return the time since SIGINT (s), minus the time for which the node waited for a processor.
@@ -209,7 +215,7 @@ class NodeProcess:
 
     def _over(self, what: str) -> None:
         self._out_of = what
-        self._launcher.kill()  # this ends the whole cell, because of --die-with-parent
+        self._launcher.kill()  # in a cell, this ends all processes of the cell
 
     def _is_gone(self) -> bool:
         try:

@@ -1,4 +1,4 @@
-"""The contents of a recording other than messages: service calls, action goals, pens, and the other turtles."""
+"""Parts of a recording: service calls, offered services, action goals, pens, and the tracks of other turtles."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class PenChange:
 class Track:
     """The track of a turtle other than turtle1: rows of t_s (s), x and y (m) and theta (rad), one row per change.
 
-    The first row is from the turtle's first frame. `gone_s` is the time at which the turtle was killed (s), or None.
+    The first row is from the turtle's first frame. `gone_s` is the time at which the turtle was removed (s), or None.
     """
 
     turtle: str

@@ -1,6 +1,6 @@
 """The limit on the number of files that the conductor may open.
 
-The conductor opens two files for each thread of a node.
+The conductor keeps at least two files open for each thread of a node.
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ REQUEST_EVERY_S = 0.02
 
 
 class HandshakePatience:
-    """The time limit within which a node must begin to wait for its clock.
+    """The time limit for the start of a node: until it waits for its clock or, in wall time, until it is in the graph.
 
     `limit_s` is the maximum time that the node may sleep (s), and also the maximum CPU time that it may use (s). Time
     in which the node waits for the grader to read its output does not count as sleep.

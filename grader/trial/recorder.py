@@ -49,8 +49,8 @@ topic."""
 class Recorder(Node):
     """A hidden node that subscribes to the topics in the graph, up to a limit.
 
-    The simulator itself reports the commands to turtle1 and the messages on its own topics. The recorder never
-    subscribes to /turtle1/cmd_vel, and to the simulator's topics only if other nodes publish on them, too.
+    The simulator itself reports the commands to turtle1 and the messages on its own topics. The recorder does not
+    subscribe to these commands, and to these messages only if other nodes publish on the same topic, too.
     """
 
     def __init__(
@@ -107,7 +107,7 @@ class Recorder(Node):
         return True
 
     def keep_command(self, topic: str, data: bytes, twist: Any) -> None:  # noqa: ANN401 - a ROS message
-        """Store a Twist that the turtle received."""
+        """Store a Twist that a turtle received. For turtle1, store it also as a command."""
         if self.keep(topic, "geometry_msgs/msg/Twist", data) and topic == "/turtle1/cmd_vel":
             last = self.messages[-1]
             linear = (twist.linear.x, twist.linear.y, twist.linear.z)

@@ -191,8 +191,8 @@ class Recording:
     interventions_dropped: int = 0
     """The number of calls that were not kept because there were too many."""
     calls: tuple[Call, ...] = ()
-    """The service calls, in order: from nodes to the simulator and to each other, and from the trial to the node. Their
-    number is limited."""
+    """The service calls, in order: from nodes to the grader's nodes and to each other, and from the trial to the node.
+    Their number is limited."""
     goals: tuple[Goal, ...] = ()
     """The goals that nodes sent to the actions of the simulator, in order, up to a limit."""
     offers: tuple[Offer, ...] = ()
@@ -210,7 +210,7 @@ class Recording:
     """The number of topics, nodes, endpoints and snapshots of the graph that were not kept because there were too
     many."""
     doubts: tuple[str, ...] = ()
-    """The reasons why simulated time may misjudge this node. The tuple is empty if simulated time is reliable."""
+    """The reasons why simulated time may misjudge this node. In a trial in wall time, the tuple is empty."""
     seconds: dict[str, float] = field(default_factory=dict)
     """The wall time of each part of the trial: start, discovery, run, stop (s)."""
     stalls: tuple[tuple[float, float], ...] = ()
@@ -221,7 +221,7 @@ class Recording:
     often had to wait."""
 
     def seen_from(self, executable: str) -> Recording:
-        """Return a copy of the recording with the output and the end of an additional node instead.
+        """Return a copy of the recording with the output and the end of an additional node.
 
         Raises KeyError if no additional node ran this executable.
         """

@@ -80,8 +80,8 @@ class Look:
 class Wait:
     """A thread and the system call in which it is waiting.
 
-    `call` is the name of the system call, such as "futex" or "nanosleep", "running" if the thread is not waiting, or
-    HIDDEN. `timed` is true if the wait has a timeout.
+    `call` is the name of the system call, such as "futex", or "system call NUMBER" for most system calls. If the thread
+    is not waiting, `call` is "running". It can also be HIDDEN. `timed` is true if the wait has a timeout.
     """
 
     tid: int
@@ -154,7 +154,7 @@ class Threads:
         raise GoneError
 
     def only(self, look: Look, wanted: Callable[[str], bool]) -> tuple[bytes, ...]:
-        """Return the schedstat lines of the last observation's threads whose names `wanted` accepts."""
+        """Return the schedstat lines in `look`, the last observation, of the threads whose names `wanted` accepts."""
         return tuple([run for tid, run in zip(self._files, look.runs, strict=True) if wanted(self._names[tid])])
 
     def runs(self) -> tuple[bytes, ...]:
@@ -171,7 +171,7 @@ class Threads:
         """Return whether the main thread is sleeping, without checking the other threads.
 
         Raises:
-            GoneError: the process has exited.
+            GoneError: the process no longer exists.
         """
         try:
             return _state(os.pread(self._main, 64, 0)) not in b"RD"
@@ -179,7 +179,7 @@ class Threads:
             raise GoneError from None
 
     def run_time_s(self) -> float:
-        """Return the CPU time (s) that all threads have used."""
+        """Return the CPU time (s) that all threads have used. Threads that have exited do not count."""
         return sum(int(run.split()[0]) for run in self.look().runs) / 1e9
 
     def run_times_s(self) -> dict[int, float]:

@@ -23,8 +23,8 @@ MOST_SERVICES = 20
 class SilentServers:
     """Servers of the recorder, one for each service that a node of the submission offers, up to MOST_SERVICES.
 
-    A silent server is created only after the node's own server has been discovered, so that a client never finds the
-    silent server alone.
+    A silent server is created only after the node's own server has been discovered, so that a client does not find the
+    silent server first.
     """
 
     def __init__(self, recorder: Recorder, prefixes: list[Path], on_request: Callable[[str, str, Any], object]) -> None:

@@ -1,4 +1,4 @@
-"""A trial in simulated time: /clock advances only while the node is idle.
+"""A trial in simulated time: before /clock advances, the trial waits until the node is idle.
 
 The clock stays at 0 until the simulator and the node have discovered each other (the handshake). After this handshake,
 the clock advances in frames of 16 ms. The threads of a node show whether the node follows wall time. Any sign that the
@@ -146,7 +146,7 @@ class SimulatedTrial(Simulation):
     def _rest(self, patience: TickPatience) -> bool:
         """Before the clock advances, wait until neither the node nor the simulator has anything left to do.
 
-        Return False if the node never becomes idle.
+        Return False if this takes longer than `patience` allows.
         """
         before: tuple[bytes, ...] | None = None
         equal = 0
@@ -195,7 +195,7 @@ class SimulatedTrial(Simulation):
                 return
 
     def _take_in(self, *, requests: bool = True) -> bool:
-        """Handle everything that has arrived, or all but requests. Return whether the node may react to any of it."""
+        """Handle what has arrived. Without `requests`, requests may wait. Return whether the node may react to any."""
         # Plain messages and acknowledgements get no response, so the node stays idle.
         if not self.may_act():
             return self.take_in(requests=requests) > 0
@@ -212,19 +212,19 @@ class SimulatedTrial(Simulation):
             asleep, worked_s = self._node.look().asleep, self._node.run_time_s()
             wrote = self.node.read_output(0.0) > 0
             if patience.ended(time.monotonic(), asleep=asleep, wrote=wrote, worked_s=worked_s):
-                self._doubt("the node did not become idle, so the clock could not start")
+                self._doubt("the node did not begin to wait for its clock, so the clock could not start")
                 return
         self._watch()  # threads get their names when they first run
         self._wake()
         if len(self.recorder.commands) >= 2:
-            self._doubt("the node published again and again while the clock stood still")
+            self._doubt("the node published several commands while the clock stood still")
         self._doubt_sleepers()
         self.follow_graph()
         self.recorder.snapshot()
         self.tick(0.0)
 
     def _found_each_other(self) -> bool:
-        """Wait for QUIET_S. Return whether there was no discovery traffic and the node is waiting for its clock."""
+        """Wait up to QUIET_S. Return whether there was no discovery traffic and the node is waiting for its clock."""
         quiet = GroupThreads(self.node.pids, of_dds)
         try:
             before = quiet.look().runs

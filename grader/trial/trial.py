@@ -144,7 +144,7 @@ class Trial:
         Raises:
             WallTimeNeeded: simulated time may misjudge this node.
             OverwhelmedError: the node overloaded the trial so much that it could not be completed.
-            MachineError: the simulator or the sandbox failed.
+            MachineError: the simulator or the sandbox failed, or the machine was too busy.
         """
         arguments = ["--ros-args", "-p", "use_sim_time:=true"] if self._plan.clock == "simulated" else []
         inputs = self._plan.inputs

@@ -55,6 +55,6 @@ class TurtleWatch:
 
     @property
     def tracks(self) -> tuple[Track, ...]:
-        """The tracks of the turtles besides turtle1: first all turtles that were killed, then the rest."""
+        """The tracks of the turtles other than turtle1: first all turtles that were removed, then the rest."""
         alive = [(name, rows, None) for name, rows in self._rows.items()]
         return tuple(Track(name, tuple(rows), gone_s) for name, rows, gone_s in [*self._tracks, *alive])

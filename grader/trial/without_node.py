@@ -25,7 +25,7 @@ class AloneTrial(Simulation):
 
     def __init__(self, start: Pose, prefixes: list[Path], inputs: Inputs) -> None:
         self._now_s = 0.0
-        # There is no node, and no method of this class uses one.
+        # There is no node, and `record` does not need one.
         super().__init__(cast("NodeGroup", None), start, prefixes, inputs)
         self._start = start
 

@@ -13,6 +13,7 @@ from grader.sandbox.usage import Guard
 from grader.tests.waiting import until
 from grader.trial import node_process
 from grader.trial.launchers import LauncherProcess, LaunchError
+from grader.trial.node_group import NodeGroup
 from grader.trial.node_process import FULL, PIPE, NodeProcess, Stream, enlarge
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 PAGE = os.sysconf("SC_PAGE_SIZE")
 SLOW = r"""printf '\0ready\n'; read order; trap 'sleep 1; exit 0' INT; echo waits; while :; do sleep 0.05; done"""
 """A node that takes a second to stop."""
+QUICK = SLOW.replace("sleep 1; ", "")
 
 
 @pytest.fixture
@@ -85,6 +87,27 @@ def test_waiting_for_a_processor_after_ctrl_c_does_not_count(
     assert end.by == by
     assert end.stop_s is not None
     assert (end.stop_s < 0.2) == (by == "SIGINT")
+
+
+def test_a_quick_node_is_not_blamed_for_a_slow_node_that_stops_at_the_same_time() -> None:
+    limits = Limits(processes=50, cpu_s=60)
+    with (
+        NodeProcess(LauncherProcess(["sh", "-c", QUICK]), limits) as quick,
+        NodeProcess(LauncherProcess(["sh", "-c", SLOW]), limits) as slow,
+    ):
+        group = NodeGroup([quick, slow])
+        group.await_ready()
+        group.start([{}, {}], b"")
+        until(lambda: quick.read_output(0.0) > 0)
+        until(lambda: slow.read_output(0.0) > 0)
+        group.interrupt()
+        while not group.all_ended():
+            group.escalate()
+            time.sleep(0.01)
+        took_s = quick.end(0.0).stop_s, slow.end(0.0).stop_s
+    assert took_s[0] is not None
+    assert took_s[1] is not None
+    assert took_s[0] < 0.8 < took_s[1]
 
 
 def test_the_error_of_a_launcher_that_exits_silently_is_not_empty() -> None:
