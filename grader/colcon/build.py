@@ -20,7 +20,7 @@ class Build:
     """The name of the installed package, or None if nothing was installed."""
     timed_out: bool = False
     out_of: str | None = None
-    """The sandbox limit that was reached, such as "disk" or "memory", or None."""
+    """The limit that was reached, such as "disk" or "memory", or None."""
     installed: tuple[str, ...] = ()
     executables: tuple[str, ...] = ()
     """The names of the files in lib/<package>, where `ros2 run` looks for executables."""

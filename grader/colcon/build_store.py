@@ -79,7 +79,7 @@ class BuildStore:
     def _remove_oldest(self, but: Path) -> None:
         used = {path: path.stat().st_mtime_ns for path in self._folder.iterdir()}
         now = time.time_ns()
-        # If the system's clock was set back, times in the future are older than all others.
+        # If the system's clock was set back, times in the future count as older than all others.
         by_age = sorted(used, key=lambda path: (path == but, used[path] <= now, used[path]))
         for path in by_age[:-MOST_BUILDS]:
             path.unlink()

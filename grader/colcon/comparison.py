@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 _MOST_MEMBERS = 2000
 _FILE, _FOLDER = (b"0", b"\0"), b"5"
 _OF_COLCON = re.compile(r"COLCON_IGNORE|\.colcon_install_layout|(local_)?setup\.\w+|_local_setup_util_\w+\.py")
-"""The files that colcon adds to the workspace outside the package. The grader does not use these files to
-set the environment of a node."""
+"""The files that colcon adds to the install tree outside the package. The grader does not use these files to set the
+environment of a node."""
 _OF_PACKAGE = r"share/{name}/package\.\w+|share/{name}/hook/\w+\.\w+|share/colcon-core/packages/{name}"
 _OF_METADATA = r"PKG-INFO|SOURCES\.txt|dependency_links\.txt|requires\.txt|top_level\.txt|zip-safe|not-zip-safe"
 

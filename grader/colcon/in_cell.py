@@ -1,4 +1,4 @@
-"""Run colcon in its sandbox cell. Each `python setup.py` that colcon starts becomes a fork of a prepared interpreter.
+"""Run colcon, usually in a sandbox cell. Each `python setup.py` that colcon starts is a fork of a prepared interpreter.
 
 colcon runs the setup.py of a package three times, each time in a new interpreter that imports setuptools and reads the
 metadata of all installed packages again. These imports take most of the CPU time of a build. So one process imports the
@@ -30,7 +30,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-# In the cell, the grader consists of this file and the two files that it imports.
+# In a cell, the grader consists of this file and the two files that it imports.
 sys.path[0] = str(Path(__file__).parents[2])
 from grader.colcon.entry_points_cache import EntryPoints  # noqa: E402
 from grader.common.quick_exit import QuickExit  # noqa: E402
@@ -84,7 +84,7 @@ def _at_start(env: Mapping[str, str]) -> dict[str, str]:
 
 
 def _hides_a_module(folder: str) -> bool:
-    """Return whether the folder shadows a module that the fork has already imported."""
+    """Return whether the folder shadows a module that has already been imported, or cannot be read."""
     try:
         return any(path.name.partition(".")[0] in sys.modules for path in Path(folder).iterdir())
     except OSError:

@@ -1,6 +1,6 @@
 """Shared builds: colcon runs once for all packages that differ only in the text of their modules.
 
-In a class, submissions share builds in this way. For a learner, the next `grader check` reuses the last build.
+In a class, submissions share builds in this way. For a learner, the next `grader check` reuses an earlier build.
 
 If setup.py and setup.cfg have the usual form, colcon copies the modules and does not read them. So the grader builds
 the package once with empty modules, and then writes the modules of each submission into a copy of the install tree. The

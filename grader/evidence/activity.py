@@ -85,7 +85,7 @@ def nodes(recording: Recording) -> tuple[str, ...]:
 
 
 def endpoints(recording: Recording, kind: str) -> tuple[Endpoint, ...]:
-    """Return the publishers or subscriptions of the submission without duplicates, except those that every node has."""
+    """Return the publishers or subscriptions of the submission without duplicates, except on topics of ROS 2 itself."""
     found = {
         endpoint: None
         for graph in recording.graphs

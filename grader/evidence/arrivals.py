@@ -36,7 +36,10 @@ class Measured:
 
 
 def measure_arrivals(recording: Recording, times_s: Iterable[float]) -> Measured:
-    """Measure the arrivals at these times (s), which must be before SIGINT. The mean is 0 if there are no intervals."""
+    """Measure the arrivals at these times (s), which must be before the end of the scenario.
+
+    The mean is 0 if there are no intervals.
+    """
     arrivals = tuple(times_s)
     until = activity.end_s(recording)
     if not arrivals:

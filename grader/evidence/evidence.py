@@ -161,12 +161,12 @@ class Evidence:
 
     @cached_property
     def commands(self) -> tuple[Command, ...]:
-        """The commands that arrived before SIGINT (see `activity.commands`)."""
+        """The commands that arrived before the end of the scenario (see `activity.commands`)."""
         return activity.commands(self.recording)
 
     @cached_property
     def command_arrivals(self) -> Measured:
-        """The arrivals of the commands before SIGINT, and the intervals between these arrivals."""
+        """The arrivals of `commands`, and the intervals between these arrivals."""
         return measure_arrivals(self.recording, (command.t_s for command in self.commands))
 
     @cached_property

@@ -28,7 +28,7 @@ MOVING = frozenset({RESET, "teleport_absolute", "teleport_relative", "rotate_abs
 """Calls that may move a turtle. Such a call has no effect if the turtle is already at the destination."""
 KILL = "kill"
 ALWAYS = frozenset({KILL, "set_parameters"})
-"""Calls that remove a turtle or change its response to commands."""
+"""Calls that remove a turtle or may change its response to commands."""
 ROTATE = "/turtle1/rotate_absolute"
 SAME = 1e-5
 """The largest difference (m, rad, rad/s) that counts as zero."""
@@ -90,7 +90,7 @@ class _Path:
 
 
 def _path(recording: Recording, first: int) -> _Path:
-    """Return the path from frame number `first` until SIGINT."""
+    """Return the path from frame number `first` until the end of the scenario."""
     frames = recording.frames
     stop = int(np.searchsorted(frames.t_s, activity.end_s(recording), side="right"))
     x, y, theta = (

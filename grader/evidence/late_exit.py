@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 START = "Traceback (most recent call last):"
 TOP = re.compile(r'\s*File ".*", line \d+, in <module>')
-"""Matches the outermost stack frame of a program. The traceback of an exception that a
-function of the program caught does not contain this frame."""
+"""Matches the outermost stack frame of a program. The traceback of an exception that a function of the program caught
+does not contain this frame."""
 
 
 def with_crash_first(recording: Recording) -> Recording:

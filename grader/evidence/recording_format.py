@@ -11,8 +11,8 @@
     exercise/        the exercise at that time: exercise.toml
     COLCON_IGNORE    so that colcon never runs the submission's setup.py
 
-trials/ID/ is missing if that trial was not completed, build.json if nothing was built, and tries.json if there was no
-fix to test.
+trials/ID/ is missing if that trial was not completed, build.json if nothing was built, and tries.json if no fix was
+tested.
 """
 
 from __future__ import annotations

@@ -44,7 +44,7 @@ class Line:
 
 
 def students(recording: Recording) -> tuple[LogLine, ...]:
-    """Return the lines that the submission logged before SIGINT, in the order of arrival.
+    """Return the lines that the submission logged before the end of the scenario, in the order of arrival.
 
     The logger of a node has the name of the node, with dots instead of slashes.
     """

@@ -33,7 +33,7 @@ class Announcement:
 
 
 def announcements(recording: Recording, topic: str) -> list[Announcement]:
-    """Return the String messages on the topic before SIGINT, in order."""
+    """Return the String messages on the topic before the end of the scenario, in order."""
     until = activity.end_s(recording)
     return [
         Announcement(message.t_s, _text(message.data))
@@ -82,7 +82,7 @@ def moved_targets(recording: Recording) -> list[Track]:
 
 
 def caught(recording: Recording) -> list[Track]:
-    """Return the targets that were removed before SIGINT, in the order of their removal.
+    """Return the targets that were removed before the end of the scenario, in the order of their removal.
 
     A target that the trial itself removed does not count.
     """

@@ -35,6 +35,7 @@ def call(
 
     Raises:
         MachineError: no call could be made, for example because the sandbox does not work.
+        UnreadableError: the output of the calls could not be read.
     """
     drawn = DEFAULT_SEED if seed is None else seed
     calls = spec.calls

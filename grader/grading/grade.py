@@ -71,8 +71,8 @@ def grade(
 
     `tell` is called with a short message about each step. `early` is called before the build, with the outcomes of the
     checks that are certain to fail. A fault of the machine in the build or in a trial raises no exception: the affected
-    outcomes have the status `error`. A caller can replace `build` and `trial`: `grader watch`, for example, passes
-    builds and trials that it started in advance.
+    outcomes have the status `error`. A caller can replace `build` and `trial`: `grader watch`, for example, reuses the
+    last build and starts trials in advance.
 
     Raises:
         MachineError: the submission cannot be judged, because the machine is too busy or a module is missing.

@@ -42,7 +42,7 @@ class Judging:
 
     def early(self, evidence: Evidence) -> Early:
         """Return the results that are already certain from the files alone."""
-        load_catkin_pkg()  # two of the child processes need catkin_pkg
+        load_catkin_pkg()  # several of the child processes need catkin_pkg
         try:
             early, self._clocks = read(_early, evidence, self.choice)
         except UnreadableError as error:

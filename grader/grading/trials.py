@@ -62,7 +62,7 @@ class Trials:
         self.tree = b""
 
     def start(self, views: Iterable[Evidence]) -> None:
-        """During the build, start the simulators and launchers of these trials, except trials without a simulator."""
+        """Start the simulators and launchers of these trials, except trials without a simulator."""
         for view in (each for each in views if not each.trial.calls):
             name = self._started[view.trial.id] = self._judging.first_clock(view).name
             self._ahead.start(view.trial.id, self._trial(view, name))

@@ -7,9 +7,8 @@ bubblewrap creates two kinds of containers:
   student's node with libraries that may have security holes;
 - a **cell** contains a student's process. A cell has its own user, pid, ipc, uts, cgroup and mount namespaces. It has
   no network except the network of the room, and no files from the disk except the system's programs (/usr, a few files
-  in /etc) and the files in `View`. It has a system call
-  filter (system_calls.py), and limits on memory, processes, files, CPU and disk. usage.py watches totals that the
-  kernel does not limit.
+  in /etc) and the files in `View`. It has a system call filter (system_calls.py), and limits on memory, processes,
+  files, CPU and disk. usage.py watches totals that the kernel does not limit.
 
 The functions that build command lines start no processes. The caller starts and stops each process, and connects its
 standard streams to pipes.

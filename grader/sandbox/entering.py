@@ -4,7 +4,7 @@ bubblewrap creates the room or cell. `cat`, the first program in the room or cel
 process into the namespaces of `cat`, and the forks of this process are processes of the room or cell. A fork must then
 give up the same rights that bubblewrap takes from the programs that it starts.
 
-Like the scripts that run in a cell, this module needs only the standard library and grader.common.linux_calls.
+This module needs only the standard library and grader.common.linux_calls.
 """
 
 from __future__ import annotations
@@ -72,9 +72,9 @@ def enter(holder: int, *, cell: bool) -> None:
     process.
 
     In a trial, the descriptor of a cell comes from a conductor (trial/conductor.py), which may be under the control of
-    a node. Therefore, if `cell` is true, the process with this descriptor must have namespaces that no process of a
-    room has. The namespaces may still be a trap, so do not trust any file after this call: even an import or a
-    traceback can run code from these mounts.
+    a node. Therefore, if `cell` is true, the process with this descriptor must not have the user namespace of this
+    process. Its namespaces may still be a trap, so do not trust any file after this call: even an import or a traceback
+    can run code from these mounts.
 
     Raises:
         OSError: the kernel refused, or the process has exited.

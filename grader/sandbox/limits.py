@@ -1,6 +1,6 @@
 """The resource limits of a cell: memory, processes, files, processor time and disk.
 
-prlimit sets the limits of each process. usage.py and control_group.py limit the totals of a cell.
+Resource limits (setrlimit(2)) apply to each process. usage.py and control_group.py limit the totals of a cell.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def limited(argv: Sequence[str], limits: Limits, *, in_cell: bool = False) -> li
 
 def resource_limits(limits: Limits, *, in_cell: bool) -> dict[int, int]:
     """Return the resource limits of a process: the constants of the module `resource`, and the values."""
-    # Outside a cell, the kernel counts all processes of the user, and usage.py counts those of `argv`.
+    # Outside a cell, the kernel counts all processes of the user, and usage.py counts those of the program.
     wanted = {
         resource.RLIMIT_NPROC: limits.processes if in_cell else limits.processes + MOST_OTHERS,
         resource.RLIMIT_AS: limits.memory,

@@ -1,4 +1,4 @@
-"""The seccomp filter for bubblewrap: the system calls that are forbidden in a cell.
+"""The seccomp filter of a cell: the system calls that are forbidden in it.
 
 The filter forbids calls that no node needs and that attackers have used to escape from sandboxes. A list of allowed
 calls (instead of forbidden ones) would break with a new version of Python or Fast DDS. Namespaces, limits and mounts
@@ -75,7 +75,8 @@ the use of folders that other cells can read, too. A user may have only 64 pipes
 """
 SET_SECCOMP = 22
 _OF_SOCKETS = (26, 50, 51, 52, 60)
-"""PR_SET_SECCOMP of prctl(2). Of socket(7): SO_ATTACH_FILTER, _BPF, _REUSEPORT_CBPF and _REUSEPORT_EBPF, SO_ZEROCOPY.
+"""PR_SET_SECCOMP of prctl(2). Of socket(7): SO_ATTACH_FILTER, SO_ATTACH_BPF, SO_ATTACH_REUSEPORT_CBPF,
+SO_ATTACH_REUSEPORT_EBPF and SO_ZEROCOPY.
 
 These options are forbidden. All filters of a machine share a limit on compiled programs (bpf_jit_limit), which about
 3,000 long filters use up. After that, a cell could not install the filter in this module. SO_ZEROCOPY locks memory,

@@ -38,7 +38,7 @@ class Member:
 
 
 def read_tar(stream: bytes, most: int) -> dict[PurePosixPath, Member]:
-    """Return at most `most` files and links from the stream.
+    """Return at most `most` files and symbolic links from the stream.
 
     Absolute paths, and paths that contain "..", are ignored. If the stream is damaged, only files before the damage are
     returned.

@@ -67,7 +67,9 @@ def exceeded(pids: Sequence[int], limits: Limits, *, in_room: bool = False) -> s
 
 
 class Guard:
-    """A thread that watches a cell until `close` is called. If a limit is exceeded, the thread calls `over` and ends.
+    """A thread that watches processes and their descendants, usually those of a cell, until `close` is called.
+
+    If they exceed a limit, the thread calls `over` with the name of the limit, and ends.
 
     `in_room` has the same meaning as in `exceeded`.
     """

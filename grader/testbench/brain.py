@@ -25,7 +25,10 @@ Values = list[float]
 
 @dataclass
 class _State:
-    """The state of one node: the last pose (m), its arrival time (ns), whether the node is turning, and counters."""
+    """The state of one node: the last pose (m) and its arrival time (ns), whether the node is turning, and counters.
+
+    `first_ns` and `clock_ns` are the times of the first and the last event on the node's clock (ns).
+    """
 
     x: float = 0.0
     y: float = 0.0
@@ -44,7 +47,10 @@ class _State:
 
 
 class Brain:
-    """Controls the first MOST_NODES nodes that are created in one run of the tests. `node` is the name of each."""
+    """Controls the nodes that are created in one run of the tests. `node` is the name of each.
+
+    After MOST_NODES nodes, each further node shares its state with the last of them.
+    """
 
     def __init__(self, behaviour: Behaviour, node: str) -> None:
         self._behaviour = behaviour

@@ -165,8 +165,8 @@ class Lane:
             self._ready = bool(selector.select(START_S)) and self._process.stdout.read(len(READY)) == READY
         if not self._ready and not self._killed:
             message = (
-                "The tests could not be started, because the sandbox, pytest or rclpy does not work. `grader doctor` "
-                "shows what is missing."
+                "The tests could not be started: the sandbox, pytest or rclpy does not work, or the machine is too "
+                "busy. `grader doctor` shows what is missing."
             )
             raise MachineError(message)
 

@@ -20,7 +20,7 @@ clock at the maximum follows the system time."""
 class NodeEvents:
     """What happened to the node that was created last in a run, usually by the failing test.
 
-    These values were counted by the grader, not by the student's process.
+    The grader counts these values from the requests of the student's process.
     """
 
     poses: int = 0
@@ -44,7 +44,7 @@ class NodeRun:
     `exit_code` is the exit code of pytest, or None if the run did not finish on its own. `collected`, `passed` and
     `skipped` are numbers of tests. `test` (a name), `message`, `file`, `line` and `outcome` describe the first test
     that failed. `outcome` is what failed: the test itself ("failed"), a fixture ("setup" or "teardown") or the import
-    of its file ("import"). A student's process may have changed all values except `node`, `over` and `events`.
+    of its file ("import"). A student's process may have changed all values except `node`, `over` and `seconds`.
     Therefore, only the success or failure of a run counts, and only in combination with the other runs.
     """
 

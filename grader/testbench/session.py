@@ -1,11 +1,11 @@
 """Run a student's tests repeatedly: pytest and rclpy are imported once, and each run is a fork in a new sandbox cell.
 
-This file runs as a separate script, in a sandbox room. The session reads one line of JSON and the files of the package
-(a tar stream) from standard input. As soon as the session can run tests, it writes READY to standard output. Each
-request is a message on a Unix socket with three descriptors: the run's two pipes to the grader, and a socket for the
-result. On this socket, the session sends STARTED with a descriptor of the process that runs the tests (pidfd_open(2)).
-At the end, the session sends the exit code of pytest, the duration (s), the report's size, and the report. The session
-does not know whether a run uses the correct node or a broken one.
+This file runs as a separate script, usually in a sandbox room. The session reads one line of JSON and the files of the
+package (a tar stream) from standard input. As soon as the session can run tests, it writes READY to standard output.
+Each request is a message on a Unix socket with three descriptors: the run's two pipes to the grader, and a socket for
+the result. On this socket, the session sends STARTED with a descriptor of the process that runs the tests
+(pidfd_open(2)). At the end, the session sends the exit code of pytest, the duration (s), the report's size, and the
+report. The session does not know whether a run uses the correct node or a broken one.
 
 bubblewrap creates the cell, and a fork of the session enters it (grader.sandbox.entering). The session itself receives
 nothing from its runs: the fork reports to the grader, and ends together with its cell. Therefore, neither a cell nor
@@ -79,7 +79,7 @@ class _Watcher:
             os.write(ASKS, _TEST_ENDED)
 
     def report(self) -> bytes:
-        """Return the report as JSON: the number of tests that were found, and the results of the last tests."""
+        """Return the report as JSON: the number of tests that were found, and the results of the last 50 tests."""
         return json.dumps({"collected": self.collected, "cases": self.cases[-50:]}).encode()
 
 
@@ -147,7 +147,7 @@ def _supervise(order: dict[str, Any], source: bytes, asks: int, answers: int, re
     if cell is not None:
         cell.close()
     else:
-        from grader.sandbox.descendants import kill_descendants  # not in the room
+        from grader.sandbox.descendants import kill_descendants  # a room does not contain this file
 
         kill_descendants(os.getpid())
         shutil.rmtree(workspace, ignore_errors=True)
