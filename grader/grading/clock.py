@@ -6,16 +6,16 @@ The rules, in the order in which they are applied:
 2. Without these options, a trial starts in simulated time, in which the grader need not wait and other programs cannot
    disturb the trial. If the source contains a sign that the node may follow wall time, the trial starts in wall time
    instead (grader.trial.clues).
-3. A trial in simulated time stops at the first sign that the node may be misjudged, for example: a thread sleeps,
+3. A trial in simulated time stops at the first sign that the node may be misjudged, for example: a thread calls sleep,
    commands arrive while the clock is stopped, or the node never becomes idle (grader.trial.simulated). After such a
    sign, the trial is repeated in wall time. If several threads kept the node from becoming idle, this may have happened
    by chance, so the trial is first repeated once in simulated time.
 4. A trial in simulated time is also repeated in wall time if a measured value is near the edge of its tolerance, or if
    the node did not stop.
 5. If a trial in wall time fails and was disturbed by other programs or by a change of the system time, the trial is
-   repeated while nothing else is graded. A busy machine can make a correct node look wrong, but it cannot make a wrong
-   node look correct, so the result of the first trial that passes counts. There are at most WALL_TRIALS trials. If none
-   of them passes, the trial with the least disturbance counts.
+   repeated while no other grader of this user grades (turns.py). A busy machine can make a correct node look wrong, but
+   it cannot make a wrong node look correct, so the result of the first trial that passes counts. There are at most
+   WALL_TRIALS trials. If none of them passes, the trial with the least disturbance counts.
 """
 
 from __future__ import annotations

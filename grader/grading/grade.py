@@ -190,7 +190,7 @@ class _Grading:
             self.evidence = dataclasses.replace(self.evidence, fault=fault)
 
     def _run_simulator(self, ros: Ros) -> None:
-        """Run the simulator without a node, for an exercise whose answers are compared with the simulator's graph."""
+        """Run the simulator without a node, for an exercise whose answers are compared with its recording."""
         self.stage = "trial"
         self.tell("Running the simulator")
         self.evidence = self._trials(ros, Ahead(1)).run_alone(self.evidence).evidence

@@ -28,7 +28,7 @@ class Finished:
     """The result of a child process.
 
     `too_much` is True if the process was stopped because it wrote too much standard output. `out_of` is the limit of
-    `watch` that the process exceeded.
+    `watch` that the process and its descendants exceeded, or None.
     """
 
     exit_code: int

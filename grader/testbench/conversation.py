@@ -28,7 +28,7 @@ A normal test makes only a few hundred requests.
 """
 MOST_REPORT = 64 * 1024
 LATEST = 4.0
-"""The maximum wall time of a run, as a multiple of its time limit. This limit also applies on a busy machine."""
+"""Even on a busy machine, a run is stopped after END_S plus this multiple of its time limit."""
 END_S = 30.0
 """The time limit (s) for creating a cell, and the time limit for ending it."""
 LOOK_S = 0.1

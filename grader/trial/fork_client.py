@@ -99,7 +99,7 @@ def _started(kind: Literal["conductor", "node"], ros: installation.Ros, descript
     module = ("-m", "grader.trial.fork_server", kind, str(descriptor))
     start = interpreter(*module, python=str(ros.python), env=env, searches=True)
     # Without a session of its own, a node could write into the input of the user's terminal. Without the loader, a node
-    # could change an interpreter that belongs to the user, since no read-only mount hides this interpreter.
+    # could change the user's own interpreter through /proc/PID/exe (grader.common.loader).
     return subprocess.Popen(
         loaded(start.argv),
         stdin=subprocess.DEVNULL,

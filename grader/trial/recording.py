@@ -186,7 +186,7 @@ class Recording:
     """The full names of the grader's nodes, such as /turtlesim and /spawner. Every other node in the graph counts as a
     node of the submission."""
     interventions: tuple[str, ...] = ()
-    """The services and actions of the simulator that were called, in order, such as "spawn" or "teleport_absolute".
+    """The calls to services and actions of the simulator by name, in order, such as "spawn" or "teleport_absolute".
     After a maximum number of calls, only names that are not in the tuple yet are added."""
     interventions_dropped: int = 0
     """The number of calls that were not kept because there were too many."""

@@ -37,10 +37,11 @@ class SilentServers:
     def follow(self) -> bool:
         """Create a server for each service that is new in the graph, and return whether any server was created."""
         self._recorder.follow_services()
-        fresh = [offer for offer in self._recorder.offers if offer.service not in self._known]
-        fresh = fresh[: MOST_SERVICES - len(self._known)]
-        self._known |= {offer.service for offer in fresh}
-        served = [self._serve(offer) for offer in fresh]
+        # Several nodes may offer the same service.
+        fresh = {offer.service: offer for offer in self._recorder.offers if offer.service not in self._known}
+        chosen = list(fresh.values())[: MOST_SERVICES - len(self._known)]
+        self._known |= {offer.service for offer in chosen}
+        served = [self._serve(offer) for offer in chosen]
         return any(served)
 
     def _serve(self, offer: Offer) -> bool:

@@ -256,7 +256,7 @@ class Trial:
             message = "The machine was too busy to finish the trial in time. Try again when the machine is less busy."
             return MachineError(message)
         if code == -signal.SIGKILL:
-            return OverwhelmedError("it was still busy long after the end of the trial", hung=True)
+            return OverwhelmedError("it was still busy long after the trial should have ended", hung=True)
         return OverwhelmedError(f"it ended with exit code {code}")
 
 
