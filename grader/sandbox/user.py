@@ -45,7 +45,7 @@ def cell_user() -> Iterator[int | None]:
     Leave the context after the last process in the room or cell has exited.
 
     Raises:
-        MachineError: all ids are in use, or the lock file cannot be opened.
+        MachineError: all ids are in use, or the lock file or its folder cannot be used.
     """
     if os.geteuid() != 0:
         yield None

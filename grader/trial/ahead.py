@@ -52,7 +52,7 @@ class _Started:
 class Ahead:
     """The trials of a submission, as a context manager. On exit, the manager stops every trial that it started.
 
-    Each trial has a name. Up to `at_once` nodes that `run` started run in parallel.
+    Each trial has a name. At most `at_once` of the trials that `run` was called for are running at the same time.
     """
 
     def __init__(self, at_once: int) -> None:

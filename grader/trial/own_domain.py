@@ -19,7 +19,7 @@ def own_domain(stack: ExitStack) -> int:
     """Return a ROS domain that no other call returns to this user on this machine until `stack` is closed.
 
     Raises:
-        MachineError: all domains are in use.
+        MachineError: all domains are in use, or the folder of the lock files cannot be used.
     """
     folder = private_folder(Path(tempfile.gettempdir()), f"ros2-grader-{os.getuid()}")
     # The ports of higher domains are in the range from which Linux assigns ports to any program.
