@@ -15,7 +15,7 @@ import warnings
 from collections import OrderedDict
 from dataclasses import dataclass, replace
 from threading import Lock
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
 from grader.colcon import runner
 from grader.colcon.build_store import build_store, key_of
@@ -33,6 +33,9 @@ if TYPE_CHECKING:
     from grader.colcon.predicted import Predicted
     from grader.ros.installation import Ros
     from grader.submission.package import Submission
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 MOST_BUILDS = 50
 """The maximum number of builds that are kept. The build that has not been used for the longest time is removed
@@ -75,18 +78,17 @@ class SharedBuilds:
             self.runs += 1
             return self._build(package, ros, in_cell=in_cell, tell=tell)
 
-        try:
-            usual = read(without_modules, submission, ros)
-        except UnreadableError:
-            usual = None
+        usual = _read(without_modules, submission, ros)
         if usual is None:
             return build(submission)
         reference, is_earlier = self._reference(usual, ros, build, in_cell=in_cell)
-        built = read(renewed, submission, usual.empty, reference) if reference is not None else None
+        built = _read(with_modules, submission, usual, reference) if reference is not None else None
         if reference is None or built is None:
             return build(submission)
         if is_earlier:
             tell("Using an earlier build: at most the modules differ")
+        elif self._store and in_cell:
+            self._store.put(key_of(usual.empty, ros), reference)
         # The time for testing causes depends on the time that a build with colcon takes.
         return replace(built, build=replace(built.build, seconds=reference.build.seconds))
 
@@ -95,21 +97,16 @@ class SharedBuilds:
     ) -> tuple[runner.Built | None, bool]:
         """Return the build with empty modules, and whether it is an earlier build that is used again.
 
-        The build is None if it failed, if colcon does not install the predicted files, or if the install tree is too
-        large to keep. In this case, nothing can be shared.
+        The build is None if it failed, or if the install tree is too large to keep.
         """
         key = (usual.empty.digest, usual.empty.executable, ros, in_cell)
         with self._lock:
             if key in self._kept:
                 self._kept.move_to_end(key)
                 return self._kept[key], True
-        store, stored_as = (self._store, key_of(usual.empty, ros)) if self._store and in_cell else (None, "")
-        stored = store.get(stored_as) if store else None
+        stored = self._store.get(key_of(usual.empty, ros)) if self._store and in_cell else None
         built = stored or build(usual.empty)
-        confirmed = built.build.exit_code == 0 and len(built.tree) <= MOST_TREE and _installs(built, usual.predicted)
-        if store and confirmed and not stored:
-            store.put(stored_as, built)
-        reference = built if confirmed else None
+        reference = built if built.build.exit_code == 0 and len(built.tree) <= MOST_TREE else None
         with self._lock:
             self._kept[key] = reference
             if len(self._kept) > MOST_BUILDS:
@@ -180,8 +177,19 @@ def _compiles(path: str, data: bytes) -> bool:
     return True
 
 
-def _installs(built: runner.Built, predicted: Predicted) -> bool:
+def with_modules(submission: Submission, usual: Usual, reference: runner.Built) -> runner.Built | None:
+    """Return the build of the usual package with the modules of the submission.
+
+    Return None if colcon did not install the predicted files. In this case, nothing can be shared.
+
+    Call this through `grader.submission.reader.read`.
+    """
+    return renewed(submission, usual.empty, reference) if installs(reference.tree, usual.predicted) else None
+
+
+def _read(function: Callable[P, T | None], *arguments: P.args, **keywords: P.kwargs) -> T | None:
+    """Call the function in a child process. Return None if the function could not read its arguments."""
     try:
-        return read(installs, built.tree, predicted)
+        return read(function, *arguments, **keywords)
     except UnreadableError:
-        return False
+        return None

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rich.table import Table
 from rich.text import Text
 
 from grader.checks.outcome import Outcome, Status
@@ -146,6 +145,8 @@ def _details(console: Console, rows: list[tuple[str, str]]) -> None:
         for label, text in rows:
             _line(console, Text(f"    {label}: {printable(text)}" if label else f"    {printable(text)}"))
         return
+    from rich.table import Table  # takes 6 ms, and a report without details needs no table
+
     table = Table.grid(padding=(0, 1))
     table.add_column(width=3)
     if any(label for label, _ in rows):
