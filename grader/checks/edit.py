@@ -27,7 +27,7 @@ class Edit:
 
 
 def at(where: Where | None, old: str, new: str) -> tuple[Edit, ...]:
-    """Return a tuple with an edit of the line at `where`, or an empty tuple if `where` has no line number."""
+    """Return a tuple with an edit of the line at `where`, or an empty tuple if the line is unknown."""
     return () if where is None or where.line is None else (Edit(where.file, where.line, old, new),)
 
 

@@ -45,7 +45,7 @@ def find_exercise(name: str, course: Path | None = None, *, outline: bool = Fals
 def _nearest(name: str, known: Iterable[str]) -> str | None:
     """Return the id that this name probably means, or None.
 
-    The name may contain a typo or an O in place of a 0, or it may be one word of the id.
+    The name may contain a typo or a letter that looks like a digit (O, I or l), or it may be one word of the id.
     """
     number = name.translate(str.maketrans("OoIl", "0011"))
     same = [each for each in known if name and (name.lower() in each.split("-") or each.startswith(f"{number}-"))]
@@ -63,7 +63,10 @@ def exercise_of_folder(path: Path, course: Path | None = None) -> Exercise | Non
 
 
 def _load(files: Mapping[str, Path], name: str, *, outline: bool = False) -> Exercise:
-    """Return the exercise in the folder `name` of the course. Raises UsageError, also if its id is not this name."""
+    """Return the exercise in the folder `name` of the course.
+
+    Raises UsageError if its exercise.toml has an error, or if its id is not this name.
+    """
     exercise = load_exercise(files[name], outline=outline)
     if exercise.id != name:
         message = f'{files[name]}: the id is "{exercise.id}", but it must be the name of the folder, "{name}".'
@@ -74,8 +77,8 @@ def _load(files: Mapping[str, Path], name: str, *, outline: bool = False) -> Exe
 def load_exercise(path: Path, *, outline: bool = False) -> Exercise:
     """Return the exercise that the file `path` defines. If `path` is a folder, its file exercise.toml is read.
 
-    If `outline` is True, the parameters of the checks are neither read nor examined. The modules of the kinds are
-    then not imported. For step 03, loading takes 2 ms instead of 28 ms.
+    If `outline` is True, the parameters of the checks are neither read nor examined. The module of
+    a kind is then imported only for a check without a title. For step 03, loading takes 2 ms instead of 28 ms.
 
     Raises UsageError, which says why the file cannot be read, or lists every problem in it: the key, its value, and the
     allowed values. Raises OSError if the machine is at fault, for example because of a read error.
@@ -96,7 +99,7 @@ def load_exercise(path: Path, *, outline: bool = False) -> Exercise:
 def title_of(path: Path) -> str:
     """Return the title of the exercise in a file exercise.toml. If possible, parse only the beginning of the file.
 
-    Raises UsageError, which lists every problem in the file.
+    Raises UsageError, which lists every problem in the file, or OSError if the file cannot be read.
     """
     head = path.read_bytes().partition(b"\n[[")[0]
     try:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 BRACES = re.compile(rb"[\"']console_scripts[\"']\s*:\s*\{")
 """Matches console_scripts with a dictionary."""
 JOINED = re.compile(r"=[^=]*:[^=]*=")
-"""Matches an equals sign, a colon and another equals sign, in this order, as in a string with two entry points."""
+"""Matches an equals sign, a colon and another equals sign, in this order, as in a string with several entry points."""
 
 
 def bad_entry_point(point: EntryPoint) -> Finding:
@@ -28,7 +28,7 @@ def bad_entry_point(point: EntryPoint) -> Finding:
     why = Cause("entry-point-format", "Check the entry point character by character: = and : must each appear once.")
     module = point.text.partition("=")[2].partition(":")[0]
     if is_joined(point):
-        text = "This string contains two entry points. Write one string for each, with a comma after it."
+        text = "This string contains more than one entry point. Write one string for each, with a comma after it."
         why = Cause("entry-point-comma", text)
     elif "/" in point.text:
         why = Cause(
@@ -63,5 +63,5 @@ def scripts_in_braces(source: bytes) -> Finding | None:
 
 
 def is_joined(point: EntryPoint) -> bool:
-    """Return whether the string contains two entry points."""
+    """Return whether the string contains more than one entry point."""
     return JOINED.search(point.text) is not None

@@ -30,5 +30,7 @@ def why_setup_cfg_unreadable(data: bytes) -> Cause | None:
     except configparser.ParsingError as error:
         return Cause("setup-cfg", "This line is neither [SECTION] nor NAME=VALUE.", Where(FILE, error.errors[0][0]))
     except (configparser.DuplicateOptionError, configparser.DuplicateSectionError) as error:
-        return Cause("setup-cfg", "No section, and no name in a section, may occur twice.", Where(FILE, error.lineno))
+        return Cause(
+            "setup-cfg", "Each section, and each name in a section, may occur only once.", Where(FILE, error.lineno)
+        )
     return None

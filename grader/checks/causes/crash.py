@@ -43,7 +43,7 @@ MEANINGS = {
     "IndexError": "The sequence, such as a list or a string, has no item with this index.",
     "InvalidNodeNameException": "A node name has only letters, digits and underscores. It does not begin with a digit.",
     "InvalidQoSProfileException": "A QoSProfile needs a depth, which is the size of the queue.",
-    "InvalidTopicNameException": "A topic name may contain only letters, digits, underscores and slashes.",
+    "InvalidTopicNameException": "In a topic name, use only letters, digits, underscores and slashes.",
     "InvalidParameterTypeException": "A parameter has the type of its default value: 2 is an integer, 2.0 is a float.",
     "KeyError": "The dictionary has no such key.",
     "ModuleNotFoundError": "No module with that name is installed. Check the name letter by letter.",
@@ -74,7 +74,7 @@ class Crash:
 
     @property
     def observed(self) -> str:
-        """The exception with its message, such as 'ZeroDivisionError: division by zero'. No full stop ends it."""
+        """The exception with its message, without a final full stop, such as 'ZeroDivisionError: division by zero'."""
         return f"{self.error}: {shorten(self.message.rstrip(' :.'), 90)}" if self.message else self.error
 
     @property

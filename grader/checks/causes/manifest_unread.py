@@ -83,7 +83,7 @@ def _malformed(data: bytes, problem: str, line: int | None) -> Cause:
         cause += f', but line {line} contains "{shorten(more, 30)}".' if more else "."
     elif "mismatched tag" in problem:
         name, line = open_tag(data)
-        cause = f"<{shorten(name, 30)}> on line {line} has no closing tag </{shorten(name, 30)}>."
+        cause = f"<{shorten(name, 30)}> on line {line} has no closing tag </{shorten(name, 30)}> in the right place."
     elif BARE_AMPERSAND.search(text):
         cause = "In XML, & begins the name of a character. Write &amp; for the character & itself."
     return Cause("xml-malformed", cause, Where(FILE, line))

@@ -145,7 +145,7 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
     empty = NO_BODY.search(unreadable.message)
     if empty is not None and (OUTSIDE.match(line) or (unreadable.line or 0) > int(empty["line"]) + 1):
         text = (
-            f"No indented statement follows line {empty['line']}, so this line has no body. "
+            f"Line {empty['line']} has no body: no indented statement follows it. "
             "A comment is not a statement. Write at least the statement pass."
         )
         return Cause("indentation", text, Where(file, int(empty["line"])))

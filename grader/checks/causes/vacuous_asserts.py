@@ -44,7 +44,7 @@ def _is_value(message: ast.expr | None) -> bool:
 
 
 def _or_constant(condition: ast.expr) -> str | None:
-    """Return a sentence about a constant after `or` that makes the condition true, or None."""
+    """Return a sentence about a constant beside `or` that makes the condition true, or None."""
     if isinstance(condition, ast.BoolOp) and isinstance(condition.op, ast.Or):
         for each in condition.values:
             if isinstance(each, ast.Constant) and each.value:
@@ -77,9 +77,10 @@ def _resolved(value: ast.expr, names: Mapping[str, ast.expr]) -> str:
 
 
 def _just_assigned(test: ast.AST, line: int) -> dict[str, ast.expr]:
-    """Return the variables that are assigned before a line, with their values, if no call follows before that line.
+    """Return the variables that are assigned before a line, with their values, if no call is in between.
 
-    After a call, the assigned expression may have another value. Calls in an assert do not count.
+    After a call, the assigned expression may have another value. A call on the line of the assignment also counts, but
+    a call in an assert does not.
     """
     asserts = [node for node in ast.walk(test) if isinstance(node, ast.Assert)]
     harmless = {id(each) for node in asserts for each in ast.walk(node)}

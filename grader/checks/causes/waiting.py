@@ -24,7 +24,7 @@ RESPONSES = ("call", "send_goal", "cancel_goal", "get_result")
 
 For each of them, there is a method with the suffix _async, which does not wait."""
 CREATE = ("create_client", "ActionClient")
-"""Functions that return a client of a service or of an action."""
+"""The method and the class that create a client of a service or of an action."""
 SPINS = ("spin", "spin_once", "spin_until_future_complete")
 SERVERS = ("wait_for_service", "wait_for_server")
 SLEEPS = ("sleep", "sleep_for", "sleep_until")
@@ -134,7 +134,7 @@ def has_threads(evidence: Evidence) -> bool:
 
 
 def waits_in_callback(evidence: Evidence) -> Cause | None:
-    """Return the cause if a callback, or a function that it calls, waits for a response. Otherwise return None."""
+    """Return the cause if a callback, or a function that it calls, waits for a response or spins, else None."""
     return next((wait.cause for wait in waits_in_callbacks(evidence) if wait.deadlock), None)
 
 

@@ -18,6 +18,7 @@ from grader.checks.causes.why_not_set import compared
 from grader.checks.causes.why_other_object import (
     CREATE_OBJECT,
     class_for_object,
+    not_called,
     set_twice,
     subscription_for_publisher,
 )
@@ -112,11 +113,11 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
     if name in ros_names.FIELDS.get(owner, ()):
         return Cause("message-field", f"This is a {owner} of another package, which has other fields.")
     if owner in ros_names.FIELDS:
-        fields = ros_names.FIELDS[owner]
+        fields, package = ros_names.FIELDS[owner], ros_names.MODULE_OF[owner].partition(".")[0]
         guess = nearest(name, fields)
         more = f" Did you mean {guess}?" if guess else ""
         fix = at(scene.crash.where, name, guess) if guess else ()
-        return Cause("message-field", f"A {owner} has {a_list(fields)}.{more}").fixed_by(fix)
+        return Cause("message-field", f"A {owner} of {package} has {a_list(fields)}.{more}").fixed_by(fix)
     if owner in ros_names.OTHERS and name in ros_names.OF_ROS_1:
         return _of_ros_1(name)
     if (owner, name) == ("Subscription", "publish") and (instead := subscription_for_publisher(scene)) is not None:
@@ -173,7 +174,7 @@ def _misspelt(scene: CrashScene, name: str, known: Iterable[str]) -> Cause | Non
 
 
 def _of_own_type(scene: CrashScene, owner: str, name: str) -> Cause:
-    """Return the cause if a class in the student's file, rather than an object of this class, lacks the attribute."""
+    """Return the reason why a class in the student's file lacks the attribute, which perhaps only its objects have."""
     own = scene.class_named(owner)
     assert own is not None
     outside = next((each for each in scene.top_functions() if each.name == name), None)
@@ -199,7 +200,7 @@ def _of_a_wrong_thing(scene: CrashScene, owner: str, name: str) -> Cause | None:
         return Cause("class-for-object", f"{what} {CREATE_OBJECT}", scene.at(made))
     if owner == "NoneType":
         return attribute_of_none(scene, name)
-    return Cause("not-called", "The function is not called: the parentheses after its name are missing.")
+    return not_called(scene, name)
 
 
 def _is_message(value: ast.expr) -> bool:

@@ -107,7 +107,7 @@ def _empty_executor(evidence: Evidence) -> Cause | None:
 
 
 def _second_node(evidence: Evidence) -> Cause | None:
-    """Return the cause if the program creates two nodes with callbacks and spins only one of them, else None."""
+    """Return the cause if the program spins a node, but does not spin another node that has callbacks, else None."""
     classes = {
         node.name: node
         for module in evidence.code.modules

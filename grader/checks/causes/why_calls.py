@@ -1,4 +1,4 @@
-"""Explain why a call in a student's node failed with a TypeError or a similar exception."""
+"""Explain a TypeError in a student's node, such as a call with wrong arguments."""
 
 from __future__ import annotations
 
@@ -88,7 +88,10 @@ def swapped(scene: CrashScene) -> Cause | None:
 
 
 def kind_of(argument: ast.expr, scene: CrashScene) -> str:
-    """Return "string", "number", "method", "class", or an empty string if the source does not show the kind."""
+    """Return "string", "number", "method" or "class", as the source suggests, or an empty string.
+
+    True, False and None count as numbers, and functions as methods.
+    """
     if isinstance(argument, ast.Constant):
         return "string" if isinstance(argument.value, str) else "number"
     name = dotted(argument) or ""
@@ -260,7 +263,7 @@ def _not_callable(scene: CrashScene, kind: str) -> Cause | None:
                 return Cause("name-used-twice", text, scene.at(line))
     made = scene.class_named(kind)
     if made is not None:
-        inside = [each for each in scene.functions("__call__") if each not in methods(made)]
+        inside = [each for each in scene.functions("__call__") if scene.function_around(each) is not None]
         text = f"An object of {kind} can be called only if the class has a method __call__."
         if inside:
             text = "__call__ is indented too far: it is inside another method, so the object cannot be called."
@@ -270,7 +273,9 @@ def _not_callable(scene: CrashScene, kind: str) -> Cause | None:
         for name, place in MAKERS.items():
             for call in (node for node in scene.nodes if isinstance(node, ast.Call)):
                 called = (dotted(call.func) or "").rpartition(".")[2] == name and len(call.args) > place
-                if called and isinstance(call.args[place], ast.Call):
+                given = call.args[place] if called else None
+                made_by = (dotted(given.func) or "") if isinstance(given, ast.Call) else ""
+                if made_by.startswith("self.") or scene.functions(made_by):
                     text = (
                         f"{name} needs the method itself. With () after its name, "
                         f"{name} gets only the return value of the method."

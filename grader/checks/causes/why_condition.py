@@ -60,7 +60,7 @@ def _is_field(side: ast.expr, field: str) -> bool:
 
 
 def _defines(node: ast.AST, field: str) -> bool:
-    """Return whether the code gives an attribute with this name to an object of its own."""
+    """Return whether the code itself defines or sets an attribute with this name."""
     if isinstance(node, ast.Attribute):
         return node.attr == field and isinstance(node.ctx, ast.Store)
     if isinstance(node, ast.ClassDef):
@@ -71,7 +71,10 @@ def _defines(node: ast.AST, field: str) -> bool:
 
 
 def why_from_afar(evidence: Evidence, reach_m: float) -> Cause | None:
-    """Return the cause if the distance is not a square root, or the comparison with the reach is reversed."""
+    """Return the cause if the distance is wrong (no y, no square root), or its comparison with the reach is reversed.
+
+    Return None if the source shows none of these mistakes.
+    """
     squares_are_used = _uses_squares(evidence, reach_m)
     for module, method in methods_of(evidence):
         read = {node.attr for node in ast.walk(method) if isinstance(node, ast.Attribute)}
@@ -122,7 +125,10 @@ def _is_root(node: ast.AST) -> bool:
 
 
 def _is_square(side: ast.expr, module: Module, reach_m: float) -> bool:
-    """Return whether the expression is a square: a power, x * x, a name for one of them, or the square of the reach."""
+    """Return whether the expression is a square: a power, x * x, the square of the reach, or a name for one of them.
+
+    A name that contains "sq" counts, too.
+    """
     value = written(side, module.names)
     product = isinstance(value, ast.BinOp) and (
         isinstance(value.op, ast.Pow)
@@ -172,7 +178,7 @@ def stored_before_refused(evidence: Evidence) -> Cause | None:
 
 
 def _of_other_names(method: ast.AST, store: int, refusal: int) -> bool:
-    """Return whether if statements make these lines belong to different parameters, by comparing their names."""
+    """Return whether these lines are in if statements whose conditions contain the names of different parameters."""
     ifs = [node for node in ast.walk(method) if isinstance(node, ast.If)]
     names = [
         {

@@ -128,7 +128,7 @@ def _why_resized(scene: CrashScene) -> Cause | None:
 
 
 def _why_no_loop(scene: CrashScene) -> Cause | None:
-    """Return the cause if the node uses asyncio in a coroutine that rclpy runs, else None."""
+    """Return the cause if a callback, or a function that it calls, needs the event loop of asyncio, else None."""
     callbacks = functions_in_callbacks(scene.evidence.code.modules)
     if "no running event loop" not in scene.crash.message or scene.function not in [each for _, each in callbacks]:
         return None

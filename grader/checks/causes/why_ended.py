@@ -35,7 +35,10 @@ def why_ended(evidence: Evidence) -> Cause:
         return Cause("spin-once", text, evidence.place("spin_once"))
     for call in code.calls("spin_until_future_complete"):
         if call.argument(3, "timeout_sec") is not None and not code.calls("spin"):
-            text = "With timeout_sec, spin_until_future_complete returns after this time. rclpy.spin runs until Ctrl-C."
+            text = (
+                "With timeout_sec, spin_until_future_complete returns after this time at the latest. rclpy.spin runs "
+                "until Ctrl-C."
+            )
             return Cause("ended-early", text, call.where)
     returned = _returns_before_spin(evidence) or _spins_only_as_script(evidence)
     if returned is not None:

@@ -106,7 +106,7 @@ def why_fit(fit: Fit) -> Cause:
 
 RADIUS_OF_C: tuple[Diagnosis, str] = (
     "radius-without-centre",
-    "The third unknown is c = r² - a² - b², not r². To compute r², add both squares of the centre to c.",
+    "The third unknown is c = r² - a² - b², not r². To compute r², add a² + b² to c.",
 )
 """The diagnosis and text if the centre is right, but the radius was computed from c without the squares of the centre.
 

@@ -41,8 +41,8 @@ def why_interface(scene: CrashScene) -> Cause | None:
         return Cause("arguments-swapped", "A string was passed instead of the type. The type comes before the name.")
     if owner == "Future":
         text = (
-            "This is a future. The method result() of a future returns the response. "
-            f"Look for {shorten(name)} in the response."
+            "This is a future. Its method result() returns what has arrived, such as a response. "
+            f"Look for {shorten(name)} there."
         )
         return Cause("future-for-answer", text)
     inner = next((field for ending, field in WRAPPED.items() if owner.endswith(ending)), None)

@@ -35,8 +35,8 @@ def why_killed(evidence: Evidence, track: Track, service: str) -> Cause:
             continue
         if call.service == KILL and call.request.get("name") == track.turtle:
             text = (
-                f"{KILL} was called for {name}, but {service} had not been. Call {KILL} only in the callback of "
-                f"{service}, with the name in its request."
+                f"{KILL} was called for {name}, but {service} was not called before. Call {KILL} only in the callback "
+                f"of {service}, with the name in its request."
             )
         elif call.service == RESET:
             text = f"{RESET} was called, which removes all turtles except turtle1."
@@ -44,7 +44,7 @@ def why_killed(evidence: Evidence, track: Track, service: str) -> Cause:
 
 
 def _place(evidence: Evidence) -> Where | None:
-    """Return the place where the node creates a request to /kill, or else where it uses a client, or None."""
+    """Return the place where the node creates a request to /kill, or else uses a client, or else its file, or None."""
     return kill_request(evidence) or evidence.place("call_async", "create_client")
 
 
@@ -64,7 +64,7 @@ def _same_name(evidence: Evidence) -> Cause | None:
         theirs = {_name(call) for call in _own_calls(beside)} - {None}
         for call in _own_calls(evidence):
             if beside.node_file != evidence.node_file and _name(call) in theirs:
-                text = f"Both nodes have the name {_name(call)}, so their calls cannot be told apart."
+                text = f"Both nodes have the name {_name(call)}, so it is unknown which node calls a service."
                 return Cause("node-name", text, call.where)
     return None
 

@@ -25,7 +25,7 @@ MISSING = re.compile(r"(?P<function>\w+)\(\) missing \d+ required positional arg
 def why_main(scene: CrashScene) -> Cause | None:
     """Return the cause if the entry point names a class, a coroutine or a function with parameters, else None.
 
-    If the program ended while a thread was spinning the node, return this cause.
+    Also return the cause if the program ended while a thread was spinning the node.
     """
     file, named = _named(scene.evidence)
     if isinstance(named, ast.ClassDef) and scene.crash.error in ("NotInitializedException", "TypeError"):

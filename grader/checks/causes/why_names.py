@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
+from grader.checks.causes.bound_elsewhere import as_parameter, bound_elsewhere, is_global, stores
 from grader.checks.causes.comma_for_dot import comma_for_dot
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
 from grader.checks.causes.imported_otherwise import imported_otherwise
@@ -20,8 +21,6 @@ from grader.checks.edit import Edit, at
 from grader.common.words import nearest, shorten
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from grader.checks.causes.crash_scene import CrashScene
 
 UNBOUND = re.compile(r"local variable '(?P<name>\w+)'")
@@ -59,18 +58,19 @@ def why_no_name(scene: CrashScene) -> Cause | None:
         or _in_other_capitals(scene, name)
         or imported_otherwise(scene, name)
         or _of_import(scene, name)
-        or _bound_elsewhere(scene, name)
+        or bound_elsewhere(scene, name)
         or _alike(scene, name)
         or _unknown(scene, name)
     )
 
 
 def _unknown(scene: CrashScene, name: str) -> Cause:
-    if lines := [line for line, _ in _stores(scene, name)]:
+    if lines := [line for line, _ in stores(scene, name)]:
         return Cause("name-undefined", f"Line {min(lines)} gives {name} a value, but {name} has none here.")
     if name[:1].isupper():
         return Cause("name-undefined", "Nothing defines this name before this line, and nothing imports it.")
-    text = "Nothing defines this name before this line."
+    parameter = as_parameter(scene, name)
+    text = parameter or "Nothing defines this name before this line."
     for function in NEED_THE_NODE:
         if any(
             isinstance(each, ast.Name) and each.id == name
@@ -78,6 +78,8 @@ def _unknown(scene: CrashScene, name: str) -> Cause:
             for each in call.args
         ):
             return Cause("name-undefined", f"{text} {function} needs the node, an object of your class.")
+    if parameter:
+        return Cause("local-name", text)
     uses = sum(isinstance(node, ast.Name) and node.id == name for node in scene.nodes)
     # A name that should have been a string usually occurs only once.
     return Cause("name-undefined", f"{text} A string needs quotation marks." if uses == 1 else text)
@@ -171,7 +173,7 @@ def _in_other_capitals(scene: CrashScene, name: str) -> Cause | None:
         for argument in call.args
     )
     other = name.lower()
-    if not passed or other == name or not any(function is scene.function for _, function in _stores(scene, other)):
+    if not passed or other == name or not any(function is scene.function for _, function in stores(scene, other)):
         return None
     text = f"A similar name exists: {other}. Upper and lower case matter."
     return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, name, other))
@@ -188,34 +190,10 @@ def _star_import(scene: CrashScene, module: str) -> ast.ImportFrom | None:
 
 
 def _import(scene: CrashScene, line: str) -> tuple[Edit, ...]:
-    """Return the edit that inserts an import before the first import of the file."""
+    """Return the edit that inserts an import before the first import of the file, if the file has one."""
     places = [node.lineno for node in scene.nodes if isinstance(node, ast.Import | ast.ImportFrom)]
     where = scene.crash.where
     return (Edit(where.file, min(places), "", line),) if where is not None and places else ()
-
-
-def _bound_elsewhere(scene: CrashScene, name: str) -> Cause | None:
-    """Return the cause if a later line or another function assigns the name, else None."""
-    inside = scene.function
-    for line, function in sorted(_stores(scene, name), key=lambda each: each[0]):
-        if function is None and line > scene.line:
-            return Cause("name-too-early", f"{name} gets its value on line {line}, after this line.")
-        if function is not None and function is not inside:
-            text = (
-                f"{name} is a local variable of {function.name} (line {line}). A local variable does not exist in "
-                "other functions."
-            )
-            return Cause("local-name", text)
-    return None
-
-
-def _stores(scene: CrashScene, name: str) -> Iterator[tuple[int, Function | None]]:
-    """Yield each line that assigns or defines the name, with the function in which the name is local, or None."""
-    for node in scene.nodes:
-        stored = isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Store)
-        defined = isinstance(node, Function | ast.ClassDef) and node.name == name
-        if (stored or defined) and not (defined and scene.class_around(node) is not None):
-            yield getattr(node, "lineno", 0), scene.function_around(node)
 
 
 def _alike(scene: CrashScene, name: str) -> Cause | None:
@@ -264,12 +242,13 @@ def why_unbound(scene: CrashScene) -> Cause:
     if own is not None and name in {each for each, _ in attributes_set(own)}:
         text = f"{name} belongs to the object. Inside a method, write self.{name}."
         return Cause("missing-self", text).fixed_by(at(scene.crash.where, name, f"self.{name}"))
-    stores = list(_stores(scene, name))
-    local = sorted(line for line, function in stores if function is not None and function is scene.function)
+    places = list(stores(scene, name))
+    local = sorted(line for line, function in places if function is not None and function is scene.function)
     if name in _imported(scene) and local:
         text = f"Line {local[0]} gives {name} another value, so in this function {name} is no longer the module."
         return Cause("local-name", text, scene.at(local[0]))
-    other = [(line, each.name) for line, each in stores if each is not None and each is not scene.function]
+    elsewhere = [(line, each) for line, each in places if each is not None and each is not scene.function]
+    other = [(line, each.name) for line, each in elsewhere if not is_global(each, name)]
     if own is not None and other and _only_raised(scene, name):
         line, function = min(other)
         text = (
@@ -277,7 +256,7 @@ def why_unbound(scene: CrashScene) -> Cause:
             f"To keep a value between calls, write self.{name} everywhere."
         )
         return Cause("missing-self", text, scene.at(line))
-    outside = any(function is None for _, function in stores)
+    outside = any(function is None for _, function in places)
     if local and local[0] > scene.line and not outside and not _only_raised(scene, name):
         inner = next((each for each in scene.functions(name) if each.lineno == local[0]), None)
         if own is not None and inner is not None and inner.args.args[:1] and inner.args.args[0].arg == "self":
@@ -285,7 +264,9 @@ def why_unbound(scene: CrashScene) -> Cause:
             return Cause("method-in-method", text, scene.at(inner))
         return Cause("name-too-early", f"{name} gets its value on line {local[0]}, after this line.")
     kept = "Store a value in self if later calls need the value."
-    if outside and own is None:
+    if own is None and not outside:
+        kept = f"Give {name} a value before this line."
+    elif own is None:
         kept = f"To change the variable of the module, the function needs the line global {name}."
     return Cause("local-name", f"A variable that a function assigns to is local to that function. {kept}")
 

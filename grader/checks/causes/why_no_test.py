@@ -29,10 +29,7 @@ def why_no_test(code: TestCode) -> Cause:
                 return Cause("test-function-name", text, Where(module.file, node.lineno))
         misnamed = _misnamed(module.nodes)
         if misnamed is not None:
-            text = (
-                "The names of tests begin with test. "
-                f"pytest ignores {shorten(misnamed.name, 60)}, because its name does not begin with test."
-            )
+            text = f"pytest ignores {shorten(misnamed.name, 60)}, because its name does not begin with test."
             return Cause("test-function-name", text, Where(module.file, misnamed.lineno))
     return Cause("no-test-function", "A test is a function whose name begins with test_.", Where(code.files[0].file))
 

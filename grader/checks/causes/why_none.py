@@ -46,7 +46,7 @@ def _sides(node: ast.AST) -> list[ast.expr]:
 
 
 def _is_none_at_first(scene: CrashScene, name: str) -> bool:
-    """Return whether one line of the program assigns None to this name, and another line assigns another value."""
+    """Return whether one line of the file assigns None to this name, and another line assigns another value."""
     values = [node.value for node in scene.nodes if isinstance(node, ast.Assign) and name in map(dotted, node.targets)]
     none = [isinstance(value, ast.Constant) and value.value is None for value in values]
     return any(none) and not all(none)

@@ -107,7 +107,7 @@ def _axes(node: ast.expr) -> set[str]:
 
 
 def _farthest(evidence: Evidence) -> Cause | None:
-    """Return the cause if the node calls max with a key that it does not negate, and never calls min, else None."""
+    """Return the cause if the node calls max with a key that has no minus sign, and never calls min, else None."""
     chosen = [call for call in evidence.code.calls("max") if (key := call.argument(99, "key")) and not _negates(key)]
     if not chosen or evidence.code.calls("min"):
         return None

@@ -22,7 +22,7 @@ NUMBERS = frozenset({"int", "float", "float64"})
 
 
 def why_operands(scene: CrashScene) -> Cause | None:
-    """Return the cause of a TypeError that an operator raised, or None for any other TypeError."""
+    """Return the cause of a TypeError about an operator whose two operands do not fit together, else None."""
     if CARET.search(scene.crash.message):
         return Cause("caret-for-power", "In Python, ^ is not a power. Write x**2 for the square of x.")
     found = OPERANDS.search(scene.crash.message) or CONCATENATED.search(scene.crash.message)
@@ -39,7 +39,7 @@ def why_operands(scene: CrashScene) -> Cause | None:
         text = "A list is not an array: Python cannot compute with a whole list. `np.array` turns a list into an array."
         return Cause("list-for-array", text)
     if "property" in types:
-        text = "A class is used in place of a message: its fields have no values. Compare upper and lower case."
+        text = "A class is used in place of a message: its fields have no values. Check upper and lower case in names."
         return Cause("class-for-object", text)
     if "ParameterValue" in types:
         text = "get_parameter_value returns a ParameterValue, which is a message. The field double_value has the float."

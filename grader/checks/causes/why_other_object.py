@@ -6,6 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.crash_scene import attributes_set, methods
 from grader.checks.edit import at
 from grader.common.words import a_list, shorten
 from grader.submission.constants import dotted
@@ -96,6 +97,24 @@ def subscription_for_publisher(scene: CrashScene) -> Cause | None:
         return None
     text = "A subscription only receives messages. Use create_publisher to send messages."
     return Cause("subscription-instead", text, calls("create_subscription")[0].where)
+
+
+def not_called(scene: CrashScene, name: str) -> Cause:
+    """Return the reason why a function or a method lacks the attribute `name`.
+
+    The function may not be called, or a method may have the same name as an attribute that is not assigned yet.
+    """
+    holders = {dotted(node.value) for node in scene.on_line if isinstance(node, ast.Attribute) and node.attr == name}
+    for own in scene.classes:
+        names = [each.name for each in methods(own)]
+        for attribute, line in attributes_set(own):
+            if attribute in names and f"self.{attribute}" in holders:
+                text = (
+                    f"self.{attribute} is still the method {attribute}: line {line}, which assigns self.{attribute}, "
+                    "has not run yet. Use two names."
+                )
+                return Cause("name-used-twice", text, scene.at(line))
+    return Cause("not-called", "The function is not called: the parentheses after its name are missing.")
 
 
 def set_twice(scene: CrashScene, name: str, text: str) -> Cause:

@@ -48,7 +48,7 @@ class Call:
         return Cause("arguments-swapped", text, Where(self.module.file, self.line))
 
     def passed(self, node: ast.expr) -> ast.expr | None:
-        """Return the expression that the call passes for this parameter, or None if `node` is not a parameter."""
+        """Return the expression that the call passes for this parameter, or None if it passes none."""
         given = self.arguments.get(node.id) if isinstance(node, ast.Name) else None
         return written(given, self.module.names)
 

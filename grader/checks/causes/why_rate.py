@@ -120,11 +120,11 @@ def why_sleep_in_callback(evidence: Evidence) -> Cause | None:
 
 
 def why_rate_in_callback(evidence: Evidence) -> Cause | None:
-    """Return the cause if the node sleeps with a Rate in a callback, or while nothing spins the node, else None."""
+    """Return the cause if a node with one thread sleeps with a Rate, in a callback or elsewhere, else None."""
     if not evidence.code.calls("create_rate"):
         return None
     found = _made_in_callback(evidence, "sleep")
-    if found is None:
+    if has_threads(evidence) or found is None or found[1] not in [sleep.where for sleep in _sleeps_of_rates(evidence)]:
         return _rate_without_spin(evidence)
     text = (
         "The method sleep of a Rate returns only after rclpy.spin has called the timer of the Rate, "
@@ -137,14 +137,20 @@ def _rate_without_spin(evidence: Evidence) -> Cause | None:
     """Return the cause if the node sleeps with a Rate, but no other thread can spin the node, else None."""
     if has_threads(evidence):
         return None
-    for sleep in evidence.code.calls("sleep"):
-        if dotted(sleep.node.func) not in (None, "sleep", "time.sleep"):
-            text = (
-                "The method sleep of a Rate returns only while another thread spins the node, and this program has no "
-                "other thread. A timer does not need an additional thread."
-            )
-            return Cause("no-spin", text, sleep.where)
+    for sleep in _sleeps_of_rates(evidence):
+        text = (
+            "The method sleep of a Rate returns only while another thread spins the node, and this program has no "
+            "other thread. A timer does not need an additional thread."
+        )
+        return Cause("no-spin", text, sleep.where)
     return None
+
+
+def _sleeps_of_rates(evidence: Evidence) -> list[Call]:
+    """Return the calls to a method named sleep, except the function sleep of the module time."""
+    return [
+        call for call in evidence.code.calls("sleep") if dotted(call.node.func) not in (None, "sleep", "time.sleep")
+    ]
 
 
 def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:

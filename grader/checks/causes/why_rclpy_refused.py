@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
 GROUP_OF_TIMER = 2
-"""The position (from 0) of the callback group in a call to create_timer. Elsewhere, it can only be given by name."""
+"""The position (from 0) of the callback group in a call to create_timer. create_subscription, for example, takes
+the callback group only by name."""
 GROUPS = ("MutuallyExclusiveCallbackGroup", "ReentrantCallbackGroup")
 NOT_A_GROUP = re.compile(r"has no attribute '(?:handle|add_entity|can_execute)'|CallbackGroup\.add_entity\(\) missing")
 KEYWORD = re.compile(r"got an unexpected keyword argument '(?P<name>\w+)'")

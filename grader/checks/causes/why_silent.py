@@ -64,7 +64,7 @@ def _no_spin(evidence: Evidence) -> Cause | None:
         return None
     rates = evidence.code.calls("create_rate")
     if rates and evidence.code.calls("sleep") and not evidence.code.calls("create_timer"):
-        text = "The method sleep of a rate waits for ever, because nothing spins the node. Use a timer and rclpy.spin."
+        text = "The method sleep of a Rate waits forever, because nothing spins the node. Use a timer and rclpy.spin."
         return Cause("no-spin", text, rates[0].where)
     return Cause("no-spin", "Without rclpy.spin, no timer callback is ever called.", evidence.code.start)
 
@@ -74,8 +74,7 @@ def _nothing_to_spin(evidence: Evidence) -> Cause | None:
     if any(evidence.code.calls(name) for name in WAKES):
         return None
     for call in evidence.code.calls("spin_once"):
-        # In rclpy.spin_once, the timeout is the third argument. In Executor.spin_once, the timeout is the first
-        # argument.
+        # In rclpy.spin_once, the timeout follows the node and the executor. In Executor.spin_once, it comes first.
         of_rclpy = dotted(call.node.func) in ("rclpy.spin_once", "spin_once")
         limit = call.argument(2 if of_rclpy else 0, "timeout_sec")
         if limit is None or (isinstance(limit, ast.Constant) and limit.value is None):
@@ -106,7 +105,7 @@ def _stuck(evidence: Evidence) -> Cause | None:
 
 
 def _waits(evidence: Evidence, node: ast.AST, module: Module) -> Cause | None:
-    """Return the cause if the node waits forever for a service that no node of the trial has, else None."""
+    """Return the cause if this call creates a client of a service that no node has, and the file waits for one."""
     waits = any(isinstance(each, ast.Attribute) and each.attr == "wait_for_service" for each in module.nodes)
     return not_there(evidence, node, module) if waits else None
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
 
 LARGEST_RAD = 6.5
-"""No angle that a program compares with theta is larger than this (rad): theta is between -pi and pi."""
+"""A program has no reason to compare theta with a larger number (rad): theta is between -pi and pi."""
 COORDINATES = ("x", "y")
 GOALS = ("goal", "target")
 """Parts of the names that programs give to a goal."""
@@ -75,7 +75,7 @@ def _degrees(evidence: Evidence) -> Cause | None:
         if any((dotted(side) or "").endswith(".theta") for side in sides):
             values = [value for side in sides if (value := assigned.number(side, module)) is not None]
             if any(abs(value) > LARGEST_RAD for value in values):
-                text = "theta is in radians, between -pi and pi, so it never reaches this value. Is it in degrees?"
+                text = "theta is in radians, from -pi to pi, so it never reaches this value, which may be in degrees."
                 return Cause("degrees", text, Where(module.file, getattr(node, "lineno", None)))
     return None
 
@@ -90,7 +90,7 @@ def _sets_theta(evidence: Evidence) -> bool:
 
 
 class _Assigned:
-    """What the code assigns to its variables and attributes. Those with the same last name count as one."""
+    """What the code assigns to its variables and attributes. Names such as goal and self.goal count as one."""
 
     def __init__(self, evidence: Evidence) -> None:
         self.stores: Counter[str] = Counter()
@@ -191,7 +191,7 @@ def _is_coordinate(side: ast.expr) -> bool:
 
 
 def _is_goal(side: ast.expr, module: Module) -> bool:
-    """Return whether the expression is a coordinate of a goal: a constant inside the field, or named as a goal."""
+    """Return whether the expression is the coordinate of a goal: a positive constant, or named after a goal."""
     value = number(side, module.names)
     return value > 0.0 if value is not None else any(word in ast.unparse(side).lower() for word in GOALS)
 

@@ -90,7 +90,7 @@ def _too_early(evidence: Evidence) -> Cause | None:
 
 
 def _called_from(name: str, functions: dict[str, list[ast.FunctionDef]]) -> set[str]:
-    """Return the names that this function calls, and that those of its callees call which are in `functions`.
+    """Return the names of everything that this function calls, directly or through other functions in `functions`.
 
     A method has two names: send and self.send.
     """

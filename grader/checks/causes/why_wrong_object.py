@@ -37,7 +37,7 @@ def why_wrong_object(scene: CrashScene) -> Cause | None:
 
 
 def _called_callback(scene: CrashScene) -> Cause | None:
-    """Return the cause if the method that crashed was called in the argument of a call that takes a callback."""
+    """Return the cause if the method that crashed was called where it should be passed as a callback, else None."""
     name = scene.function.name if scene.function is not None else ""
     lines = {where.line for where in scene.crash.callers if where.file == getattr(scene.module, "file", None)}
     for node in scene.nodes:

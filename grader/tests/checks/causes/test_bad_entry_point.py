@@ -43,7 +43,7 @@ GENERAL = "Check the entry point character by character: = and : must each appea
         (
             "draw_circle = a.b:mainother = a.c:main",
             "entry-point-comma",
-            "This string contains two entry points. Write one string for each, with a comma after it.",
+            "This string contains more than one entry point. Write one string for each, with a comma after it.",
         ),
     ],
 )

@@ -19,10 +19,14 @@ RIGHT = "[develop]\nscript_dir=$base/lib/p\n[install]\ninstall_scripts=$base/lib
         (f"{RIGHT}install_lib\n".encode(), "This line is neither [SECTION] nor NAME=VALUE.", "setup.cfg:5"),
         (
             f"{RIGHT}install_scripts=x\n".encode(),
-            "No section, and no name in a section, may occur twice.",
+            "Each section, and each name in a section, may occur only once.",
             "setup.cfg:5",
         ),
-        (f"{RIGHT}[develop]\n".encode(), "No section, and no name in a section, may occur twice.", "setup.cfg:5"),
+        (
+            f"{RIGHT}[develop]\n".encode(),
+            "Each section, and each name in a section, may occur only once.",
+            "setup.cfg:5",
+        ),
     ],
 )
 def test_the_line_and_the_reason(data: bytes, cause: str, where: str) -> None:

@@ -100,7 +100,7 @@ THIRD = "TypeError: {} element in m at index 0 in parameters list is not a Param
             "a = step - Pose.x",
             "a = step - Pose.x",
             (PROPERTY.format("property"), PROPERTY.format("complex")),
-            "A class is used in place of a message: its fields have no values. Compare upper and lower case.",
+            "A class is used in place of a message: its fields have no values. Check upper and lower case in names.",
         ),
         (
             "raise ValueError('too fast')",

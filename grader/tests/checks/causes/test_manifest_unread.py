@@ -53,7 +53,7 @@ def test_a_repeated_depend_is_enough_once() -> None:
             xml("</depend>\n  <depend>turtle", "</depends>\n  <depend>turtle"),
             "xml-malformed",
             "package.xml:9",
-            "<depend> on line 9 has no closing tag </depend>.",
+            "<depend> on line 9 has no closing tag </depend> in the right place.",
         ),
         (
             xml("MIT", "M & T"),

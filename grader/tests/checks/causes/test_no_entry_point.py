@@ -55,7 +55,7 @@ def setup_py(instead: str, more: str = "") -> Files:
             setup_py('            "a = b.c:main" "draw_circle = my_robot_controller.draw_circle:main",\n'),
             "entry-point-comma",
             "setup.py:14",
-            "This string contains two entry points. Write one string for each, with a comma after it.",
+            "This string contains more than one entry point. Write one string for each, with a comma after it.",
         ),
         (
             setup_py(f"            # {POINT.strip()}\n"),

@@ -154,7 +154,7 @@ def test_what_another_line_causes_is_explained_there() -> None:
     data = b"def send():\nx = 1\n"
     empty = "expected an indented block after function definition on line 1"
     found = unreadable_finding("a.py", Unreadable(empty, 2), b"def send():\ndef other():\n")
-    assert (str(found.where), "so this line has no body" in found.cause) == ("a.py:1", True)
+    assert (str(found.where), "Line 1 has no body: no indented" in found.cause) == ("a.py:1", True)
     assert "has no body" not in unreadable_finding("a.py", Unreadable(empty, 2), data).cause
     other = "closing parenthesis ']' does not match opening parenthesis '(' on line 1"
     found = unreadable_finding("a.py", Unreadable(other, 2), b"f(1,\n]\n")

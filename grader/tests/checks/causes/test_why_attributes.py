@@ -45,9 +45,9 @@ from grader.tests.checks.crashes import DRIVER, reported, to_look_at
         (
             "'Twist' object has no attribute 'liner'",
             "message-field",
-            "A Twist has linear and angular. Did you mean linear?",
+            "A Twist of geometry_msgs has linear and angular. Did you mean linear?",
         ),
-        ("'Twist' object has no attribute 'speed'", "message-field", "A Twist has linear and angular."),
+        ("'Twist' object has no attribute 'speed'", "message-field", "A Twist of geometry_msgs has linear"),
         ("'Publisher' object has no attribute 'publsh'", "attribute-misspelt", "A similar name exists: publish."),
         (
             "'Publisher' object has no attribute 'send'",

@@ -239,6 +239,7 @@ def test_a_value_that_hides_a_method_is_found() -> None:
         ('self.create_service(Spawn, "/spawn", self.take())', "NoneType", "callback-called"),
         ("self.node.create_timer(0.5, self.send())", "NoneType", "callback-called"),
         ("self.create_timer(0.5, self.send())", "int", "not-callable"),
+        ("self.create_timer(0.5, partial(self.send, 1))", "NoneType", "not-callable"),
         ("self.create_timer(0.5, self.send)", "NoneType", "not-callable"),
         ("self.create_timer(0.5)", "NoneType", "not-callable"),
         ("make()(0.5, self.send())", "NoneType", "not-callable"),

@@ -39,7 +39,7 @@ RULES = {
     "topic name must not contain repeated '/'": "A topic name must not have two slashes in a row.",
     "topic name token must not start with a number": "No part of a topic name may begin with a digit.",
     "topic name must not be empty": "A topic name must not be empty.",
-    "topic name must not contain characters other than": "A topic name may contain only letters",
+    "topic name must not contain characters other than": "use only letters, digits, underscores and slashes",
 }
 
 

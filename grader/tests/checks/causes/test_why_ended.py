@@ -58,7 +58,7 @@ def ended(source: str, t_s: float = 3.0) -> tuple[str, str, int | None]:
         (
             "rclpy.spin_until_future_complete(Driver(), done, timeout_sec=3.0)  # look",
             "ended-early",
-            "With timeout_sec, spin_until_future_complete returns after this time. rclpy.spin runs until",
+            "With timeout_sec, spin_until_future_complete returns after this time at the latest. rclpy.spin runs",
         ),
         ("rclpy.spin_until_future_complete(Driver(), done)", "ended-early", ""),
         ("rclpy.spin_once(Driver())  # look", "spin-once", "rclpy.spin_once handles one event"),

@@ -33,7 +33,7 @@ SENTENCES = (
     "You get this result if the right side of the equations is x + y instead of x² + y².",
     "This is the square of the radius. The equation of the circle contains r squared.",
     "This is the diameter, twice the radius.",
-    "The third unknown is c = r² - a² - b², not r². To compute r², add both squares of the centre to c.",
+    "The third unknown is c = r² - a² - b², not r². To compute r², add a² + b² to c.",
     "A radius that is computed only from the outermost points contains all the noise of these points.",
     "The centre is twice as far away as it should be: the equation contains 2·x·a and 2·y·b.",
     "The centre has the wrong sign. Check on which side of the equation each term is.",

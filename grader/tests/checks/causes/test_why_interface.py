@@ -29,7 +29,7 @@ SERVICE = "RuntimeError: The service type provided is not valid (<class 'turtles
             "print(future.name)",
             TYPE.format("'Future' object", "name"),
             TYPE.format("'Spawn_Response' object", "name"),
-            "This is a future. The method result() of a future returns the response. Look for name in the response.",
+            "This is a future. Its method result() returns what has arrived, such as a response. Look for name there.",
         ),
     ],
 )

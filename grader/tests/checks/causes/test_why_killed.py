@@ -16,8 +16,8 @@ from grader.trial.observed import Call, Track
 
 FAR = Track("far", ((0.0, 9.0, 5.5, 0.0),), 5.0)
 KILLED = (
-    "/kill was called for far, but /catch had not been. Call /kill only in the callback of /catch, with the name in "
-    "its request."
+    "/kill was called for far, but /catch was not called before. Call /kill only in the callback of /catch, with the "
+    "name in its request."
 )
 ONLY = "Remove a target only in the callback of /catch."
 
@@ -72,5 +72,5 @@ def test_two_nodes_of_one_name_are_told(spawner: str | None, catcher: str, *, to
     runs = {"referee": Run(recording=recording([], calls=(kill(4.9, "far"),)))}
     given = Evidence(find_exercise("13-catch-them-all"), package, runs=runs).from_trial("referee")
     found = why_killed(given, FAR, "/catch")
-    assert ("Both nodes have the name catcher, so their calls cannot be told apart." in found.text) == told
+    assert ("Both nodes have the name catcher, so it is unknown which node calls a service." in found.text) == told
     assert (found.diagnosis == "node-name") == told

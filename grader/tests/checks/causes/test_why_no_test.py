@@ -44,7 +44,7 @@ INIT = "    def __init__(self):\n        pass\n"
             "test/test_guard.py",
             CHECK,
             f"{CHECK}check_it(1)\n",
-            "The names of tests begin with test. pytest ignores check_it, because its name does not begin with test.",
+            "pytest ignores check_it, because its name does not begin with test.",
         ),
         ("test/test_guard.py", "x = 1\n", CHECK, "A test is a function whose name begins with test_."),
     ],

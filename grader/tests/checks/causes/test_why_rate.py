@@ -182,3 +182,18 @@ def test_a_rate_that_nothing_spins_is_told(made: str, last: str, *, found: bool)
     words = "The method sleep of a Rate returns only while another thread spins the node, and this program has no other"
     assert cause is None or cause.text.startswith(words)
     assert cause is None or (cause.where and cause.where.line) == line_with(LOOK, source)
+
+
+@pytest.mark.parametrize(
+    ("made", "sent", "found"),
+    [
+        ("self.rate = self.create_rate(1)", "self.rate.sleep()", True),
+        ("self.rate = self.create_rate(1); MultiThreadedExecutor()", "self.rate.sleep()", False),
+        ("self.rate = self.create_rate(1)", "time.sleep(1)", False),
+    ],
+)
+def test_a_rate_in_a_callback_is_told_only_for_one_thread(made: str, sent: str, *, found: bool) -> None:
+    source = NODE.format(made=f"{made}; self.create_timer(0.5, self.send)", at_send="", sent=sent)
+    cause = why_rate_in_callback(evidence(recording([]), submission({NODE_FILE: source})))
+    assert (cause is not None) == found
+    assert cause is None or "but rclpy.spin waits for this callback." in cause.text

@@ -272,7 +272,7 @@ def test_a_lambda_that_calls_something_is_not_blamed(body: str) -> None:
 @pytest.mark.parametrize(
     ("made", "words", "line"),
     [
-        ("rate = self.create_rate(2); rate.sleep()", "The method sleep of a rate waits for ever, because nothing", 5),
+        ("rate = self.create_rate(2); rate.sleep()", "The method sleep of a Rate waits forever, because nothing", 5),
         ("self.create_timer(0.5, self.send)", "Without rclpy.spin, no timer callback is ever called.", None),
         ("time.sleep(0.5)", "Without rclpy.spin, no timer callback is ever called.", None),
     ],

@@ -21,7 +21,7 @@ class Driver(Node):
 rclpy.spin(Driver())
 """
 LOOP = "This loop is in a callback. While it runs, a node with one thread receives no new pose."
-THETA = "theta is in radians, between -pi and pi, so it never reaches this value. Is it in degrees?"
+THETA = "theta is in radians, from -pi to pi, so it never reaches this value, which may be in degrees."
 SIDEWAYS = "linear.x and linear.y are speeds forwards and to the left of the turtle, not along x and y"
 EXACT = "but the turtle hardly ever has exactly this coordinate. Compare the distance to the goal with a small"
 SPEED = "linear_velocity is a speed, and it is negative when the turtle drives backwards. Add the distance"
