@@ -27,7 +27,7 @@ def find_exercise(name: str, course: Path | None = None, *, outline: bool = Fals
     Raises UsageError if no exercise or more than one exercise matches, or if its exercise.toml has an error.
     """
     files = catalogue(course)
-    name = f"{int(name):02}" if name.isascii() and name.isdigit() else name
+    name = name.lstrip("0").zfill(2) if name.isascii() and name.isdigit() else name
     begin = [each for each in files if name and each.startswith(name)]
     if name in files:
         return _load(files, name, outline=outline)
@@ -104,12 +104,12 @@ def title_of(path: Path) -> str:
     head = path.read_bytes().partition(b"\n[[")[0]
     try:
         return str(read_toml(head, str(path))["exercise"]["title"])
-    except (UsageError, KeyError):
+    except (UsageError, KeyError, TypeError):  # TypeError: exercise is not a table
         return load_exercise(path).title
 
 
 def exercise_from(sources: Sources) -> Exercise:
-    """Return an exercise of the course together with an instructor's private checks.
+    """Return an exercise of the course with the private checks of an instructor, if there are any.
 
     Raises UsageError, which lists every problem in the files.
     """

@@ -143,7 +143,7 @@ OTHERS = {
     "Timer": ("cancel", "reset"),
     "RcutilsLogger": ("debug", "info", "warning", "warn", "error", "fatal"),
 }
-"""Maps other classes, such as the class of a logger, to their methods."""
+"""Maps other classes, such as the class of a logger, to the methods that beginners use."""
 
 CONSTANTS = {
     "GoalStatus": (
@@ -166,7 +166,7 @@ CONSTANTS = {
         "PARAMETER_STRING",
     ),
 }
-"""Maps a class to its constants, which are attributes of the class itself, so no object is needed."""
+"""Maps a class to the constants that beginners use. They are attributes of the class itself, so no object is needed."""
 
 SERVICES = (
     "/spawn",

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from grader.submission.code import Unreadable
 
 NOT_UTF8 = r"codec can't decode|unicode error|[Nn]on-UTF-8|encoding"
-"""Matches Python's messages about a file that is not valid UTF-8, and about a wrong escape sequence in a string."""
+"""Matches Python's messages about the encoding of a file, and about a wrong escape sequence in a string."""
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 """The byte order marks at the beginning of a UTF-16 file. Python's message about such a file mentions null bytes."""
 EXPECTED = "The file is valid Python."

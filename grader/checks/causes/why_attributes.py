@@ -158,7 +158,7 @@ def _of_module(scene: CrashScene, module: str, name: str) -> Cause | None:
 
 
 def _of_ros_1(name: str) -> Cause:
-    return Cause("name-of-ros-1", f"{name} belongs to rospy, the library of ROS 1. {ros_names.OF_ROS_1[name]}")
+    return Cause("name-of-ros-1", f"{name} belongs to rospy, the Python library of ROS 1. {ros_names.OF_ROS_1[name]}")
 
 
 def _misspelt(scene: CrashScene, name: str, known: Iterable[str]) -> Cause | None:

@@ -51,7 +51,7 @@ def why_ended(evidence: Evidence) -> Cause:
 
 
 def spins_in_a_thread(evidence: Evidence) -> Cause | None:
-    """Return the cause if only another thread calls rclpy.spin, and main does not wait for that thread, else None."""
+    """Return the cause if only another thread spins the node, and main does not wait for that thread, else None."""
     code = evidence.code
     if code.calls("join") or any(code.calls(name) for name in SPINS) or loops(evidence):
         return None
@@ -59,15 +59,15 @@ def spins_in_a_thread(evidence: Evidence) -> Cause | None:
         target = call.argument(1, "target")
         if target is not None and (dotted(target) or "").rpartition(".")[2] in SPINS:
             text = (
-                "rclpy.spin runs in this thread. The main thread does not wait for it, so the program goes on to the "
-                "lines that end it. Call rclpy.spin in main, without a thread."
+                f"{dotted(target)} runs in this thread. The main thread does not wait for it, so the program goes on "
+                "to the lines that end it. Call rclpy.spin in main, without a thread."
             )
             return Cause("ends-at-once", text, call.where)
     return None
 
 
 def _returns_before_spin(evidence: Evidence) -> Cause | None:
-    """Return the cause if a function returns unconditionally before it calls rclpy.spin, else None."""
+    """Return the cause if a function returns unconditionally before it calls a function named spin, else None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if not isinstance(node, ast.FunctionDef):
@@ -75,21 +75,21 @@ def _returns_before_spin(evidence: Evidence) -> Cause | None:
             lines = [each.lineno for each in node.body if isinstance(each, ast.Return)]
             spins = [each.lineno for each in ast.walk(node) if isinstance(each, ast.Call) and _is_spin(each)]
             if lines and spins and min(lines) < min(spins):
-                text = f"{node.name} returns here, before it calls rclpy.spin."
+                text = f"{node.name} returns here, before it spins the node."
                 return Cause("ends-at-once", text, Where(module.file, min(lines)))
     return None
 
 
 def _spins_only_as_script(evidence: Evidence) -> Cause | None:
-    """Return the cause if all calls to rclpy.spin are in the block of `if __name__ == "__main__"`, else None."""
+    """Return the cause if all calls to spin are in the block of `if __name__ == "__main__"`, else None."""
     spins = evidence.code.calls("spin") if evidence.entry_point() is not None else []
     for module in evidence.code.modules:
         for node in module.body:
             below = list(ast.walk(node)) if isinstance(node, ast.If) and "__name__" in ast.unparse(node.test) else []
             if spins and all(call.node in below for call in spins):
                 text = (
-                    "rclpy.spin is called only in this block, which does not run: ros2 run calls the function of the "
-                    "entry point."
+                    "The node is spun only in this block, which does not run: ros2 run calls the function of the entry "
+                    "point."
                 )
                 return Cause("ends-at-once", text, Where(module.file, node.lineno))
     return None

@@ -70,7 +70,7 @@ def uses_extremes(code: Code) -> bool:
 
 
 def why_noisy(evidence: Evidence, fit: Fit) -> Cause | None:
-    """Return the cause if another call, whose points have no noise, returned the right circle, else None."""
+    """Return the cause if the points have noise, and a call with exact points returned the right circle, else None."""
     for points in evidence.trial.calls.points if fit.arc.noise_m else ():
         arc = points.arc
         if arc is None or arc.noise_m:
@@ -78,8 +78,8 @@ def why_noisy(evidence: Evidence, fit: Fit) -> Cause | None:
         values = next((each.values for each in evidence.run.called or () if each.id == points.id), None)
         if values is not None and len(values) == 3 and Fit(arc, (values[0], values[1], values[2]), EXACT_M).right:
             text = (
-                "The circle of exact points is right, but these points have noise, or are only an arc. Use all points, "
-                "and use a method that finds the best circle for any arc, such as lstsq."
+                "The circle of exact points is right, but these points have noise. Use all points, and use a method "
+                "that finds the best circle for any arc, such as lstsq."
             )
             return Cause("wrong-fit", text)
     return None

@@ -28,7 +28,7 @@ NO_NAME = re.compile(r"cannot import name '(?P<name>\w+)' from '(?P<module>[\w.]
 
 
 def why_no_import(scene: CrashScene) -> Cause | None:
-    """Return the cause if a module, or a name in a module, is missing, else None."""
+    """Return the cause if a module or a name in a module is missing, or if modules import each other, else None."""
     text = scene.crash.message
     module, name = NO_MODULE.search(text), NO_NAME.search(text)
     if module is not None:

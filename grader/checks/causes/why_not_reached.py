@@ -30,8 +30,8 @@ ASIDE_RAD = 0.3
 """A target within this angle (rad) is considered straight ahead or straight behind, so a turn in either direction is
 right."""
 MOST = 0.8
-"""Of the commands that turn turtle1, at least this fraction must turn it away from the target or find it facing away.
-Otherwise, the node is considered to turn in the right direction."""
+"""The node is considered to turn in the wrong direction if at least this fraction of its commands to turn do one of two
+things: they turn turtle1 away from the target, or they arrive while turtle1 faces away from it."""
 FEWEST, FEWEST_AWAY = 10, 3
 """The minimum number of turns, and of turns away from the target, that are needed for a conclusion."""
 

@@ -45,8 +45,10 @@ def radius_of_commands(evidence: Evidence) -> str:
         return ""
     if not speed[1]:
         return "angular.z is 0, so the turtle drives in a straight line."
-    radius = abs(speed[0] / speed[1])
-    return f"The radius is linear.x divided by angular.z: {shown(speed[0])} / {shown(speed[1])} = {shown(radius)} m."
+    ratio = speed[0] / speed[1]
+    linear, angular = (shown(abs(value) if ratio < 0.0 else value) for value in speed)
+    signs = ", without their signs" if ratio < 0.0 else ""
+    return f"The radius is linear.x divided by angular.z{signs}: {linear} / {angular} = {shown(abs(ratio))} m."
 
 
 def why_radius(evidence: Evidence) -> str:

@@ -1,4 +1,4 @@
-"""Explain why messages or log lines arrive too often, for example because of a loop without a pause.
+"""Explain why messages or log lines arrive too often, too rarely or too late, for example because a callback sleeps.
 
 grader.checks.causes.why_period explains wrong periods of timers.
 """
@@ -115,7 +115,7 @@ def why_sleep_in_callback(evidence: Evidence) -> Cause | None:
     found = _made_in_callback(evidence, "sleep")
     if found is None or not any(call.where == found[1] and _length(call) for call in evidence.code.calls("sleep")):
         return None
-    text = "While a method sleeps, a node with one thread does nothing else, and its timer waits."
+    text = "While a method sleeps, a node with one thread does nothing else."
     return Cause("sleep-in-callback", text, found[1])
 
 

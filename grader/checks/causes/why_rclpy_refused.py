@@ -22,7 +22,7 @@ GROUPS = ("MutuallyExclusiveCallbackGroup", "ReentrantCallbackGroup")
 NOT_A_GROUP = re.compile(r"has no attribute '(?:handle|add_entity|can_execute)'|CallbackGroup\.add_entity\(\) missing")
 KEYWORD = re.compile(r"got an unexpected keyword argument '(?P<name>\w+)'")
 OF_ACTIONLIB = (
-    "done_cb, active_cb and feedback_cb belong to actionlib, the library of ROS 1. In ROS 2, send_goal_async has the "
+    "done_cb, active_cb and feedback_cb belong to actionlib, a library of ROS 1. In ROS 2, send_goal_async has the "
     "argument feedback_callback, and add_done_callback takes the method that gets the goal handle."
 )
 KEYWORDS = {"done_cb": OF_ACTIONLIB, "active_cb": OF_ACTIONLIB, "feedback_cb": OF_ACTIONLIB}

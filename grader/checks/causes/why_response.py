@@ -23,7 +23,7 @@ OF_A_RESPONSE = re.compile(r"'\w+_Response' object has no attribute")
 
 
 def why_response(scene: CrashScene) -> Cause | None:
-    """Return the cause if a service callback does not return its response or mixes up its parameters, else None."""
+    """Return the cause if a service callback does not return its response or has swapped parameters, else None."""
     servers = {name for _, name in callbacks_of(scene.evidence, "create_service")}
     # rclpy raises a TypeError without a message if a callback returns anything but a response, or if a client sends
     # anything but a request.

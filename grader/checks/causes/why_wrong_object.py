@@ -132,7 +132,7 @@ def _braces(scene: CrashScene) -> Cause | None:
 
 
 def _reader(scene: CrashScene) -> Cause | None:
-    """Return the cause if AnyReader got a string, or was used after its with block, else None."""
+    """Return the cause if AnyReader got a string, or is not open on the line of the crash, else None."""
     if scene.crash.error == "AnyReaderError" and "not open" in scene.crash.message:
         around = scene.nodes if scene.function is None else ast.walk(scene.function)
         blocks = [node for node in around if isinstance(node, ast.With)]

@@ -24,6 +24,7 @@ def test_an_exercise_is_found_by_its_id_or_its_beginning() -> None:
         ("O1", "there is no exercise 'O1'. Did you mean 01-first-node? The exercises are"),
         ("first", "Did you mean 01-first-node?"),
         ("99", "there is no exercise '99'"),
+        pytest.param("9" * 5000, "there is no exercise '999", id="more digits than int() reads"),
         ("", "there is no exercise ''"),
     ],
 )
@@ -87,10 +88,15 @@ def test_the_title_is_read_without_the_checks() -> None:
     }
 
 
-def test_the_title_of_an_exercise_with_a_mistake_is_refused_as_the_exercise_is(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("text", "named"), [('schema = 2\n\n[exercise]\nid = "01-x"\n\n[[check]]\n', "title"), ("exercise = 1\n", "schema")]
+)
+def test_the_title_of_an_exercise_with_a_mistake_is_refused_as_the_exercise_is(
+    text: str, named: str, tmp_path: Path
+) -> None:
     file = tmp_path / "exercise.toml"
-    file.write_text('schema = 2\n\n[exercise]\nid = "01-x"\n\n[[check]]\n')
-    with pytest.raises(UsageError, match="title"):
+    file.write_text(text)
+    with pytest.raises(UsageError, match=named):
         title_of(file)
 
 

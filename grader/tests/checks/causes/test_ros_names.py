@@ -36,7 +36,7 @@ def cause(name: str) -> str:
     ],
 )
 def test_what_replaces_a_name_of_rospy_is_told_for_that_name_only(name: str, words: str) -> None:
-    assert cause(name) == f"{name} belongs to rospy, the library of ROS 1. {words}"
+    assert cause(name) == f"{name} belongs to rospy, the Python library of ROS 1. {words}"
     others = [other for other, text in OF_ROS_1.items() if text != words]
     assert not any(words in cause(other) for other in (*others, "spinn"))
 
@@ -59,4 +59,4 @@ def test_a_name_that_rospy_does_not_have_is_not_one_of_ros_1(near: str, name: st
 def test_a_function_of_rospy_is_not_a_method_of_a_node(name: str, *, told: bool) -> None:
     error = f"AttributeError: 'Driver' object has no attribute '{name}'"
     found = reported("import rclpy\n" + DRIVER.format(line=f"self.{name}()"), error)
-    assert (f"{name} belongs to rospy, the library of ROS 1." in found.cause) == told
+    assert (f"{name} belongs to rospy, the Python library of ROS 1." in found.cause) == told

@@ -35,7 +35,7 @@ def cause(line: str, error: str) -> str:
         ("A node name has only letters, digits", "x = 1", None, "InvalidNodeNameException: Invalid node name"),
         ("ROS 2 was used before rclpy.init or after", "x = 1", None, "NotInitializedException: no context"),
         (
-            "belongs to rospy, the library of ROS 1",
+            "belongs to rospy, the Python library of ROS 1",
             "rclpy.loginfo('a')",
             None,
             NO_ATTRIBUTE.format("module 'rclpy'", "loginfo"),

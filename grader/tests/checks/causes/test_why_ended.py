@@ -33,11 +33,11 @@ def ended(source: str, t_s: float = 3.0) -> tuple[str, str, int | None]:
     ("body", "diagnosis", "words"),
     [
         ("rclpy.spin  # look", "not-called", "This line mentions rclpy.spin but does not call it"),
-        ("return  # look\n    rclpy.spin(Driver())", "ends-at-once", "main returns here, before it calls rclpy.spin."),
+        ("return  # look\n    rclpy.spin(Driver())", "ends-at-once", "main returns here, before it spins the node."),
         (
             "pass\n\nif __name__ == '__main__':  # look\n    rclpy.spin(Driver())",
             "ends-at-once",
-            "rclpy.spin is called only in this block, which does not run",
+            "The node is spun only in this block, which does not run",
         ),
         (
             "rclpy.spin(Driver())  # look\n\nif __name__ == '__main__':\n    main(); rclpy.spin(Driver())",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.checks.causes.why_path import all_zero
+from grader.checks.causes.why_path import all_zero, radius_of_commands
 from grader.tests.checks.made import evidence, recording
 
 
@@ -19,3 +19,16 @@ from grader.tests.checks.made import evidence, recording
 )
 def test_commands_are_all_zero_or_not(commands: list[tuple[float, float, float]], words: str) -> None:
     assert all_zero(evidence(recording(commands))) == words
+
+
+@pytest.mark.parametrize(
+    ("linear", "angular", "words"),
+    [
+        (2.0, 1.0, "angular.z: 2.0 / 1.0 = 2.0 m."),
+        (2.0, -1.0, "angular.z, without their signs: 2.0 / 1.0 = 2.0 m."),
+        (-2.0, -1.0, "angular.z: -2.0 / -1.0 = 2.0 m."),
+    ],
+)
+def test_the_quotient_in_the_sentence_about_the_radius_is_right(linear: float, angular: float, words: str) -> None:
+    text = radius_of_commands(evidence(recording([(0.5, linear, angular), (1.0, linear, angular)])))
+    assert text == f"The radius is linear.x divided by {words}"

@@ -79,7 +79,7 @@ TWICE = "rclpy.exceptions.ParameterAlreadyDeclaredException: Parameter(s) alread
         (
             "self.client.send_goal(goal, done_cb=self.send)",
             "TypeError: ActionClient.send_goal_async() got an unexpected keyword argument 'done_cb'",
-            "done_cb, active_cb and feedback_cb belong to actionlib, the library of ROS 1.",
+            "done_cb, active_cb and feedback_cb belong to actionlib, a library of ROS 1.",
             True,
         ),
         (

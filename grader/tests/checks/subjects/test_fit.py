@@ -208,7 +208,7 @@ def test_a_function_with_other_parameters_is_told(error: str, check: str, *, tol
 @pytest.mark.parametrize(
     ("exact", "check", "words"),
     [
-        (RIGHT, "noise", "The circle of exact points is right, but these points have noise, or are only an arc."),
+        (RIGHT, "noise", "The circle of exact points is right, but these points have noise. Use all points"),
         (returned(X, Y, 9.0), "noise", "The function computes a circle that does not fit the points."),
         (RIGHT, "lists", "The function computes a circle that does not fit the points."),
     ],

@@ -66,7 +66,7 @@ def test_the_rate_given_as_the_period_is_reported() -> None:
 def test_a_sleep_in_the_timers_method_is_reported() -> None:
     found = rate("one hertz", ("        msg = Twist()", "        time.sleep(0.6)\n        msg = Twist()"))
     assert (found.diagnosis, str(found.where)) == ("sleep-in-callback", f"{NODE_FILE}:13")
-    assert found.cause == "While a method sleeps, a node with one thread does nothing else, and its timer waits."
+    assert found.cause == "While a method sleeps, a node with one thread does nothing else."
 
 
 def test_a_publisher_that_each_call_creates_explains_uneven_intervals() -> None:
