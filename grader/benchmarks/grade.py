@@ -3,12 +3,12 @@
     python -m grader.benchmarks.grade [--sizes 25,50,100,200] [--workers 1,2,4] [--dask-size 50] [--jobs N]
                                       [--mix right|all] [--times N]
 
-The cost is relative to F (see grader.benchmarks.check), which is measured before and after the class, in the same run.
-The class is mixed: out of every eight submissions, four are correct, three are wrong in different ways, and one is
-hostile. With `--mix right`, all submissions are correct. Each submission contains a different comment, so that the
-grader grades every submission. In half of the packages, package.xml contains the name of the student, so these packages
-cannot share a build. The benchmark also measures the memory of all processes of the run, including those in sandbox
-cells. The benchmark samples the memory several times per second, and counts shared memory once.
+The cost is relative to F (see grader.benchmarks.check), which is measured before and after the classes in one run.
+Each class is mixed: out of every eight submissions, four are correct, three are wrong in different ways, and one is
+hostile. With `--mix right`, all submissions are correct. Each submission contains a different comment, since the
+submissions of a real class differ, too. In half of the packages, package.xml contains the name of the student, so these
+packages cannot share a build. The benchmark also measures the memory of all processes of the run, including those in
+sandbox cells. The benchmark samples the memory several times per second, and counts shared memory once.
 """
 
 from __future__ import annotations
@@ -73,7 +73,9 @@ def main() -> None:
         default="all",
         help="right: only correct submissions; all: also wrong and hostile ones",
     )
-    parser.add_argument("--times", type=int, default=3, help="number of measurements of F (default: 3)")
+    parser.add_argument(
+        "--times", type=int, default=3, help="number of measurements of F before and after the classes (default: 3)"
+    )
     arguments = parser.parse_args()
     sizes = [int(size) for size in arguments.sizes.split(",") if size]
     workers = [int(amount) for amount in arguments.workers.split(",") if amount]

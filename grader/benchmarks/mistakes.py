@@ -38,7 +38,9 @@ if TYPE_CHECKING:
 
 SOLUTION = ROOT / "solutions/03-circle-publisher"
 MOST_STATIC_S = 0.4
-MOST_F = 2.0
+MOST_F = 2.5
+MOST_F_OF = {"13-catch-them-all": 4.0}
+"""The targets of the exercises whose target is not MOST_F."""
 CASES_A_PIECE = 10
 
 
@@ -65,8 +67,8 @@ def main() -> None:
         if of_it:
             longest = max(of_it, key=lambda name: of_it[name])
             print(f"{exercise}: {len(of_it)} in simulated time, the slowest {of_it[longest]:.2f} F ({longest})")
-    over = [name for name, ratio in ratios.items() if ratio > MOST_F]
-    print(f"over the target of {MOST_F:g} F: {', '.join(over) or 'none'}")
+    over = [case.name for case in cases if ratios.get(case.name, 0.0) > _most_f(case)]
+    print(f"over the target: {', '.join(over) or 'none'}")
 
 
 def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
@@ -78,7 +80,7 @@ def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
         if seconds is None:
             continue
         found[case.name] = seconds / f_s(_exercise(case), bare)
-        if found[case.name] > MOST_F:
+        if found[case.name] > _most_f(case):
             found[case.name] = statistics.median(_beside_f(case, folder / f"{case.name}-{turn}") for turn in range(3))
         print(f"{case.name}: {seconds:.2f} s, {found[case.name]:.2f} F", flush=True)
     return found
@@ -107,6 +109,11 @@ def f_s(exercise: Exercise, bare: Mapping[str, float]) -> float:
 
 def _exercise(case: Case) -> Exercise:
     return find_exercise(case.exercise or case.base)
+
+
+def _most_f(case: Case) -> float:
+    """Return the target for a whole check of the case (F)."""
+    return MOST_F_OF.get(_exercise(case).id, MOST_F)
 
 
 def _static_s(case: Case, folder: Path) -> float:

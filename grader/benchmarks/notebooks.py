@@ -85,7 +85,7 @@ def _empty(cell: dict[str, Any]) -> None:
 
 
 def hand_in(root: Path, students: int) -> None:
-    """Hand in the solution for this number of students. The copies differ slightly, so that every copy is graded."""
+    """Hand in the solution for this number of students. Each copy contains a different comment."""
     node = f"{STEP}/my_robot_controller/my_robot_controller/draw_circle.py"
     solution = (course_folder().parent / "solutions" / node).read_text()
     for number in range(students):

@@ -4,7 +4,7 @@
 
 Everything is measured in one run. The measurements alternate, so that other programs slow down all of them alike. The
 first `ros2 topic list` starts the ROS 2 daemon, and the later ones use it. The benchmark also prints in how many runs
-`ros2 topic list` and Tab found all topics.
+`ros2 topic list` found all topics, and Tab all topics that begin with the typed characters.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ from grader.ros import installation, underlay
 
 _ROS2 = str(Path(sys.executable).with_name("ros2"))
 _NODE = "import rclpy; rclpy.init(); node = rclpy.create_node('bare'); node.destroy_node(); rclpy.shutdown()"
-_COMPLETE = "/parameter_events\n/rosout\n/turtle1/cmd_vel\n/turtle1/color_sensor\n/turtle1/pose\n"
+_COMPLETED = ("/turtle1/cmd_vel", "/turtle1/color_sensor", "/turtle1/pose")
+_COMPLETE = ("/parameter_events", "/rosout", *_COMPLETED)
 _TAB = "ros2 topic echo /tur"
 COMMANDS = {
     "topic list": ["topic", "list"],
@@ -90,7 +91,8 @@ def _measure(runs: dict[str, tuple[list[str], dict[str, str]]], times: int) -> N
             done = subprocess.run(argv, env=env, capture_output=True, text=True, check=True)
             wall[name].append(time.monotonic() - begun)
             if name in complete:
-                complete[name] += done.stdout == _COMPLETE or (name == "Tab" and "/turtle1/pose" in done.stdout)
+                wanted = _COMPLETED if name == "Tab" else _COMPLETE
+                complete[name] += all(topic in done.stdout for topic in wanted)
     bare_s = statistics.median(wall["bare rclpy node"])
     print(f"{'':24}{'median s':>10}{'longest s':>11}{'/ bare node':>13}{'target':>10}")
     for name, seconds in wall.items():

@@ -42,29 +42,32 @@ OF_THE_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS)
 
 
 def stem(name: str) -> str | None:
-    """Return the name of an archive without its extension, or None if the file is not an archive."""
+    """Return the name of an archive without its extension, or None if the name has no stem or another extension."""
     ending = next((each for each in EVERY_ENDING if name.lower().endswith(each)), None)
     return name[: -len(ending)] or None if ending else None
 
 
 @dataclass(frozen=True)
 class Copy:
-    """A copy of an archive in a folder of the grader. `sha256` is the hash of its name and its content.
+    """A copy of an archive in a folder of the grader. `sha256` is the hash of the archive's name and content.
 
-    If the archive could not be read, `error` is the reason. Then `sha256` is the hash of the reason, or of the first
-    part of an archive that is too large to be unpacked.
+    If the archive could not be read or is too large to be unpacked, `error` is the reason. Then `sha256` is the hash of
+    the name, of the part that was read, and of the error that occurred while reading, if any.
     """
 
     file: Path
     name: str
-    """The name of the archive. The name of the copy is our own, since the disk for temporary files may not accept any
+    """The name of the archive. The copy has another name, because the disk for temporary files may not accept this
     name."""
     sha256: str
     error: Exception | None
 
     @contextmanager
     def unpacked(self) -> Iterator[Path]:
-        """Yield a temporary folder with the content of the archive. Raises the same errors as `unpacked`."""
+        """Yield a temporary folder with the content of the archive.
+
+        Raises the same errors as the function `unpacked`, and those of `not_opened`.
+        """
         if self.error is not None:
             reason = not_opened(self.error, self.name)
             raise reason from (None if reason is self.error else self.error)
@@ -159,6 +162,7 @@ def unpacked(archive: Path) -> Iterator[Path]:
     Raises:
         NotUnpackedError: the archive cannot be unpacked, or is larger than a submission may be.
         DiskError: the disk for temporary files failed.
+        MachineError: the machine failed while the archive was being read.
     """
     if not archive.name.lower().endswith(ENDINGS):
         message = "is not a supported archive: hand in a .zip or a .tar.gz"

@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from grader.exercise.model import Exercise
 
 MOST_DEEP = 4
-"""answers.toml may be inside up to this many nested folders, if each of them contains nothing but the next one."""
+"""answers.toml may be inside up to this many nested folders, if each of them contains nothing but the next one. Entries
+whose names begin with a dot or with `__`, such as `__MACOSX`, do not count."""
 
 
 @dataclass(frozen=True)
@@ -97,8 +98,8 @@ def _diagnosis(error: UsageError, exercise: Exercise) -> Diagnosis:
 def fingerprint(found: Found, exercise: Exercise, task: Task | None = None) -> str:
     """Return the sha256 of all relevant files of a submission, or of the reason why they cannot be read.
 
-    With a `task`, the files or the archive that the task contains are hashed, because the student may have changed them
-    before or after the task was made. Without a task, an archive is hashed without unpacking it.
+    With a `task`, the hash is that of the files or the archive from which the task was made, because the student may
+    have changed the submission since then. Without a task, an archive is hashed without unpacking it.
 
     Raises:
         DiskError: the disk for temporary files failed.
@@ -132,7 +133,8 @@ def _sha256(*parts: str) -> str:
 def _archive(path: Path) -> Path | None:
     """Return the archive of a submission, or None.
 
-    The archive is the path itself if it is a file, or the only file in the folder, as in Moodle.
+    The archive is the path itself if it is a file, or the only entry of the folder, as in Moodle. Hidden entries do not
+    count.
     """
     try:
         if not path.is_dir():

@@ -42,7 +42,7 @@ def perform_here(packed: bytes) -> tuple[str, object]:
     Return ("done", Done), ("fails", text) if this machine cannot grade, or ("died", text) if the process died or
     needed more than TASK_S.
     """
-    task = pickle.loads(packed)  # the instructor's command handles Ctrl-C
+    task = pickle.loads(packed)
     with _lock:
         worker = _idle.pop() if _idle else Worker()
     worker.send(task)

@@ -1,9 +1,9 @@
 """Submissions whose student is not clear: a student has several submissions, or names of students are too similar.
 
-Two names are one student id if they have the same normal form, as for the students' own numbers. Both submissions are
-graded, with the same numbers, because a student who chooses the name of an archive could otherwise take the points of
-another student. The reports say that the names are one id. Several submissions with exactly the same name are not
-graded, because they have a single line in the table of the class.
+Two names are one student id if they have the same normal form (grader.exercise.own_numbers.normal_id). Both submissions
+are graded, with the same individual numbers, because a student who chooses the name of an archive could otherwise take
+the points of another student. The reports say that the names are one id. Several submissions with exactly the same name
+are not graded, because they have a single line in the table of the class.
 """
 
 from __future__ import annotations

@@ -123,7 +123,7 @@ def _engine_is_known(request: Request) -> bool:
 
 
 def exit_code(graded: Sequence[Result], fail_under: float | None) -> int:
-    """Return 3 if a submission could not be judged, 1 if one got less than `fail_under` percent, and 0 otherwise."""
+    """Return 3 if a report contains an `error`, 1 if a submission got less than `fail_under` percent, or else 0."""
     if any(result.report.with_status(Status.ERROR) for result in graded):
         return 3
     shares = [result.report.points / result.report.max if result.report.max else 0.0 for result in graded]

@@ -25,8 +25,8 @@ MEMORY_A_TASK = 1536 * 1024 * 1024
 """The memory that each task is expected to need (bytes). A cell may use more memory than this (sandbox.Limits), but few
 cells do."""
 JOBS_PER_PROCESSOR = 1.5
-"""With one job per processor, the processors are idle for a fifth of the time, because a trial waits for the discovery
-of its node (docs/costs.md)."""
+"""With one job per processor, the processors are idle for a quarter of the time, because a trial waits for the
+discovery of its node (docs/costs.md)."""
 WAITING_A_JOB = 2
 """For each job, this many additional tasks may run while other tasks are in a trial in wall time."""
 

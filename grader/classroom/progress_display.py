@@ -43,7 +43,7 @@ class Screen(Protocol):
 def plain(text: str) -> str:
     """Return the text, changed so that it cannot control a terminal or a program that reads logs.
 
-    Each control character becomes a question mark, and `::` and `##` get a space in the middle.
+    Control characters become question marks or spaces, and `::` and `##` get a space in the middle.
     """
     # GitHub executes ::command:: at the beginning of a line and ##[command] anywhere, and Azure Pipelines ##vso[.
     return printable(text).replace("::", ": :").replace("##", "# #")

@@ -138,8 +138,8 @@ def opened(folder: Path, submissions: Sequence[Path] = (), *, chosen: bool = Tru
             old = results.load("anna", "03-circle-publisher")
 
     Raises:
-        UsageError: another run is using the folder, it contains files that are not results, or a student could have
-            created it.
+        UsageError: another run is using the folder, it is not a folder, it contains files that are not results, or a
+            student could have created it.
         MachineError: the folder cannot be written.
     """
     lock = folder / _LOCK
@@ -149,7 +149,11 @@ def opened(folder: Path, submissions: Sequence[Path] = (), *, chosen: bool = Tru
             "may have put forged results there. Choose another folder with --out."
         )
         raise UsageError(message)
-    if folder.exists() and not (folder.is_dir() and (lock.exists() or not any(folder.iterdir()))):
+    if folder.exists() and not folder.is_dir():
+        message = f"{folder} is not a folder. "
+        message += "Choose a new folder with --out." if chosen else "Move it to another folder."
+        raise UsageError(message)
+    if folder.exists() and not lock.exists() and any(folder.iterdir()):
         message = f"{folder} contains files that are not results of `grader grade`. "
         message += "Choose a new folder with --out." if chosen else "Move them to another folder."
         raise UsageError(message)

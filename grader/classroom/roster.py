@@ -46,7 +46,7 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
         message = f'{file} is not a roster: its first line must name {columns_of} {wanted}, but it is "{header}".'
         raise UsageError(message)
     if not lines:
-        message = f"{file} is not a roster: it has only one line."
+        message = f"{file} is not a roster: it contains only the column names."
         raise UsageError(message)
     rows: dict[int, dict[str, str]] = {}
     lines_of: dict[str, int] = {}
@@ -75,7 +75,7 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
 def _lines(file: Path) -> list[tuple[int, list[str]]]:
     """Return the values of each line that is not empty, together with the line number.
 
-    Raises UsageError if the file is not CSV.
+    Raises UsageError if the file cannot be read, is not UTF-8 or is not CSV.
     """
     try:
         data = file.read_bytes()

@@ -118,7 +118,7 @@ def perform(
     options = Options(in_cell=in_cell, clock=task.clock, seed=task.seed, explain=task.explain, trials_at_once=1)
     try:
         return _done(task, grade(exercise, _submission(task), options, tell, build=_builds(), trial=Waiting))
-    except MachineError as error:  # other submissions can still be readable on this machine
+    except MachineError as error:  # the machine may still be able to grade other submissions
         return set_aside(task, str(error))
 
 

@@ -99,6 +99,7 @@ def read_archive(archive: Path) -> tuple[Member, ...]:
 
     Raises:
         NotUnpackedError: the archive cannot be unpacked, or is larger than a submission may be.
+        MachineError: the machine is at fault.
     """
     with _open(archive) as file:
         try:
@@ -175,7 +176,7 @@ def _content(content: IO[bytes], most: int) -> bytes:
 
 
 def _zip(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
-    """Yield the name, mode and content of each file.
+    """Yield the name, mode and content of each file and folder.
 
     For a folder, the content is None. Links and devices are skipped.
     """

@@ -73,14 +73,18 @@ class _Copying(BaseConverter):  # type: ignore[misc, unused-ignore]
 
 
 class _DiskError(BaseException):
-    """The disk has failed. This is not an Exception, since nbgrader continues with the next submission after those."""
+    """The disk has failed. After an `Exception`, nbgrader would continue with the next submission."""
 
 
 class _StopsWithTheDisk(BaseConverter):  # type: ignore[misc, unused-ignore]
-    """Stops at the first submission for which the disk fails: it is not at fault, and the others would fail, too."""
+    """Stops at the first submission for which the disk fails, because all other submissions would fail, too."""
 
     def convert_notebooks(self) -> None:
-        """Convert all submissions as the base class does, or log one sentence if the disk fails."""
+        """Convert all submissions as the base class does.
+
+        Raises:
+            NbGraderException: the disk failed. The reason is logged as one sentence.
+        """
         try:
             super().convert_notebooks()
         except _DiskError as error:
@@ -166,7 +170,10 @@ class BoundedAutograde(_StopsWithTheDisk, _Autograde):
 
 
 class _Feedback(GenerateFeedback):  # type: ignore[misc, unused-ignore]
-    """nbgrader's GenerateFeedback, but it does not copy a student's files: nbgrader would release all .html files."""
+    """nbgrader's GenerateFeedback, but it copies only the time stamp and the secret of a submission.
+
+    If it copied all files, nbgrader would also release the student's own .html files.
+    """
 
     notebooks: list[str]
 
@@ -249,7 +256,8 @@ class BoundedCollect(ExchangeCollect):  # type: ignore[misc, unused-ignore]
     def do_copy(self, src: str, dest: str, log: Any = None) -> None:  # noqa: ANN401 - as the base class
         """Copy one submission. If the copy fails, log a warning and continue with the other submissions.
 
-        If the disk has failed, stop: nbgrader removes a student's earlier submission before each copy.
+        If the disk has failed, stop, because nbgrader removes a student's earlier submission before each copy. Other
+        students would lose their earlier submissions.
         """
         with tempfile.TemporaryDirectory(prefix="collect-") as folder:
             safe = Path(folder, "submission")

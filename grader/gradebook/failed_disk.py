@@ -13,7 +13,7 @@ _ROOM = "free some space there"
 def failed_disk(error: BaseException | None, written: str | os.PathLike[str] = "") -> str:
     """Return a sentence if a full, broken or read-only disk is the cause of the error, or an empty string.
 
-    `written` is the file or folder that was being written, in case that the error does not contain it.
+    `written` is the file or folder that was being written. The sentence names it if the error does not contain a path.
     """
     while error is not None:
         number = _errno(error) if isinstance(error, OSError) else 0

@@ -35,7 +35,9 @@ class NewClass:
 
 
 def make_class(folder: Path, roster: Path | None) -> NewClass:
-    """Create the folder and add the students of the roster to its gradebook. The course gets the folder's name.
+    """Create the folder and add the students of the roster to its gradebook.
+
+    The course's name in nbgrader's exchange is derived from the name of the folder (`course_id`).
 
     Raises:
         UsageError: the folder is not empty, the roster is invalid, or this copy of the course has no solutions.

@@ -63,7 +63,8 @@ def require_listable(folder: Path) -> None:
     """Check the files that `nbgrader list --inbound` reads: the notebooks and the secret.
 
     Raises:
-        UnreadableError: one of these files is not a regular file or is too large, or the secret is not text.
+        UnreadableError: one of these files is not a regular file, or is too large.
+        UnicodeDecodeError: the secret is not UTF-8. The reading process turns this exception into an UnreadableError.
     """
     for path in sorted(folder.glob("*.ipynb")):
         _content(path, MOST_BYTES)

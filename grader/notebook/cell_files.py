@@ -28,7 +28,8 @@ def begin(exercise: Exercise, folder: Path, *, alone: bool = False) -> tuple[str
     """Add the step's files that are missing from `folder`, next to the notebook. Return the paths that were written.
 
     A missing package is copied from the learner's workspace, or else from the starting point. With `alone`, a missing
-    package is always copied from the starting point. Files of the student are never overwritten.
+    package is always copied from the starting point, and the student's individual numbers are not written. Files that
+    the student has changed are never overwritten.
     """
     source, target = starting_point(exercise), folder
     if not exercise.package:
@@ -55,6 +56,9 @@ def _own_numbers(spec: NumbersSpec, source: Path, target: Path) -> tuple[str, ..
 
 
 def _student() -> str:
-    """Return the student's name in nbgrader: the user name, or the JupyterHub user name if the account is shared."""
+    """Return the student's name in nbgrader: the user name, or JupyterHub's name of the user if the account is jovyan.
+
+    All users of a JupyterHub can share the account jovyan, since each of them has a container.
+    """
     name = xdg.user_name()
     return os.environ.get("JUPYTERHUB_USER", name) if name == "jovyan" else name

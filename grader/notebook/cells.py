@@ -117,7 +117,10 @@ class Cells:
 def run_below(
     argv: list[str], *, cwd: Path | None = None, env: Mapping[str, str] | None = None, seconds: float | None = None
 ) -> int:
-    """Run a command and print its output until the command exits, `seconds` have passed, or the cell is interrupted."""
+    """Run a command and print its output until the command exits, `seconds` have passed, or the cell is interrupted.
+
+    Return the exit code of the command.
+    """
     child = subprocess.Popen(
         argv, cwd=cwd, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
         encoding="utf-8", errors="replace", bufsize=1, start_new_session=True,

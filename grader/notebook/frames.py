@@ -17,7 +17,7 @@ CHANNELS = ("shell", "control", "stdin", "iopub")
 ORDER = len(CHANNELS)
 """The channel of the first frame. The first frame contains the key for the signatures."""
 CHUNK = 1024 * 1024
-"""The number of bytes that are read from a pipe at a time."""
+"""The maximum number of bytes that are read from or written to a pipe at a time."""
 MOST_PARTS = 1000
 
 _HEAD = struct.Struct(">BH")

@@ -44,7 +44,10 @@ def opened(exercise: Exercise, folder: Path) -> Submission:
 
 
 def reason(outcome: Outcome) -> str:
-    """Return the outcome of a check as plain text: its status and, if it did not pass and is not hidden, the reason."""
+    """Return the outcome of a check as plain text: its status, title and points, and the reason if it did not pass.
+
+    The title and the reason of a hidden check are left out.
+    """
     sign = {Status.PASSED: "✓", Status.FAILED: "✗", Status.SKIPPED: "-", Status.ERROR: "!"}[outcome.status]
     points = f"  {outcome.points:g}/{outcome.max:g}" if outcome.max else ""
     if outcome.hidden:

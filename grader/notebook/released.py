@@ -25,7 +25,8 @@ there."""
 def released_notebook(data: bytes, name: str) -> bytes:
     """Return the released version of a source notebook.
 
-    Raises UsageError if a cell has a mistake. The message contains the number of the cell.
+    Raises UsageError if the data is not a notebook or a cell has a mistake. The message contains `name` and, if a cell
+    has a mistake, its number.
     """
     try:
         notebook = json.loads(data)

@@ -60,7 +60,7 @@ def _refresh(cell: Cell, exercise: Exercise, files: Mapping[str, bytes], name: s
         raise UsageError(message)
     text = files[path].decode("utf-8")
     cell["source"] = f"{first}\n{text}".rstrip("\n").splitlines(keepends=True)
-    # Compare more than the cell's id: a check may also be called "answers", and nbgrader uses both as cell names.
+    # Without the prefix, this name could be the id of a check, such as "answers", which is the name of a grade cell.
     cell["metadata"]["nbgrader"] = _about(f"write-{cell['id']}", solution=True)
 
 

@@ -110,6 +110,12 @@ def test_a_folder_with_other_files_is_not_touched(tmp_path: Path) -> None:
     assert [file.name for file in tmp_path.iterdir()] == ["index.html"]
 
 
+def test_a_file_in_the_place_of_the_folder_is_reported_as_a_file(tmp_path: Path) -> None:
+    (tmp_path / "grades").write_text("mine")
+    with pytest.raises(UsageError, match=r"grades is not a folder\. Choose a new folder"), opened(tmp_path / "grades"):
+        pass
+
+
 def test_the_key_shows_what_changed() -> None:
     assert changed(KEY.to_data(), KEY) == ()
     assert changed({**KEY.to_data(), "grader": "older"}, KEY) == ("grader",)

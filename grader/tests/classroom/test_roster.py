@@ -48,7 +48,7 @@ def test_line_numbers_are_those_of_the_file_and_missing_columns_are_empty(file: 
         (b"", 'the column "id", and perhaps name and email, but it is "".'),
         (b"ada,Ada\nbob,Bob\n", 'but it is "ada,Ada".'),
         (b"id,name,id\nada,Ada,a1\n", 'but it is "id,name,id".'),
-        (b"id,name\n\n", "it has only one line"),
+        (b"id,name\n\n", "it contains only the column names"),
         (b"id,name\nada,Lovelace, Ada\n", "line 2: 3 values for 2 columns"),
         (b"id\nada,Ada\n", "line 2: 2 values for 1 column. Put"),
         (b"id,name\n\n,Ada\n", "line 3: the id is missing"),

@@ -38,7 +38,7 @@ OPERATORS: tuple[Operator, ...] = (
     *places.OPERATORS,
 )
 STEPS = ("01-first-node", "03-circle-publisher", "04-package-files", "06-pose-subscriber")
-"""The solutions to change. Each solution is used as often as all unusual packages together."""
+"""The solutions to change. `bases` repeats each solution, so that more than half of the packages are solutions."""
 TWO_AT_ONCE = 1 / 3
 
 
