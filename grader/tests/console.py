@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from grader.authoring.console_blocks import Block, Step
 
 COUNTED = r"(?:of|points?|scores?|submissions?|students?|checks?|differences|(?:not )?passed|failed|to grade|changed)"
-NUMBER = re.compile(rf"\d+(?:\.\d+)?(?!\.?\d)(?! {COUNTED}\b)")
-"""A number that may differ from run to run, such as a time. A number of points, for example, may not."""
+NUMBER = re.compile(rf"(?<!\d)(?<!\d/)\d+(?:\.\d+)?(?!\.?\d)(?!/\d)(?! {COUNTED}\b)")
+"""A number that may differ from run to run, such as a time. A number of points, such as 10/10, may not."""
 END = "--- the end of what one command printed ---"
 
 

@@ -81,3 +81,8 @@ def test_what_is_shown_must_be_printed_in_that_order(shown: tuple[str, ...], wro
 )
 def test_numbers_of_things_are_compared_and_times_are_not(shown: str, wrong: bool) -> None:
     assert (differs((shown,), "15 of 100 points in 1.25 s\n") is not None) == wrong
+
+
+@pytest.mark.parametrize(("shown", "wrong"), [("✓ It drives  10/10", False), ("✓ It drives  15/15", True)])
+def test_the_points_of_a_check_are_compared(shown: str, wrong: bool) -> None:
+    assert (differs((shown,), "✓ It drives  10/10\n") is not None) == wrong
