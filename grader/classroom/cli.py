@@ -176,7 +176,7 @@ def build(
     from grader.classroom.gradescope_archive import build_archive
 
     if file.is_dir() or file.suffix != ".zip":
-        message = f"{file} is a folder, or does not end in .zip. Choose a file name that ends in .zip."
+        message = f"{file} is a folder, or does not end in .zip. Choose another name that ends in .zip."
         raise UsageError(message)
     build_archive(exercise, file, checks, trusted=trusted)
     typer.echo(f"Upload {file} to Gradescope: open your assignment, then Configure Autograder.")

@@ -34,9 +34,8 @@ from grader.trial.forking import fork_supervised, next_request
 if TYPE_CHECKING:
     from grader.classroom.task import Done, Pace, Task
 
-Message = tuple[Literal["tells"], str] | tuple[Literal["now"], "Pace"] | tuple[Literal["done"], "Done"]
-"""The messages that a worker sends. A worker also sends ("fails", text) for a MachineError that no submission
-caused."""
+Message = tuple[Literal["tells", "fails"], str] | tuple[Literal["now"], "Pace"] | tuple[Literal["done"], "Done"]
+"""The messages that a worker sends. "fails" is for a MachineError that concerns all submissions."""
 
 _LAST_WORDS = 1000
 

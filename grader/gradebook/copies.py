@@ -16,7 +16,7 @@ MOST_REPORTED = 20
 
 
 def copy_of(submission: Path, copy: Path, *, notebooks: bool = True) -> tuple[str, ...]:
-    """Copy the regular files of a submission to `copy`, which may already exist.
+    """Copy the files that `tree.read_folder` accepts from the folder `submission` to `copy`, which may already exist.
 
     Without `notebooks`, files that end in .ipynb are not copied. Return the reasons why entries were rejected.
     """

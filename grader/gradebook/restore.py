@@ -50,7 +50,7 @@ class RestoreCells(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
             for name, (metadata, source) in known.items()
             if name not in observed and metadata["nbgrader"]["locked"]
         ]
-        # Insert the cell that loads the magics at the beginning, and cells with points at the end.
+        # Insert cells without points (such as the one that loads the magics) at the beginning, the others at the end.
         nb.cells = [
             *(cell for cell in missing if not cell.metadata.nbgrader.grade),
             *cells,

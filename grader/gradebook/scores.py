@@ -76,7 +76,7 @@ def sync(
     """Grade the collected submissions that have no valid result yet, and write all scores to the gradebook.
 
     Raises:
-        UsageError: nothing was collected, a step is not in the gradebook, or another sync is running.
+        UsageError: nothing was collected, a step does not exist or is not in the gradebook, or another sync is running.
         MachineError: the machine cannot grade submissions or write scores. Scores that are not confirmed are set to 0
             points in this case too.
     """

@@ -32,20 +32,22 @@ def unclear(folders: Collection[str], enrolled: Collection[str]) -> dict[str, Re
     for name in folders:
         alike = spellings[normal_id(name)]
         if len(alike) > 1 and alike & known != {name}:
-            found[name] = _reason(name, sorted(alike, key=sort_key), known)
+            found[name] = _reason(name, sorted(alike, key=sort_key), known, folders)
         elif not name.isprintable():
             reason = f"The name {shown(name)} has characters that cannot be printed. Rename the folder."
             found[name] = Refused(reason, "submission-name")
     return found
 
 
-def _reason(name: str, alike: list[str], enrolled: set[str]) -> Refused:
+def _reason(name: str, alike: list[str], enrolled: set[str], folders: Collection[str]) -> Refused:
     ids = enrolled.intersection(alike)
     if not ids:
         return similar(alike, "Remove or rename all of these folders but one.")
     if len(ids) == 1:
         (other,) = ids
-        todo = f"{shown(other)} is the id in the gradebook. Rename the folder {shown(name)} to {shown(other)}."
-        return similar(alike, todo)
+        todo = f"Rename the folder {shown(name)} to {shown(other)}."
+        if other in folders:
+            todo = f"Keep only one of the folders, with the name {shown(other)}."
+        return similar(alike, f"{shown(other)} is the id in the gradebook. {todo}")
     remove = "remove the ids from the gradebook (`nbgrader db student remove ID`)"
     return similar(alike, f"Keep one. Of the others, {remove}, and remove or rename the folders.")

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
         (["zoe\u0308"], ["zo\u00eb"], {"zoe\u0308": "is the id in the gradebook."}),
         (["Ada", "ada"], [], dict.fromkeys(["Ada", "ada"], "Remove or rename all of these folders but one.")),
         (["Ada"], ["Ada", "ada"], {"Ada": "Ada and ada are one student id"}),
-        (["Ada", "ada"], ["ada"], {"Ada": "Rename the folder Ada to ada."}),
+        (["Ada", "ada"], ["ada"], {"Ada": "Keep only one of the folders, with the name ada."}),
         (["ada", "ADA", "Ada"], ["ada"], dict.fromkeys(["ADA", "Ada"], "ada is the id in the gradebook.")),
     ],
 )
